@@ -1,0 +1,80 @@
+"""ament_python package; `pip install '.[all]'` works as well, with ROS from PyPI."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "winch_friction"
+SHARE = f"share/{PACKAGE}"
+
+
+def tree(folder: str) -> list[tuple[str, list[str]]]:
+    """Data files of a folder and its subfolders, for share/."""
+    folders = [path for path in (Path(folder), *Path(folder).rglob("*")) if path.is_dir()]
+    return [(f"{SHARE}/{each}", [str(f) for f in each.iterdir() if f.is_file()]) for each in folders]
+
+
+IDENTIFICATION = ["pint>=0.23", "pandas>=2.1", "pyarrow>=14", "matplotlib>=3.6", "jinja2>=3.1", "plotly>=5.18"]
+EXTRAS = {
+    "ros": [
+        "ros-rclpy[fastrtps]==7.1.6",
+        "ros-std-msgs==5.3.6",
+        "ros-sensor-msgs==5.3.6",
+        "ros-diagnostic-msgs==5.3.6",
+        "ros-std-srvs==5.3.6",
+        "ros-geometry-msgs==5.3.6",
+    ],
+    "desk": [
+        *IDENTIFICATION,
+        "numba>=0.58",
+        "pydantic>=2.5",
+        "rosbags>=0.10",
+        "scikit-learn>=1.4",
+        "statsmodels>=0.14",
+        "arch>=7.0",
+        "typer>=0.9",
+        "rich>=13",
+    ],
+    "fleet": ["dask[distributed]>=2024.1"],
+    "test": [
+        "pytest>=8",
+        "pytest-timeout>=2.2",
+        "hypothesis>=6.98",
+        "pytest-benchmark>=4",
+        "import-linter>=2",
+        "mcap-ros2-support>=0.5",
+        "ruff==0.17.6",
+        "mypy==2.4.1",
+        "colcon-common-extensions>=0.3",
+    ],
+}
+EXTRAS["all"] = [requirement for extra in ("desk", "ros", "fleet", "test") for requirement in EXTRAS[extra]]
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.j2", "**/*.css"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (SHARE, ["package.xml"]),
+        *tree("launch"),
+        *tree("config"),
+    ],
+    python_requires=">=3.11",
+    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "sympy>=1.12", "filterpy>=1.4.5", "pyyaml>=6.0"],
+    extras_require=EXTRAS,
+    zip_safe=False,
+    maintainer="The winch_friction developers",
+    maintainer_email="winch.friction@example.com",
+    description="Friction of a hydraulic winch: compensated and learned online, identified offline, questioned always.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "winch-friction = winch_friction.cli.main:main",
+            "compensator = winch_friction.nodes.compensator:main",
+            "estimator = winch_friction.nodes.estimator:main",
+            "simulator = winch_friction.nodes.simulator:main",
+        ]
+    },
+)

@@ -1,0 +1,1 @@
+"""The physics alone: units, signals, the winch and the declared friction terms. Imports nothing above it."""

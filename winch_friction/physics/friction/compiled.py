@@ -1,0 +1,162 @@
+"""From declared equations to functions: scalar, vectorised, numba kernel; each with its Jacobian.
+
+All of them take (x, theta, z): the operating point in the order of `symbols.layout`, the parameters and the states of the
+terms with memory in the model's order. Nothing here restates an equation.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from winch_friction.physics.friction import symbols
+from winch_friction.physics.friction.term import Parameter, Scope, Term
+
+_NUMPY = ["numpy"]
+
+
+class CompiledTerms:
+    """The functions of one list of terms, for one number of motor groups and one set of constants.
+
+    `torque` etc. are compiled on first use. Units: torque N m at the motor shaft, against the hoisting direction.
+    """
+
+    def __init__(self, terms: tuple[Term, ...], group_count: int, constants: tuple[tuple[str, float], ...]) -> None:
+        self.terms = terms
+        self.group_count = group_count
+        self.constants = dict(constants)
+        self.parameters: tuple[Parameter, ...] = unique_parameters(terms)
+        self.stateful = tuple(term for term in terms if term.state is not None)
+        self._arguments = (
+            symbols.layout(group_count),
+            tuple(parameter.symbol for parameter in self.parameters),
+            self._state_symbols(),
+        )
+
+    def _state_symbols(self) -> tuple[sp.Symbol, ...]:
+        return tuple(
+            sp.Symbol(f"z_{{{k},{g}}}", real=True) for k, term in enumerate(self.stateful) for g in self._groups(term)
+        )
+
+    def _groups(self, term: Term) -> range:
+        per_group = term.scope is Scope.MOTOR and bool(term.state_symbols)
+        return range(self.group_count if per_group else 1)
+
+    @cached_property
+    def expressions(self) -> tuple[sp.Expr, ...]:
+        """Each term's torque at the shaft, summed over motors, as an expression of x, theta and z."""
+        return tuple(self._at_shaft(term) for term in self.terms)
+
+    def _at_shaft(self, term: Term) -> sp.Expr:
+        torque = term.torque.subs(self._constant_values())
+        if term.scope is Scope.MOTOR:
+            return sp.Add(*(self._in_group(term, symbols.n * torque, g) for g in range(self.group_count)))
+        return self._in_group(term, symbols.N * torque if term.scope is Scope.SYSTEM else torque, 0)
+
+    def _in_group(self, term: Term, expression: sp.Expr, group: int) -> sp.Expr:
+        own = {symbol: symbols.group_symbol(symbol, group) for symbol in symbols.GROUP_SYMBOLS}
+        return expression.subs({**own, **self._state_of(term, group)})
+
+    def _state_of(self, term: Term, group: int) -> dict[sp.Basic, sp.Basic]:
+        if term.state is None:
+            return {}
+        index = self.stateful.index(term)
+        return {term.state.symbol: sp.Symbol(f"z_{{{index},{group}}}", real=True)}
+
+    def _constant_values(self) -> dict[sp.Basic, float]:
+        return {signal.symbol: self.constants.get(signal.name, signal.default) for signal in symbols.CONSTANTS}
+
+    @cached_property
+    def total(self) -> sp.Expr:
+        """The whole friction torque as one expression."""
+        return sp.Add(*self.expressions)
+
+    @cached_property
+    def gradient(self) -> list[sp.Expr]:
+        """Its partial derivatives by the parameters."""
+        return [sp.diff(self.total, parameter.symbol) for parameter in self.parameters]
+
+    @cached_property
+    def speed_derivative(self) -> sp.Expr:
+        """Its partial derivative by speed at frozen direction: d/d omega with w = |omega|, dw/d omega = s."""
+        return symbols.s * sp.diff(self.total, symbols.w) + sp.diff(self.total, symbols.omega)
+
+    def _lambdify(self, expression: Any, modules: Any) -> Callable[..., Any]:
+        return sp.lambdify(self._arguments, expression, modules=modules, cse=True)
+
+    @cached_property
+    def scalar_torque(self) -> Callable[..., float]:
+        """Torque at one operating point of plain floats."""
+        return self._lambdify(self.total, "math")
+
+    @cached_property
+    def scalar_torque_and_gradient(self) -> Callable[..., list[float]]:
+        """[torque, dT/domega, dT/dtheta_0, ...] at one operating point of plain floats."""
+        return self._lambdify([self.total, self.speed_derivative, *self.gradient], "math")
+
+    @cached_property
+    def scalar_contributions(self) -> Callable[..., list[float]]:
+        """Torque of each term at one operating point of plain floats."""
+        return self._lambdify(list(self.expressions), "math")
+
+    @cached_property
+    def vector_torque(self) -> Callable[..., Any]:
+        """Torque over arrays."""
+        return self._lambdify(self.total, _NUMPY)
+
+    @cached_property
+    def vector_gradient(self) -> Callable[..., list[Any]]:
+        """Partial derivatives over arrays (entries that are constant come back as scalars)."""
+        return self._lambdify(self.gradient, _NUMPY)
+
+    @cached_property
+    def vector_contributions(self) -> Callable[..., list[Any]]:
+        """Torque of each term over arrays."""
+        return self._lambdify(list(self.expressions), _NUMPY)
+
+    @cached_property
+    def kernel(self) -> Callable[..., float]:
+        """Torque as a numba function of three tuples of floats (x, theta, z)."""
+        import numba
+
+        return numba.njit(self.scalar_torque)
+
+    @cached_property
+    def _state_equations(self) -> list[sp.Expr]:
+        return [
+            self._in_group(term, part.subs(self._constant_values()), g)
+            for term in self.stateful
+            for g in self._groups(term)
+            for part in (term.state.gain, term.state.decay)
+        ]  # type: ignore[union-attr]
+
+    @cached_property
+    def scalar_state_rates(self) -> Callable[..., list[float]]:
+        """[gain_0, decay_0, gain_1, ...] of the states at one operating point of plain floats."""
+        return self._lambdify(self._state_equations, "math")
+
+    @cached_property
+    def initial_states(self) -> tuple[float, ...]:
+        """States at the start of a record."""
+        return tuple(term.state.initial for term in self.stateful for _ in self._groups(term))  # type: ignore[union-attr]
+
+
+def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:
+    """The parameters of the terms in order, each once."""
+    return tuple({parameter.name: parameter for term in terms for parameter in term.parameters}.values())
+
+
+@lru_cache(maxsize=256)
+def compiled(terms: tuple[Term, ...], group_count: int, constants: tuple[tuple[str, float], ...]) -> CompiledTerms:
+    """The functions of these terms, made once per process."""
+    return CompiledTerms(terms, group_count, constants)
+
+
+def broadcast_columns(columns: Sequence[Any], length: int) -> np.ndarray:
+    """Stack what lambdify returned, scalars included, to an array (length, len(columns))."""
+    out = np.empty((length, len(columns)))
+    for k, column in enumerate(columns):
+        out[:, k] = column
+    return out

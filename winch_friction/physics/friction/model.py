@@ -1,0 +1,166 @@
+"""The friction model: a list of named terms with parameter values, bounds and covariance."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import CompiledTerms, broadcast_columns, compiled, unique_parameters
+from winch_friction.physics.friction.state import advance_all
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, TIME_INDEX, WINCH_SIGNALS
+from winch_friction.physics.friction.term import Parameter, Term
+from winch_friction.physics.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class FrictionModel:
+    """A sum of declared terms with values.
+
+    `values` has one entry per parameter in the order of `parameters`, SI; `covariance` is (n, n) or None; `bounds` overrides
+    the declared bounds by name; `constants` holds maximum displacement (m^3/rad), density, viscosity, gear ratio.
+    Raises `InputError` for missing, unknown or non-finite values and for a covariance that is not one.
+    """
+
+    name: str
+    terms: tuple[Term, ...]
+    values: tuple[float, ...]
+    covariance: FloatArray | None = None
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    constants: Mapping[str, float] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = self.parameter_names
+        if len(self.values) != len(names):
+            raise InputError(f"model '{self.name}': {len(self.values)} values for {len(names)} parameters {names}")
+        for name, value in zip(names, self.values, strict=True):
+            lower, upper = self.bounds_of(name)
+            if not lower <= value <= upper:
+                raise InputError(
+                    f"model '{self.name}': parameter {name} = {value:g} is outside {lower:g} ... {upper:g}"
+                )
+        if self.covariance is not None:
+            _check_covariance(self.name, self.covariance, len(names))
+
+    # -- what it is made of
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Declared parameters, in order."""
+        return unique_parameters(self.terms)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters, in order."""
+        return tuple(parameter.name for parameter in self.parameters)
+
+    @property
+    def term_names(self) -> tuple[str, ...]:
+        """Names of the terms, in order."""
+        return tuple(term.name for term in self.terms)
+
+    def bounds_of(self, parameter: str) -> tuple[float, float]:
+        """Lower and upper bound of a parameter: the model's own, else the declared one."""
+        declared = {each.name: (each.lower, each.upper) for each in self.parameters}
+        return tuple(self.bounds.get(parameter, declared[parameter]))  # type: ignore[return-value]
+
+    def value(self, parameter: str) -> float:
+        """Value of a parameter, SI."""
+        return self.as_dict()[parameter]
+
+    def as_dict(self) -> dict[str, float]:
+        """Values by parameter name, SI."""
+        return dict(zip(self.parameter_names, self.values, strict=True))
+
+    @property
+    def std(self) -> FloatArray:
+        """Standard deviations, zero without covariance."""
+        return np.zeros(len(self.values)) if self.covariance is None else np.sqrt(np.diag(self.covariance))
+
+    # -- variants
+    def with_values(self, values: Mapping[str, float] | Sequence[float]) -> "FrictionModel":
+        """The same model with other values: all of them, or some by name."""
+        if isinstance(values, Mapping):
+            unknown = set(values) - set(self.parameter_names)
+            if unknown:
+                raise InputError(f"model '{self.name}' has no parameter {sorted(unknown)}")
+            values = [values.get(name, old) for name, old in self.as_dict().items()]
+        return replace(self, values=tuple(float(value) for value in values))
+
+    def with_covariance(self, covariance: FloatArray | None) -> "FrictionModel":
+        """The same model with another covariance."""
+        return replace(self, covariance=covariance)
+
+    def only(self, *places: str) -> "FrictionModel":
+        """The part of the model whose terms belong to these places ('motor', 'gear and drum', ...)."""
+        return self.subset([term.name for term in self.terms if term.place in places])
+
+    def subset(self, term_names: Sequence[str]) -> "FrictionModel":
+        """The model with these of its terms, values and covariance carried over."""
+        terms = tuple(term for term in self.terms if term.name in term_names)
+        keep = [self.parameter_names.index(parameter.name) for parameter in unique_parameters(terms)]
+        covariance = None if self.covariance is None else self.covariance[np.ix_(keep, keep)]
+        return replace(self, terms=terms, values=tuple(self.values[k] for k in keep), covariance=covariance)
+
+    # -- evaluation
+    def compile(self, group_count: int) -> CompiledTerms:
+        """The model's functions for a winch with this many motor groups."""
+        return compiled(self.terms, group_count, tuple(sorted(self.constants.items())))
+
+    def torque(self, x: Sequence[Any], z: Sequence[Any] | None = None) -> Any:
+        """Friction torque in N m at the shaft, over arrays; `x` as from `physics.winch.operating_point`."""
+        functions = self.compile(_group_count(x))
+        return functions.vector_torque(tuple(x), self.values, self._states(functions, x, z))
+
+    def contributions(self, x: Sequence[Any], z: Sequence[Any] | None = None) -> dict[str, Any]:
+        """Torque of every term in N m, by name, over arrays."""
+        functions = self.compile(_group_count(x))
+        parts = functions.vector_contributions(tuple(x), self.values, self._states(functions, x, z))
+        length = np.broadcast(*x)
+        return {name: np.broadcast_to(part, length.shape) for name, part in zip(self.term_names, parts, strict=True)}
+
+    def jacobian(self, x: Sequence[Any], z: Sequence[Any] | None = None) -> FloatArray:
+        """Partial derivatives of the torque by the parameters, shape (samples, parameters)."""
+        functions = self.compile(_group_count(x))
+        parts = functions.vector_gradient(tuple(x), self.values, self._states(functions, x, z))
+        return broadcast_columns(parts, np.broadcast(*x).size)
+
+    def _states(self, functions: CompiledTerms, x: Sequence[Any], z: Sequence[Any] | None) -> tuple[Any, ...]:
+        if z is not None:
+            return tuple(z)
+        return functions.initial_states if np.broadcast(*x).ndim == 0 else self.state_history(x)
+
+    def state_history(self, x: Sequence[Any]) -> tuple[FloatArray, ...]:
+        """The states of the terms with memory along a record, from rest; one array per state."""
+        functions = self.compile(_group_count(x))
+        if not functions.initial_states:
+            return ()
+        rows = np.column_stack([np.broadcast_to(column, np.broadcast(*x).shape) for column in x])
+        return _state_history(functions, rows, self.values)
+
+
+def _state_history(functions: CompiledTerms, rows: FloatArray, theta: tuple[float, ...]) -> tuple[FloatArray, ...]:
+    history = np.empty((len(rows), len(functions.initial_states)))
+    z: tuple[float, ...] = functions.initial_states
+    previous = rows[0, TIME_INDEX]
+    for k, row in enumerate(rows.tolist()):
+        z = advance_all(functions, row, theta, z, row[TIME_INDEX] - previous)
+        previous = row[TIME_INDEX]
+        history[k] = z
+    return tuple(history.T)
+
+
+def _group_count(x: Sequence[Any]) -> int:
+    return (len(x) - len(WINCH_SIGNALS)) // len(GROUP_SIGNALS)
+
+
+def _check_covariance(name: str, covariance: FloatArray, size: int) -> None:
+    if covariance.shape != (size, size):
+        raise InputError(f"model '{name}': covariance is {covariance.shape}, expected ({size}, {size})")
+    scale = np.sqrt(np.clip(np.diag(covariance), 1e-300, None))
+    correlation = covariance / np.outer(scale, scale)
+    if not np.isfinite(covariance).all() or np.abs(correlation - correlation.T).max() > 1e-6:
+        raise InputError(f"model '{name}': covariance is not finite and symmetric")
+    if np.linalg.eigvalsh(correlation).min() < -1e-6:
+        raise InputError(f"model '{name}': covariance is not positive semi-definite")

@@ -1,0 +1,112 @@
+"""A friction term: one equation, declared once; everything else is derived from it."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import sympy as sp
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import symbols
+
+
+class Scope(Enum):
+    """Where a term's torque acts, and so how often it is counted at the shaft."""
+
+    MOTOR = "motor"  # once per motor, from its own group's pressure and displacement
+    SYSTEM = "system"  # once per motor shaft, the same for all: N times
+    SHAFT = "shaft"  # once, on the common shaft
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a term, declared once.
+
+    `unit` is SI; `lower` and `upper` bound every fit; `typical` is a value of the expected size (start of a fit, scale of a
+    finite difference); `shape` marks a parameter in which the equation is not linear.
+    """
+
+    name: str
+    unit: str
+    typical: float
+    lower: float = 0.0
+    upper: float = float("inf")
+    shape: bool = False
+    doc: str = ""
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        """The SymPy symbol that stands for the parameter in its equation."""
+        return sp.Symbol(self.name, real=True)
+
+
+@dataclass(frozen=True)
+class State:
+    """Memory of a term, dz/dt = gain - decay z; linear in z, so that a step with frozen signals is exact."""
+
+    symbol: sp.Symbol
+    gain: sp.Expr
+    decay: sp.Expr
+    initial: float = 0.0
+    doc: str = ""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One declared friction equation.
+
+    `equation` gives the torque in N m, per motor (MOTOR, SYSTEM) or at the shaft (SHAFT). `opposing`: it is multiplied by the
+    direction of motion; otherwise it acts as written. `source` cites paper and equation. `place` groups the
+    terms for reports: motor, gear and drum, fluid, sensor.
+    """
+
+    name: str
+    equation: sp.Expr
+    parameters: tuple[Parameter, ...]
+    scope: Scope
+    source: str
+    place: str
+    opposing: bool = True
+    state: State | None = None
+    doc: str = ""
+
+    def __post_init__(self) -> None:
+        unknown = self.free_symbols - self.parameter_symbols - set(symbols.SIGNAL_OF_SYMBOL) - self.state_symbols
+        if unknown:
+            raise InputError(
+                f"term '{self.name}': symbols {sorted(map(str, unknown))} are neither signals nor parameters"
+            )
+        if self.scope is not Scope.MOTOR and self.free_symbols & symbols.GROUP_SYMBOLS:
+            raise InputError(f"term '{self.name}': reads a motor group's signals, so its scope must be MOTOR")
+
+    @property
+    def torque(self) -> sp.Expr:
+        """The equation with its direction: what acts against the hoisting direction, N m."""
+        return symbols.s * self.equation if self.opposing else self.equation
+
+    @property
+    def free_symbols(self) -> set[sp.Basic]:
+        """Every symbol of the equation and of its state equation."""
+        found = set(self.equation.free_symbols)
+        return found | self.state.gain.free_symbols | self.state.decay.free_symbols if self.state else found
+
+    @property
+    def parameter_symbols(self) -> set[sp.Basic]:
+        """The symbols of the term's own parameters."""
+        return {parameter.symbol for parameter in self.parameters}
+
+    @property
+    def state_symbols(self) -> set[sp.Basic]:
+        """The symbol of the term's memory, if it has one."""
+        return {self.state.symbol} if self.state else set()
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """Names of the signals that the equation needs."""
+        own = self.parameter_symbols | self.state_symbols
+        names = (symbols.SIGNAL_OF_SYMBOL[symbol].name for symbol in self.free_symbols - own)
+        return tuple(sorted({*names, "direction"} if self.opposing else set(names)))
+
+    @property
+    def latex(self) -> str:
+        """The equation in LaTeX, from the same declaration."""
+        return str(sp.latex(self.torque))

@@ -1,0 +1,131 @@
+"""What is measured: a `Sample` is one instant, a `Run` is equally long columns over time (DESIGN section 3).
+
+Everything is SI. An absent scalar is NaN in a `Sample` and a missing key in a `Run`.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from winch_friction.physics.errors import InputError
+
+FloatArray = NDArray[np.float64]
+NAN = float("nan")
+
+GROUP_CHANNELS = ("pressure_a", "pressure_b", "displacement")
+
+# column -> SI unit; groups are written `<group>.<channel>`
+COLUMN_UNITS = {
+    "time": "s",
+    "motor_speed": "rad/s",
+    "drum_speed": "rad/s",
+    "speed_reference": "rad/s",
+    "motor_torque": "N*m",
+    "hook_load": "kg",
+    "heave_velocity": "m/s",
+    "oil_temperature": "degC",
+    "wire_layer": "1",
+    "wire_out": "m",
+    "shaft_angle": "rad",
+}
+GROUP_UNITS = {"pressure_a": "Pa", "pressure_b": "Pa", "displacement": "m^3/rad"}
+
+
+def column_unit(column: str) -> str | None:
+    """SI unit of a run column, or None when the name is not one of the contract's."""
+    if column in COLUMN_UNITS:
+        return COLUMN_UNITS[column]
+    group, _, channel = column.rpartition(".")
+    return GROUP_UNITS.get(channel) if group else None
+
+
+@dataclass(slots=True)
+class GroupSample:
+    """One motor group at one instant: pressures in Pa, displacement in m^3/rad per motor."""
+
+    pressure_a: float = NAN
+    pressure_b: float = NAN
+    displacement: float = NAN
+
+
+@dataclass(slots=True)
+class Sample:
+    """One instant of the winch, SI units; NaN where a channel is absent."""
+
+    time: float
+    motor_speed: float
+    speed_reference: float = NAN
+    groups: dict[str, GroupSample] = field(default_factory=dict)
+    motor_torque: float = NAN
+    hook_load: float = NAN
+    heave_velocity: float = NAN
+    oil_temperature: float = NAN
+    wire_layer: float = NAN
+    wire_out: float = NAN
+    shaft_angle: float = NAN
+
+
+SAMPLE_SCALARS = tuple(name for name in Sample.__slots__ if name not in ("time", "groups"))
+
+
+@dataclass(frozen=True)
+class Run:
+    """Equally long columns over `time`.
+
+    Parameters: `name` is the run's identity (its file name), `columns` maps contract names to float arrays of one
+    length in SI, `aside` keeps unknown columns untouched, `warnings` says what was noticed while reading,
+    `metadata` carries provenance (scenario, seed, source). Raises `InputError` for unequal lengths.
+    """
+
+    name: str
+    columns: Mapping[str, FloatArray]
+    aside: Mapping[str, Any] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        lengths = {column: len(values) for column, values in self.columns.items()}
+        if len(set(lengths.values())) > 1:
+            raise InputError(f"{self.name}: columns differ in length: {lengths}; every column needs one value per time")
+
+    def __len__(self) -> int:
+        return len(self.columns["time"])
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.columns
+
+    def __getitem__(self, column: str) -> FloatArray:
+        if column not in self.columns:
+            raise InputError(f"{self.name}: column '{column}' is missing; the run has {', '.join(self.columns)}")
+        return self.columns[column]
+
+    @property
+    def time(self) -> FloatArray:
+        """Time in s."""
+        return self["time"]
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the motor groups, in the order of their columns."""
+        found = (column.rpartition(".") for column in self.columns if "." in column)
+        return tuple(dict.fromkeys(group for group, _, channel in found if channel in GROUP_CHANNELS))
+
+    def column(self, name: str, default: float = NAN) -> FloatArray:
+        """A column, or `default` throughout when it is absent."""
+        return self.columns[name] if name in self.columns else np.full(len(self), default)
+
+    def samples(self) -> Iterator[Sample]:
+        """The run as samples, in order: what a node would have been given."""
+        scalars = [name for name in SAMPLE_SCALARS if name in self.columns]
+        scalar_rows = zip(*(self.columns[name].tolist() for name in ("time", *scalars)), strict=True)
+        groups = self.groups
+        channels = [self.column(f"{group}.{channel}").tolist() for group in groups for channel in GROUP_CHANNELS]
+        group_rows = zip(*channels, strict=True) if channels else ((),) * len(self)
+        for scalar_row, group_row in zip(scalar_rows, group_rows, strict=True):
+            values = dict(zip(scalars, scalar_row[1:], strict=True))
+            values.setdefault("motor_speed", NAN)
+            members = {g: GroupSample(*group_row[3 * k : 3 * k + 3]) for k, g in enumerate(groups)}
+            yield Sample(time=scalar_row[0], groups=members, **values)

@@ -1,0 +1,64 @@
+"""What a crane is, as far as friction is concerned."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import GRAVITY
+
+
+@dataclass(frozen=True)
+class Drum:
+    """Rope radius of each wire layer in m, innermost first."""
+
+    layer_radii: tuple[float, ...]
+
+    def radius(self, layer: float) -> float:
+        """Rope radius in m of a wire layer counted from 1; without a layer (NaN) the outer one is assumed."""
+        if layer != layer:
+            return self.layer_radii[-1]
+        index = int(round(layer)) - 1
+        if not 0 <= index < len(self.layer_radii):
+            raise InputError(f"wire_layer {layer:g} does not exist: the drum has layers 1 ... {len(self.layer_radii)}")
+        return self.layer_radii[index]
+
+
+@dataclass(frozen=True)
+class Crane:
+    """A winch seen from its motor shaft.
+
+    `groups` maps a motor group's name to its number of motors for every group that may appear (normal mode: `main`; AHC:
+    `active`, `passive`); `inertia` is the whole inertia at the motor shaft without the load, kg m^2; `wire_mass` kg/m
+    and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `electric`: the motor torque is measured.
+    """
+
+    name: str
+    gear_ratio: float
+    drum: Drum
+    groups: Mapping[str, int]
+    inertia: float
+    max_displacement: float = 0.0
+    electric: bool = False
+    wire_mass: float = 0.0
+    wire_stiffness: float = float("inf")
+    absolute_torque_limit: float = float("inf")
+
+    def motor_total(self, groups: Sequence[str]) -> int:
+        """Number of motors on the shaft when these groups drive it."""
+        return sum(self.motor_count(group) for group in groups) if groups else sum(self.groups.values()) or 1
+
+    def motor_count(self, group: str) -> int:
+        """Motors in one group; an unknown name raises `InputError`."""
+        if group not in self.groups:
+            raise InputError(
+                f"crane '{self.name}' has no motor group '{group}'; it has {', '.join(self.groups) or 'none'}"
+            )
+        return self.groups[group]
+
+    def drum_torque(self, load: float, layer: float = float("nan")) -> float:
+        """T_d = m g R in N m for a hanging mass in kg (hook included) on a wire layer (NaN: outer)."""
+        return load * GRAVITY * self.drum.radius(layer)
+
+    def load_inertia(self, load: float, layer: float = float("nan")) -> float:
+        """Inertia of the hanging mass at the motor shaft, kg m^2."""
+        return load * (self.drum.radius(layer) / self.gear_ratio) ** 2

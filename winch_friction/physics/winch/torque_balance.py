@@ -1,0 +1,36 @@
+"""Torque balance at the motor shaft (DOMAIN section 1), summed over the motor groups:
+
+sum_g n_g D_g dp_g = T_d / i + J domega/dt + T_friction
+
+with T_friction = sgn(omega) (sum_g n_g T_fm,g + N T_fs) + torques of fixed direction. Electric drive: the left side is N times the measured torque.
+"""
+
+from typing import Any
+
+from winch_friction.physics.signals import Run, Sample
+from winch_friction.physics.winch.crane import Crane
+
+
+def sample_drive_torque(sample: Sample, crane: Crane) -> float:
+    """Torque of all motors at the shaft in N m from one sample's pressures, or from its measured motor torque."""
+    if crane.electric:
+        return sample.motor_torque * crane.motor_total(())
+    total = 0.0
+    for name, group in sample.groups.items():
+        total += crane.motor_count(name) * group.displacement * (group.pressure_a - group.pressure_b)
+    return total
+
+
+def run_drive_torque(run: Run, crane: Crane) -> Any:
+    """`sample_drive_torque` along a run, N m."""
+    if crane.electric:
+        return run["motor_torque"] * crane.motor_total(())
+    return sum(
+        crane.motor_count(g) * run[f"{g}.displacement"] * (run[f"{g}.pressure_a"] - run[f"{g}.pressure_b"])
+        for g in run.groups
+    )
+
+
+def pressure_feedforward(friction_torque: float, motor_count: int, displacement: float) -> float:
+    """Pressure in Pa by which the active group carries all the friction: T_f / (n_active D_active)."""
+    return friction_torque / (motor_count * displacement)

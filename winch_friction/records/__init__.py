@@ -1,0 +1,1 @@
+"""Files in and out: models, cranes, runs (rosbag2, CSV, Parquet) and checkpoints."""

@@ -1,0 +1,77 @@
+"""Crane files: the winch as the friction functions see it, from YAML."""
+
+from pathlib import Path
+from typing import Any
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane, Drum
+from winch_friction.records.paths import shipped
+from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
+
+SCHEMA = "winch_friction.crane/1"
+
+
+def load_crane(name: str | Path) -> Crane:
+    """A crane by path or shipped name; raises `InputError` for anything that is not a complete crane file."""
+    path = shipped("cranes", name)
+    return crane_from_content(read_yaml(path), str(path))
+
+
+def crane_from_content(content: Any, where: str) -> Crane:
+    """A crane from parsed YAML."""
+    top = Section(content, where)
+    if top.text("schema") != SCHEMA:
+        raise InputError(f"{where}: schema '{top.text('schema')}' is not '{SCHEMA}'")
+    electric = _electric(top)
+    crane = Crane(
+        name=top.text("name"),
+        electric=electric,
+        gear_ratio=_positive(top, "gear_ratio", "1"),
+        drum=_drum(top),
+        groups=_groups(top),
+        inertia=_positive(top, "inertia", "kg*m^2"),
+        max_displacement=0.0 if electric else _positive(top, "max_displacement", "m^3/rad"),
+        wire_mass=top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
+        wire_stiffness=_positive(top, "wire_stiffness", "N") if "wire_stiffness" in top else float("inf"),
+        absolute_torque_limit=_positive(top, "absolute_torque_limit", "N*m"),
+    )
+    top.get("description")
+    top.close()
+    return crane
+
+
+def _electric(top: Section) -> bool:
+    drive = top.text("drive")
+    if drive not in ("hydraulic", "electric"):
+        raise InputError(f"{top.where}: drive must be 'hydraulic' or 'electric', found '{drive}'")
+    return drive == "electric"
+
+
+def _positive(section: Section, key: str, unit: str) -> float:
+    value = section.quantity(key, unit)
+    if value <= 0.0:
+        raise InputError(f"{section.where}: {key} must be above 0, found {value:g}")
+    return value
+
+
+def _drum(top: Section) -> Drum:
+    section = top.section("drum")
+    radii = section.need("layer_radii")
+    if not isinstance(radii, list) or not radii:
+        raise InputError(f"{section.where}: layer_radii must be a list of radii in m, innermost layer first")
+    values = tuple(as_quantity(r, "m", f"{section.where}: layer_radii[{k + 1}]") for k, r in enumerate(radii))
+    section.close()
+    if min(values) <= 0.0 or list(values) != sorted(values):
+        raise InputError(f"{section.where}: layer_radii must be positive and grow from layer to layer")
+    return Drum(values)
+
+
+def _groups(top: Section) -> dict[str, int]:
+    section = top.section("groups")
+    groups = {}
+    for name in section.content:
+        count = section.get(name)
+        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
+            raise InputError(f"{section.where}: {name} must be a whole number of motors, found {count!r}")
+        groups[str(name)] = count
+    return groups

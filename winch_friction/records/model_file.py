@@ -1,0 +1,164 @@
+"""The model file: the contract between identification, nodes, simulator and the discrepancy workflow (DESIGN section 1)."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction.compiled import unique_parameters
+from winch_friction.physics.friction.symbols import CONSTANTS
+from winch_friction.physics.friction.term import Parameter
+from winch_friction.physics.units import factor_to_si
+from winch_friction.records.atomic import write_text
+from winch_friction.records.paths import shipped
+from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml
+
+SCHEMA = "winch_friction.model/1"
+
+
+def load_model(name: str | Path) -> FrictionModel:
+    """A model by path or shipped name; raises `InputError` for anything that is not a complete model file."""
+    path = shipped("models", name)
+    return model_from_content(read_yaml(path), str(path))
+
+
+def model_from_text(text: str, where: str = "model text") -> FrictionModel:
+    """A model from the text that travels on the `friction_model` topic."""
+    return model_from_content(parse_yaml(text, where), where)
+
+
+def save_model(model: FrictionModel, path: Path) -> Path:
+    """Write a model file atomically."""
+    return write_text(path, model_to_text(model))
+
+
+def model_to_text(model: FrictionModel) -> str:
+    """The model file's text; reading it back gives the same numbers."""
+    return yaml.safe_dump(_content(model), sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
+
+
+def model_from_content(content: Any, where: str) -> FrictionModel:
+    """A model from parsed YAML."""
+    top = Section(content, where)
+    _check_schema(top)
+    terms = tuple(term_named(name) for name in _term_names(top))
+    declared = unique_parameters(terms)
+    section = top.section("parameters")
+    entries = [_Entry(section, parameter) for parameter in declared]
+    section.close()
+    model = FrictionModel(
+        name=top.text("name"),
+        terms=terms,
+        values=tuple(entry.value for entry in entries),
+        covariance=_covariance(top, entries),
+        bounds={entry.name: entry.bounds for entry in entries if entry.bounds},
+        constants=_constants(top),
+        provenance=dict(top.get("provenance") or {}),
+    )
+    top.get("description")
+    top.close()
+    return model
+
+
+class _Entry:
+    """One parameter's entry: value, unit, bounds, std."""
+
+    def __init__(self, parent: Section, parameter: Parameter) -> None:
+        section = parent.section(parameter.name)
+        factor = factor_to_si(str(section.need("unit")), parameter.unit, section.where)
+        self.name, self.factor = parameter.name, factor
+        self.value = section.number("value") * factor
+        self.std = section.number("std") * factor if "std" in section else None
+        lower, upper = section.get("lower"), section.get("upper")
+        self.bounds = self._bounds(parameter, lower, upper, section.where)
+        section.close()
+
+    def _bounds(self, parameter: Parameter, lower: Any, upper: Any, where: str) -> tuple[float, float] | None:
+        if lower is None and upper is None:
+            return None
+        low = parameter.lower if lower is None else finite(lower, f"{where}: lower") * self.factor
+        high = parameter.upper if upper is None else finite(upper, f"{where}: upper") * self.factor
+        return low, high
+
+
+def _check_schema(top: Section) -> None:
+    schema = top.text("schema")
+    if schema != SCHEMA:
+        raise InputError(f"{top.where}: schema '{schema}' is not '{SCHEMA}'")
+
+
+def _term_names(top: Section) -> list[str]:
+    names = top.need("terms")
+    if not isinstance(names, list) or not names or len(set(map(str, names))) != len(names):
+        raise InputError(f"{top.where}: terms must be a list of different term names")
+    return [str(name) for name in names]
+
+
+def _covariance(top: Section, entries: list[_Entry]) -> np.ndarray | None:
+    stds = np.array([np.nan if entry.std is None else entry.std for entry in entries])
+    if np.isnan(stds).all():
+        return None
+    if np.isnan(stds).any():
+        raise InputError(
+            f"{top.where}: parameters: {entries[int(np.isnan(stds).argmax())].name} lacks 'std' though others have it"
+        )
+    correlation = np.array(top.get("correlation") or np.eye(len(entries)), float)
+    if correlation.shape != (len(entries), len(entries)):
+        raise InputError(
+            f"{top.where}: correlation must be {len(entries)} x {len(entries)}, in the order of the parameters"
+        )
+    return correlation * np.outer(stds, stds)
+
+
+def _constants(top: Section) -> dict[str, float]:
+    if "constants" not in top:
+        return {}
+    section = top.section("constants")
+    values = {each.name: section.quantity(each.name, each.unit) for each in CONSTANTS if each.name in section}
+    section.close()
+    return values
+
+
+def _content(model: FrictionModel) -> dict[str, Any]:
+    content: dict[str, Any] = {"schema": SCHEMA, "name": model.name, "terms": list(model.term_names)}
+    if model.constants:
+        units = {each.name: each.unit for each in CONSTANTS}
+        content["constants"] = {k: {"value": float(v), "unit": units[k]} for k, v in model.constants.items()}
+    content["parameters"] = {p.name: _entry_content(model, k, p) for k, p in enumerate(model.parameters)}
+    if model.covariance is not None and np.any(model.covariance - np.diag(np.diag(model.covariance))):
+        content["correlation"] = _correlation(model.covariance)
+    if model.provenance:
+        content["provenance"] = _plain(model.provenance)
+    return content
+
+
+def _entry_content(model: FrictionModel, index: int, parameter: Parameter) -> dict[str, Any]:
+    lower, upper = model.bounds_of(parameter.name)
+    entry: dict[str, Any] = {"value": float(model.values[index]), "unit": parameter.unit}
+    if model.covariance is not None:
+        entry["std"] = float(model.std[index])
+    if np.isfinite(lower):
+        entry["lower"] = float(lower)
+    if np.isfinite(upper):
+        entry["upper"] = float(upper)
+    return entry
+
+
+def _correlation(covariance: np.ndarray) -> list[list[float]]:
+    scale = np.sqrt(np.diag(covariance))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    correlation = covariance / np.outer(scale, scale)
+    np.fill_diagonal(correlation, 1.0)
+    return [[float(value) for value in row] for row in correlation]
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return value.item() if isinstance(value, np.generic) else value

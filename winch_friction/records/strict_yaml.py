@@ -1,0 +1,114 @@
+"""YAML read strictly: every key is asked for by name, the rest is refused in one line that says where."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import factor_to_si
+
+
+class Section:
+    """A mapping of a configuration file that knows where it stands and which of its keys were asked for."""
+
+    def __init__(self, content: Any, where: str) -> None:
+        if not isinstance(content, Mapping):
+            raise InputError(f"{where}: expected a mapping of keys, found {_said(content)}")
+        self.content = content
+        self.where = where
+        self._asked: set[str] = set()
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.content
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """A value as it stands, or the default."""
+        self._asked.add(key)
+        return self.content.get(key, default)
+
+    def need(self, key: str) -> Any:
+        """A value that must be there."""
+        if key not in self.content:
+            raise InputError(f"{self.where}: key '{key}' is missing")
+        return self.get(key)
+
+    def section(self, key: str) -> "Section":
+        """A mapping that must be there."""
+        return Section(self.need(key), f"{self.where}: {key}")
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """A string."""
+        value = self.get(key, default) if default is not None else self.need(key)
+        if not isinstance(value, str):
+            raise InputError(f"{self.where}: {key} must be a string, found {_said(value)}")
+        return value
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """A finite number."""
+        value = self.get(key, default) if default is not None else self.need(key)
+        return finite(value, f"{self.where}: {key}")
+
+    def quantity(self, key: str, si_unit: str) -> float:
+        """`{value: 215, unit: cm^3/rev}` in SI; a bare number is SI already."""
+        return as_quantity(self.need(key), si_unit, f"{self.where}: {key}")
+
+    def close(self) -> None:
+        """Refuse the keys that nobody asked for."""
+        unknown = [str(key) for key in self.content if key not in self._asked]
+        if unknown:
+            raise InputError(
+                f"{self.where}: unknown key '{unknown[0]}'; known keys are {', '.join(sorted(self._asked))}"
+            )
+
+
+def finite(value: Any, where: str) -> float:
+    """A finite float, or `InputError`."""
+    if isinstance(value, str):  # YAML 1.1 reads 1e-3 as a string
+        try:
+            value = float(value)
+        except ValueError:
+            pass
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise InputError(f"{where} must be a finite number, found {_said(value)}")
+    return float(value)
+
+
+def as_quantity(content: Any, si_unit: str, where: str) -> float:
+    """A number in SI or a mapping with value and unit, converted to `si_unit`."""
+    if not isinstance(content, Mapping):
+        return finite(content, where)
+    section = Section(content, where)
+    value = section.number("value")
+    factor = factor_to_si(section.text("unit", si_unit), si_unit, where)
+    section.close()
+    return value * factor
+
+
+def read_yaml(path: Path) -> Any:
+    """The content of a YAML file; syntax errors and missing files as one line."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"{path}: cannot be read ({error.__class__.__name__}: {getattr(error, 'strerror', None) or error})"
+        ) from error
+    return parse_yaml(text, str(path))
+
+
+def parse_yaml(text: str, where: str) -> Any:
+    """The content of a YAML text."""
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f" line {mark.line + 1}" if mark else ""
+        raise InputError(
+            f"{where}{line}: not valid YAML ({getattr(error, 'problem', None) or 'syntax error'})"
+        ) from error
+
+
+def _said(value: Any) -> str:
+    return f"{value!r} ({type(value).__name__})" if value is not None else "nothing"

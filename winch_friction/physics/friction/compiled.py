@@ -1,7 +1,7 @@
 """From declared equations to functions: scalar, vectorised, numba kernel; each with its Jacobian.
 
-All of them take (x, theta, z): the operating point in the order of `symbols.layout`, the parameters and the states of the
-terms with memory in the model's order. Nothing here restates an equation.
+All of them take (x, theta, z): the operating point in the order of `symbols.layout`, the parameters, and the states of
+the terms with memory, each in the model's order. Nothing here restates an equation.
 """
 
 from collections.abc import Callable, Sequence
@@ -66,7 +66,7 @@ class CompiledTerms:
         return {term.state.symbol: sp.Symbol(f"z_{{{index},{group}}}", real=True)}
 
     def _constant_values(self) -> dict[sp.Basic, float]:
-        return {signal.symbol: self.constants.get(signal.name, signal.default) for signal in symbols.CONSTANTS}
+        return {each.symbol: self.constants.get(each.name, each.default or 0.0) for each in symbols.CONSTANTS}
 
     @cached_property
     def total(self) -> sp.Expr:
@@ -128,9 +128,10 @@ class CompiledTerms:
         return [
             self._in_group(term, part.subs(self._constant_values()), g)
             for term in self.stateful
+            if term.state is not None
             for g in self._groups(term)
             for part in (term.state.gain, term.state.decay)
-        ]  # type: ignore[union-attr]
+        ]
 
     @cached_property
     def scalar_state_rates(self) -> Callable[..., list[float]]:
@@ -140,7 +141,7 @@ class CompiledTerms:
     @cached_property
     def initial_states(self) -> tuple[float, ...]:
         """States at the start of a record."""
-        return tuple(term.state.initial for term in self.stateful for _ in self._groups(term))  # type: ignore[union-attr]
+        return tuple(term.state.initial for term in self.stateful if term.state for _ in self._groups(term))
 
 
 def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:

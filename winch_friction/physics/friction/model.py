@@ -18,8 +18,9 @@ from winch_friction.physics.signals import FloatArray
 class FrictionModel:
     """A sum of declared terms with values.
 
-    `values` has one entry per parameter in the order of `parameters`, SI; `covariance` is (n, n) or None; `bounds` overrides
-    the declared bounds by name; `constants` holds maximum displacement (m^3/rad), density, viscosity, gear ratio.
+    `values` has one entry per parameter in the order of `parameters`, SI; `covariance` is (n, n) or None; `bounds`
+    overrides the declared bounds by name; `constants` holds maximum displacement (m^3/rad), density, viscosity, gear
+    ratio.
     Raises `InputError` for missing, unknown or non-finite values and for a covariance that is not one.
     """
 

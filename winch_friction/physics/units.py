@@ -4,7 +4,6 @@ Table headers with arbitrary units are parsed with pint in `records`; this table
 """
 
 import math
-from collections.abc import Sequence
 
 from winch_friction.physics.errors import InputError
 
@@ -36,14 +35,11 @@ def factor_to_si(unit: str, expected: str, where: str = "") -> float:
     si_unit, factor = _CONVERSIONS.get(unit, (unit, 1.0))
     if si_unit == expected:
         return factor
-    raise InputError(f"{where or 'value'}: unit '{unit}' cannot be used, expected one of {accepted_units(expected)}")
+    raise InputError(
+        f"{where or 'value'}: unit '{unit}' cannot be used, expected {' or '.join(accepted_units(expected))}"
+    )
 
 
 def accepted_units(si_unit: str) -> list[str]:
     """The SI unit and every unit of the table that converts to it."""
     return [si_unit, *(unit for unit, (target, _) in _CONVERSIONS.items() if target == si_unit)]
-
-
-def joined(values: Sequence[str]) -> str:
-    """Names in one line of an error message."""
-    return ", ".join(values) if values else "none"

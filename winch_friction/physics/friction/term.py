@@ -21,8 +21,8 @@ class Scope(Enum):
 class Parameter:
     """A parameter of a term, declared once.
 
-    `unit` is SI; `lower` and `upper` bound every fit; `typical` is a value of the expected size (start of a fit, scale of a
-    finite difference); `shape` marks a parameter in which the equation is not linear.
+    `unit` is SI; `lower` and `upper` bound every fit; `typical` is a value of the expected size (start of a fit, scale
+    of a finite difference); `shape` marks a parameter in which the equation is not linear.
     """
 
     name: str
@@ -54,9 +54,9 @@ class State:
 class Term:
     """One declared friction equation.
 
-    `equation` gives the torque in N m, per motor (MOTOR, SYSTEM) or at the shaft (SHAFT). `opposing`: it is multiplied by the
-    direction of motion; otherwise it acts as written. `source` cites paper and equation. `place` groups the
-    terms for reports: motor, gear and drum, fluid, sensor.
+    `equation` gives the torque in N m, per motor (MOTOR, SYSTEM) or at the shaft (SHAFT). `opposing`: it is multiplied
+    by the direction of motion; otherwise it acts as written. `source` cites paper and equation; `place` groups terms
+    for reports: motor, gear and drum, fluid, sensor.
     """
 
     name: str

@@ -27,9 +27,10 @@ class Drum:
 class Crane:
     """A winch seen from its motor shaft.
 
-    `groups` maps a motor group's name to its number of motors for every group that may appear (normal mode: `main`; AHC:
-    `active`, `passive`); `inertia` is the whole inertia at the motor shaft without the load, kg m^2; `wire_mass` kg/m
-    and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `electric`: the motor torque is measured.
+    `groups` maps a motor group's name to its number of motors for every group that may appear (normal mode: `main`;
+    AHC: `active`, `passive`); `inertia` is the whole inertia at the motor shaft without the load, kg m^2; `wire_mass`
+    kg/m and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `electric`: the motor
+    torque is measured.
     """
 
     name: str

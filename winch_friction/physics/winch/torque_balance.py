@@ -2,7 +2,8 @@
 
 sum_g n_g D_g dp_g = T_d / i + J domega/dt + T_friction
 
-with T_friction = sgn(omega) (sum_g n_g T_fm,g + N T_fs) + torques of fixed direction. Electric drive: the left side is N times the measured torque.
+with T_friction = sgn(omega) (sum_g n_g T_fm,g + N T_fs) + torques of fixed direction. Electric drive: the left side is
+N times the measured torque.
 """
 
 from typing import Any

@@ -1,0 +1,53 @@
+# make demo: sets up, runs the main job.  make test: sets up, passes the tests.  Everything works in .venv/.
+SHELL := /bin/bash
+PYTHON ?= $(shell for p in python3.12 python3.11 python3; do $$p -c 'import sys; sys.exit(not (3,11)<=sys.version_info[:2]<=(3,12))' 2>/dev/null && echo $$p && break; done)
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+# one thread per process: the arrays are small, and the machine's cores belong to the nodes
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: demo test lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates clean
+
+setup: $(READY)
+
+$(READY): setup.py constraints.txt
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.12 is needed (the ROS 2 Jazzy wheels exist for these); set PYTHON=/path/to/python3.12"; exit 2; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check "pip>=24" "setuptools>=65,<80" wheel
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[all]'
+	@touch $(READY)
+
+demo: $(READY)
+	$(BIN)/winch-friction demo --out out/demo
+
+test: lint browser
+	$(BIN)/python -m pytest
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy winch_friction
+	$(BIN)/lint-imports --no-cache
+
+# the report pages are opened in a real browser; without one and without the right to install it those tests skip and say so
+browser:
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || \
+	  { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && { apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium; } >/dev/null 2>&1; } || \
+	  echo "no Chromium and no right to install it: the browser tests will skip"
+
+bench: $(READY)
+	$(BIN)/winch-friction bench
+
+colcon: $(READY)
+	$(BIN)/python -m pytest test/test_colcon.py
+
+campaign: campaign-loop campaign-identification campaign-gap campaign-rates
+
+campaign-loop campaign-identification campaign-gap campaign-rates: $(READY)
+	$(BIN)/python -m campaign.$(subst campaign-,,$@) $(ARGS)
+
+clean:
+	rm -rf out build install log

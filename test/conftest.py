@@ -1,0 +1,28 @@
+"""What all tests share: the shipped crane and models, and the real data beside the project where it is there."""
+
+from pathlib import Path
+
+import pytest
+
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+@pytest.fixture(scope="session")
+def crane_150t():
+    return load_crane("crane_150t")
+
+
+@pytest.fixture(scope="session")
+def crane2_model():
+    return load_model("a6vm215_crane2")
+
+
+@pytest.fixture(scope="session")
+def shared_data():
+    """Directory of the real data; the test is skipped where it is not there."""
+    if not SHARED.is_dir():
+        pytest.skip(f"the real data are not beside the project ({SHARED})")
+    return SHARED

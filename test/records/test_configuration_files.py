@@ -1,0 +1,109 @@
+"""Model and crane files: strict, and wrong ones refused in one clear line that says where."""
+
+import numpy as np
+import pytest
+import yaml
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import CM3_PER_REV, RPM
+from winch_friction.records.crane_file import crane_from_content, load_crane
+from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.paths import config_directory
+
+MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
+
+
+def content(name="a6vm215_crane2", kind="models"):
+    return yaml.safe_load((config_directory() / kind / f"{name}.yaml").read_text())
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_shipped_models_load_and_round_trip(name, tmp_path):
+    model = load_model(name)
+    again = load_model(save_model(model, tmp_path / "model.yaml"))
+    assert again.values == model.values
+    assert again.term_names == model.term_names
+    if model.covariance is not None:
+        np.testing.assert_allclose(again.covariance, model.covariance, rtol=1e-12)
+
+
+def test_correlated_covariance_survives(crane2_model):
+    size = len(crane2_model.values)
+    mix = np.random.default_rng(3).normal(size=(size, 3 * size)) * crane2_model.std[:, None]
+    model = crane2_model.with_covariance(mix @ mix.T / (3 * size))
+    again = model_from_text(model_to_text(model))
+    np.testing.assert_allclose(again.covariance, model.covariance, rtol=1e-9, atol=0)
+
+
+def test_units_are_converted():
+    model = load_model("a6vm215_crane2")
+    assert model.value("C4") == pytest.approx(229 * RPM)
+    assert model.constants["max_displacement"] == pytest.approx(215 * CM3_PER_REV)
+    assert model.std[model.parameter_names.index("C6")] == pytest.approx(0.03 * 162e-7)
+
+
+def edited(change):
+    data = content()
+    change(data)
+    return yaml.safe_dump(data)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d["parameters"].pop("K3"), "key 'K3' is missing"),
+        (lambda d: d["parameters"].update(K9={"value": 1, "unit": "N*m"}), "unknown key 'K9'"),
+        (lambda d: d["parameters"]["K4"].update(unit="bar"), "K4.*unit 'bar' cannot be used, expected N\\*m"),
+        (lambda d: d["parameters"]["K4"].update(value=float("nan")), "K4: value must be a finite number"),
+        (lambda d: d["parameters"]["K4"].update(value="lots"), "K4: value must be a finite number"),
+        (lambda d: d["parameters"]["K4"].update(value=-3), "K4 = -3 is outside 0"),
+        (lambda d: d["parameters"]["K4"].pop("std"), "K4 lacks 'std'"),
+        (lambda d: d["parameters"]["K4"].update(sdt=1), "K4: unknown key 'sdt'"),
+        (lambda d: d["terms"].append("friktion"), "term 'friktion' is not known"),
+        (lambda d: d["terms"].append("viscous"), "different term names"),
+        (lambda d: d.update(schema="winch_friction.model/9"), "schema"),
+        (lambda d: d.update(colour="red"), "unknown key 'colour'"),
+        (lambda d: d.update(correlation=[[1.0]]), "correlation must be 10 x 10"),
+        (lambda d: d.update(parameters=None), "expected a mapping"),
+    ],
+)
+def test_a_wrong_model_is_one_clear_line(change, message):
+    with pytest.raises(InputError, match=message) as caught:
+        model_from_text(edited(change), "model.yaml")
+    assert "\n" not in str(caught.value)
+    assert "model" in str(caught.value) or "friktion" in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["{", "- 1", "", "\t x: 1", "a: *b"])
+def test_not_yaml_or_not_a_model(text):
+    with pytest.raises(InputError, match="here"):
+        model_from_text(text, "here")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d.pop("gear_ratio"), "key 'gear_ratio' is missing"),
+        (lambda d: d.update(drive="steam"), "hydraulic' or 'electric"),
+        (lambda d: d.update(inertia={"value": 0, "unit": "kg*m^2"}), "inertia must be above 0"),
+        (lambda d: d["drum"].update(layer_radii=[1.0, 0.9]), "grow from layer to layer"),
+        (lambda d: d["groups"].update(active=2.5), "whole number of motors"),
+        (lambda d: d.update(max_displacement={"value": 215, "unit": "bar"}), "unit 'bar'"),
+    ],
+)
+def test_a_wrong_crane_is_one_clear_line(change, message):
+    data = content("crane_150t", "cranes")
+    change(data)
+    with pytest.raises(InputError, match=message):
+        crane_from_content(data, "crane.yaml")
+
+
+def test_unknown_name_lists_what_is_shipped():
+    with pytest.raises(InputError, match="shipped: crane_150t, emps"):
+        load_crane("crane_15t")
+
+
+def test_a_layer_that_does_not_exist(crane_150t):
+    with pytest.raises(InputError, match="layers 1 ... 6"):
+        crane_150t.drum.radius(7)
+    assert crane_150t.drum.radius(float("nan")) == pytest.approx(1.136)

@@ -1,0 +1,39 @@
+"""The house rules: imports go down only, rclpy in the nodes alone, the node path free of desk libraries."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+DESK_ONLY = {"pint", "pandas", "pyarrow", "pydantic", "matplotlib", "plotly", "typer", "rosbags", "sklearn", "numba"}
+
+
+def test_layers_are_kept():
+    command = [str(Path(sys.executable).with_name("lint-imports")), "--config", "pyproject.toml", "--no-cache"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout
+
+
+@pytest.mark.parametrize("package", ["physics", "estimation", "compensation"])
+def test_the_node_path_needs_no_desk_library(package):
+    """What a node imports needs numpy, scipy, sympy, filterpy and YAML alone."""
+    code = (
+        "import pkgutil, importlib, sys, winch_friction\n"
+        f"package = importlib.import_module('winch_friction.{package}')\n"
+        "for each in pkgutil.walk_packages(package.__path__, package.__name__ + '.'):\n"
+        "    importlib.import_module(each.name)\n"
+        f"print(sorted({DESK_ONLY!r} & set(sys.modules)))"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "[]"
+
+
+def test_hidden_effects_do_not_know_the_candidates():
+    """Otherwise the discrepancy workflow would be tested against itself."""
+    for path in (ROOT / "winch_friction/simulation/hidden").rglob("*.py"):
+        text = path.read_text()
+        assert "friction.terms" not in text
+        assert "discrepancy" not in text
+        assert "registered_terms" not in text

@@ -1,72 +1,96 @@
-"""The topic map: every column survives its message, in every convention of unit and reference."""
+"""The topic map: every channel survives its message, in every convention of unit and reference."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
 
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.topics import ATMOSPHERE, SPEED_TOPIC, TopicMap, header, nanoseconds, seconds, stamp_of
+from winch_friction.records.topics import ATMOSPHERE, FLOAT64, TopicMap, crane_topics, split_time, stamp_time
 
-VALUES = {
-    "motor_speed": 120.0, "shaft_angle": 3.5, "speed_reference": 118.0, "active.pressure_a": 2.1e7,
-    "active.pressure_b": 2.5e6, "active.displacement": 2.3e-5, "hook_load": 55e3, "oil_temperature": 42.5,
-    "heave_velocity": 0.4, "wire_layer": 5.0, "wire_out": 800.0,
-}  # fmt: skip
+SAMPLE = Sample(
+    time=12.5,
+    motor_speed=120.0,
+    shaft_angle=3.5,
+    speed_reference=118.0,
+    motor_torque=7.0,
+    groups={"active": GroupSample(2.1e7, 2.5e6, 2.3e-5)},
+    hook_load=55e3,
+    oil_temperature=42.5,
+    heave_velocity=0.4,
+    wire_layer=5.0,
+    wire_out=800.0,
+)
 
 
-def as_message(content):
-    if isinstance(content, dict):
-        return SimpleNamespace(**{key: as_message(value) for key, value in content.items()})
-    return content
+class Fields:
+    """Messages as bare namespaces: the fields are what counts."""
+
+    def make(self, type_name, **fields):
+        return SimpleNamespace(type_name=type_name, **fields)
+
+    def doubles(self, values):
+        return list(values)
+
+
+def channels(sample):
+    flat = {name: getattr(sample, name) for name in Sample.__slots__ if name not in ("time", "groups")}
+    for group, values in sample.groups.items():
+        flat |= {f"{group}.{name}": getattr(values, name) for name in GroupSample.__slots__}
+    return flat
 
 
 @pytest.mark.parametrize("joint", ["winch_motor", "winch_drum"])
 @pytest.mark.parametrize("reference", ["absolute", "gauge"])
-@pytest.mark.parametrize("unit", ["fraction", "m^3/rad"])
-def test_every_column_survives_its_message(joint, reference, unit):
+@pytest.mark.parametrize("unit", ["fraction", "m3_per_rad"])
+def test_every_channel_survives_its_message(joint, reference, unit):
     crane = load_crane("crane_150t")
-    topics = TopicMap.for_crane(
-        crane, ["active"], joint=joint, pressure_reference=reference, displacement_unit=unit
-    ).topics()
+    topics = crane_topics(crane, ["active"], speed_joint=joint, pressure_reference=reference, displacement_unit=unit)
     read = {}
-    for topic in topics:
-        message = as_message(topic.content(12.5, VALUES))
-        assert stamp_of(message) in (12.5, None)
-        read.update(topic.values(message))
-    assert read == pytest.approx(VALUES, rel=1e-14)
+    for topic, message in topics.encode(SAMPLE, Fields()):
+        each = topics.inputs[topic]
+        assert message.type_name == each.type_name
+        assert not each.stamped or stamp_time(message) == 12.5
+        read |= each.decode(message)
+    assert read == pytest.approx(channels(SAMPLE), rel=1e-14)
+
+
+def test_the_speed_closes_the_set_and_absent_channels_stay_out():
+    topics = TopicMap(groups=("active",), max_displacement=3.4e-5)
+    bare = Sample(time=0.0, motor_speed=1.0, groups={"active": GroupSample()})
+    assert [topic for topic, _ in topics.encode(bare, Fields())] == ["winch/joint_states"]
+    assert topics.encode(SAMPLE, Fields())[-1][0] == topics.speed_topic
 
 
 def test_conventions_show_in_the_message():
-    crane = load_crane("crane_150t")
-    by_name = {t.name: t for t in TopicMap.for_crane(crane, ["active"], joint="winch_drum").topics()}
-    pressure = by_name["winch/active/pressure_a"].content(0.0, VALUES)
-    assert pressure["fluid_pressure"] == VALUES["active.pressure_a"] + ATMOSPHERE
-    assert by_name[SPEED_TOPIC].content(0.0, VALUES)["velocity"] == [120.0 / 250]
+    topics = crane_topics(load_crane("crane_150t"), ["active"], speed_joint="winch_drum", pressure_reference="absolute")
+    sent = dict(topics.encode(SAMPLE, Fields()))
+    assert sent["winch/active/pressure_a"].fluid_pressure == 2.1e7 + ATMOSPHERE
+    assert sent["winch/joint_states"].velocity == [120.0 / 250]
 
 
 def test_joints_are_picked_by_name_and_short_arrays_are_nan():
-    topic = TopicMap(electric=True).topics()[-1]
-    message = as_message(
-        {"header": header(0), "name": ["other", "winch_motor"], "position": [], "velocity": [1.0, 2.0], "effort": [9.0]}
-    )
-    values = dict(topic.values(message))
+    message = SimpleNamespace(name=["other", "winch_motor"], position=[], velocity=[1.0, 2.0], effort=[9.0])
+    values = TopicMap(groups=()).inputs["winch/joint_states"].decode(message)
     assert values["motor_speed"] == 2.0
-    assert values["motor_torque"] != values["motor_torque"]
-    assert values["shaft_angle"] != values["shaft_angle"]
+    assert math.isnan(values["motor_torque"])
+    assert math.isnan(values["shaft_angle"])
 
 
 def test_plain_floats_take_the_place_of_a_message():
-    topic = TopicMap(plain=(SPEED_TOPIC,), joint="winch_drum", gear_ratio=250.0).topics()[-1]
-    message = as_message({"data": 2.0})
-    assert topic.values(message) == [("motor_speed", 500.0)]
-    assert stamp_of(message) is None
+    topics = TopicMap(groups=(), float64_channels=("motor_speed",), speed_joint="winch_drum", gear_ratio=250.0)
+    speed = topics.inputs["winch/joint_states"]
+    assert speed.type_name == FLOAT64
+    assert speed.decode(SimpleNamespace(data=2.0)) == {"motor_speed": 500.0}
 
 
-def test_times_keep_their_nanoseconds():
-    assert seconds(1_763_000_000, 123_456_789) == pytest.approx(1_763_000_000.123456789, abs=3e-7)
-    for time in (0.0, 0.02, 17.123456789, 1_763_000_000.25):
-        assert seconds(*divmod(nanoseconds(time), 10**9)) == time
+@pytest.mark.parametrize("time", [0.0, 0.02, 17.123456789, 0.9999999999, 1_763_000_000.25])
+def test_times_keep_their_nanoseconds(time):
+    seconds, nanoseconds = split_time(time)
+    assert 0 <= nanoseconds < 10**9
+    assert seconds + nanoseconds * 1e-9 == pytest.approx(time, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -74,8 +98,8 @@ def test_times_keep_their_nanoseconds():
     [
         ({"pressure_reference": "sealed"}, "sealed"),
         ({"displacement_unit": "percent"}, "percent"),
-        ({"groups": ("main",), "displacement_unit": "fraction"}, "max_displacement"),
-        ({"remap": {"winch/joint_state": "/joint_states"}}, "winch/joint_state"),
+        ({"speed_joint": "boom"}, "boom"),
+        ({"float64_channels": ("active.pressure_c",)}, "pressure_c"),
     ],
 )
 def test_other_conventions_are_refused(settings, said):

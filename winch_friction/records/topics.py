@@ -1,232 +1,276 @@
-"""The ROS interface in one place (DESIGN section 4): which topic carries which run columns, in which unit.
+"""Which topic carries which channel (DESIGN section 4), shared by the nodes and by bags: one conversion, in one place.
 
-Pure Python, without rclpy: messages are read by their field names, so that those of rclpy and of `rosbags` both pass,
-and they are built as nested mappings of plain fields. Nodes, bag reader and bag writer share this map.
+Messages are read by their field names alone, so those of rclpy and those of rosbags are decoded by the same lines.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import isfinite
-from typing import Any
+from typing import Any, Protocol
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import NAN
+from winch_friction.physics.signals import NAN, Sample
 from winch_friction.physics.winch.crane import Crane
 
+ATMOSPHERE = 101_325.0  # Pa, what an absolute pressure has more than a gauge pressure
 JOINT_STATE = "sensor_msgs/msg/JointState"
 FLUID_PRESSURE = "sensor_msgs/msg/FluidPressure"
 TEMPERATURE = "sensor_msgs/msg/Temperature"
 FLOAT64 = "std_msgs/msg/Float64"
-STRING = "std_msgs/msg/String"
+PRESSURE_REFERENCES = ("gauge", "absolute")
+DISPLACEMENT_UNITS = ("fraction", "m3_per_rad")
+# scalars that travel as plain Float64, without a stamp
+PLAIN_SCALARS = ("hook_load", "heave_velocity", "wire_layer", "wire_out")
 
-SPEED_TOPIC = "winch/joint_states"
-REFERENCE_TOPIC = "winch/reference"
-MODEL_TOPIC = "friction_model"
-FRICTION_TOPIC = "friction_torque"  # of the compensator: ~/friction_torque
-FEEDFORWARD_TOPIC = "pressure_feedforward"  # of the compensator: ~/pressure_feedforward
-
-ATMOSPHERE = 101325.0  # Pa
-PRESSURE_REFERENCES = ("absolute", "gauge")
-DISPLACEMENT_UNITS = ("fraction", "m^3/rad")
-JOINTS = ("winch_motor", "winch_drum")
-# scalar column -> topic, each a std_msgs/Float64 in SI
-_SCALAR_TOPICS = {name: f"winch/{name}" for name in ("hook_load", "heave_velocity", "wire_layer", "wire_out")}
+Readings = dict[str, float]  # channel -> value, SI
 
 
 @dataclass(frozen=True)
-class Reading:
-    """One run column in one field of a message: value in SI = scale * field + offset."""
+class Input:
+    """One input topic: its message type, its channels and how a message becomes readings."""
 
-    column: str
-    field: str
-    scale: float = 1.0
-    offset: float = 0.0
-
-    def to_si(self, value: float) -> float:
-        """The column's value from the message's."""
-        return value * self.scale + self.offset
-
-    def from_si(self, value: float) -> float:
-        """The message's value from the column's."""
-        return (value - self.offset) / self.scale
-
-
-@dataclass(frozen=True)
-class Topic:
-    """One topic: its ROS type, the joint to pick in a JointState, and the columns it carries."""
-
-    name: str
-    message_type: str
-    readings: tuple[Reading, ...]
-    joint: str = ""
+    topic: str
+    type_name: str
+    channels: tuple[str, ...]
+    decode: Callable[[Any], Readings]
 
     @property
-    def columns(self) -> tuple[str, ...]:
-        """Run columns of this topic."""
-        return tuple(reading.column for reading in self.readings)
+    def stamped(self) -> bool:
+        """Whether its messages say when they were measured."""
+        return self.type_name != FLOAT64
 
-    def values(self, message: Any) -> list[tuple[str, float]]:
-        """Column and SI value of every field; NaN for a joint or an array entry that is not there."""
-        if self.message_type != JOINT_STATE:
-            return [(r.column, r.to_si(float(getattr(message, r.field)))) for r in self.readings]
-        names = list(message.name)
-        index = names.index(self.joint) if self.joint in names else -1
-        return [(r.column, r.to_si(_entry(getattr(message, r.field), index))) for r in self.readings]
 
-    def content(self, time: float, values: Mapping[str, float]) -> dict[str, Any]:
-        """The message's fields as nested mappings, for a time in s and SI values by column."""
-        return _CONTENTS[self.message_type](self, time, values)
+class MessageFactory(Protocol):
+    """Builds messages of one library from the same fields."""
+
+    def make(self, type_name: str, **fields: Any) -> Any:
+        """A message (or part of one) of a type such as `std_msgs/msg/Header`."""
+
+    def doubles(self, values: Sequence[float]) -> Any:
+        """A `float64[]` field."""
 
 
 @dataclass(frozen=True)
 class TopicMap:
-    """The input topics of one winch.
+    """The inputs of one winch as topics.
 
-    Parameters: `groups` of motors; `joint` is `winch_motor` or `winch_drum` (then converted by `gear_ratio`);
-    `electric`: the motor torque is its effort; `pressure_reference` of FluidPressure messages (inside, pressures
-    are gauge); `displacement_unit`: `fraction` of `max_displacement` or `m^3/rad`; `plain` names topics that carry a
-    bare std_msgs/Float64 instead (stamped on receipt); `remap` renames topics. Raises `InputError` for others.
+    `pressure_reference`: 'gauge' or 'absolute', what the transducers' messages mean; `displacement_unit`: 'fraction' of
+    `max_displacement` (m^3/rad) or 'm3_per_rad'; `speed_joint` is `motor_joint` or `drum_joint` (times `gear_ratio`);
+    `float64_channels` come from a simple bridge as std_msgs/Float64. Raises `InputError` for unknown choices.
     """
 
-    groups: tuple[str, ...] = ()
-    joint: str = "winch_motor"
+    groups: tuple[str, ...] = ("active", "passive")
     gear_ratio: float = 1.0
-    electric: bool = False
-    pressure_reference: str = "absolute"
-    displacement_unit: str = "m^3/rad"
     max_displacement: float = 0.0
-    plain: tuple[str, ...] = ()
-    remap: Mapping[str, str] = field(default_factory=dict)
+    pressure_reference: str = "gauge"
+    displacement_unit: str = "fraction"
+    motor_joint: str = "winch_motor"
+    drum_joint: str = "winch_drum"
+    speed_joint: str = "winch_motor"
+    float64_channels: tuple[str, ...] = ()
+    prefix: str = "winch"
+    inputs: Mapping[str, Input] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         _one_of("pressure_reference", self.pressure_reference, PRESSURE_REFERENCES)
         _one_of("displacement_unit", self.displacement_unit, DISPLACEMENT_UNITS)
-        if self.displacement_unit == "fraction" and not self.max_displacement > 0.0 and self.groups:
-            raise InputError("displacement_unit 'fraction' needs the crane's max_displacement; give a crane file")
-        for name in (*self.plain, *self.remap):
-            _one_of("topic", name, [topic.name for topic in self._declared()])
+        _one_of("speed_joint", self.speed_joint, (self.motor_joint, self.drum_joint))
+        inputs = [self._motion(), self._reference(), *self._group_inputs(), self._temperature(), *self._scalars()]
+        known = [channel for each in inputs for channel in each.channels]
+        for channel in self.float64_channels:
+            _one_of("float64_channels", channel, known)
+        plain = [self._plain(each) for each in inputs]
+        object.__setattr__(self, "inputs", {each.topic: each for each in plain})
 
-    @classmethod
-    def for_crane(cls, crane: Crane, groups: Sequence[str] | None = None, **settings: Any) -> "TopicMap":
-        """The map of a crane; `groups` defaults to all of the crane's."""
-        names = tuple(crane.groups if groups is None else groups)
-        own = {"gear_ratio": crane.gear_ratio, "electric": crane.electric, "max_displacement": crane.max_displacement}
-        return cls(groups=names, **{**own, **settings})
+    @property
+    def speed_topic(self) -> str:
+        """The topic that drives the sampling."""
+        return f"{self.prefix}/joint_states"
 
-    def topics(self) -> tuple[Topic, ...]:
-        """Every input topic; the speed, which drives the hold, comes last."""
-        return tuple(self._plain(topic) if topic.name in self.plain else topic for topic in self._declared())
+    def _motion(self) -> Input:
+        ratio = self.gear_ratio if self.speed_joint == self.drum_joint else 1.0
 
-    def actual_name(self, topic: Topic) -> str:
-        """The topic's name after remapping."""
-        return self.remap.get(topic.name, topic.name)
+        def decode(message: Any) -> Readings:
+            index = _joint_index(message, self.speed_joint)
+            speed = _entry(message.velocity, index) * ratio
+            return {
+                "motor_speed": speed,
+                "shaft_angle": _entry(message.position, index) * ratio,
+                "motor_torque": _entry(message.effort, index) / ratio,
+            }
 
-    def _declared(self) -> list[Topic]:
-        grouped = [topic for group in self.groups for topic in self._group_topics(group)]
-        scalars = [Topic(name, FLOAT64, (Reading(column, "data"),)) for column, name in _SCALAR_TOPICS.items()]
-        oil = Topic("winch/oil_temperature", TEMPERATURE, (Reading("oil_temperature", "temperature"),))
-        return [*grouped, *scalars, oil, self._reference(), self._speed()]
+        return Input(self.speed_topic, JOINT_STATE, ("motor_speed", "shaft_angle", "motor_torque"), decode)
 
-    def _group_topics(self, group: str) -> list[Topic]:
-        offset = -ATMOSPHERE if self.pressure_reference == "absolute" else 0.0
-        pressures = [
-            Topic(f"winch/{group}/{side}", FLUID_PRESSURE, (Reading(f"{group}.{side}", "fluid_pressure", 1.0, offset),))
-            for side in ("pressure_a", "pressure_b")
+    def _reference(self) -> Input:
+        names = {self.motor_joint: 1.0, self.drum_joint: self.gear_ratio}
+
+        def decode(message: Any) -> Readings:
+            for joint, ratio in names.items():
+                index = _joint_index(message, joint)
+                if index >= 0:
+                    return {"speed_reference": _entry(message.velocity, index) * ratio}
+            return {}
+
+        return Input(f"{self.prefix}/reference", JOINT_STATE, ("speed_reference",), decode)
+
+    def _group_inputs(self) -> list[Input]:
+        return [each for group in self.groups for each in (*self._pressures(group), self._displacement(group))]
+
+    def _pressures(self, group: str) -> list[Input]:
+        offset = ATMOSPHERE if self.pressure_reference == "absolute" else 0.0
+
+        def reader(channel: str) -> Callable[[Any], Readings]:
+            return lambda message: {channel: message.fluid_pressure - offset}
+
+        ports = ("pressure_a", "pressure_b")
+        return [
+            Input(f"{self.prefix}/{group}/{p}", FLUID_PRESSURE, (f"{group}.{p}",), reader(f"{group}.{p}"))
+            for p in ports
         ]
-        scale = self.max_displacement if self.displacement_unit == "fraction" else 1.0
-        swash = Reading(f"{group}.displacement", "position", scale)
-        return [*pressures, Topic(f"winch/{group}/displacement", JOINT_STATE, (swash,), f"{group}_swash")]
 
-    def _gear(self) -> float:
-        return self.gear_ratio if self.joint == "winch_drum" else 1.0
+    def _displacement(self, group: str) -> Input:
+        channel, joint, factor = f"{group}.displacement", f"{group}_swash", self._displacement_factor
 
-    def _reference(self) -> Topic:
-        reading = Reading("speed_reference", "velocity", self._gear())
-        return Topic(REFERENCE_TOPIC, JOINT_STATE, (reading,), self.joint)
+        def decode(message: Any) -> Readings:
+            index = _joint_index(message, joint)
+            return {channel: _entry(message.position, index) * factor} if index >= 0 else {}
 
-    def _speed(self) -> Topic:
-        gear = self._gear()
-        readings = [Reading("motor_speed", "velocity", gear), Reading("shaft_angle", "position", gear)]
-        if self.electric:
-            readings.append(Reading("motor_torque", "effort", 1.0 / gear))
-        return Topic(SPEED_TOPIC, JOINT_STATE, tuple(readings), self.joint)
+        return Input(f"{self.prefix}/{group}/displacement", JOINT_STATE, (channel,), decode)
 
-    def _plain(self, topic: Topic) -> Topic:
-        first = topic.readings[0]
-        return Topic(topic.name, FLOAT64, (Reading(first.column, "data", first.scale, first.offset),))
+    @property
+    def _displacement_factor(self) -> float:
+        return self.max_displacement if self.displacement_unit == "fraction" else 1.0
 
+    def _temperature(self) -> Input:
+        return Input(
+            f"{self.prefix}/oil_temperature",
+            TEMPERATURE,
+            ("oil_temperature",),
+            lambda message: {"oil_temperature": message.temperature},
+        )
 
-def stamp_of(message: Any) -> float | None:
-    """The header's stamp in s; None for a message without a header, to be stamped on receipt."""
-    header = getattr(message, "header", None)
-    return None if header is None else seconds(header.stamp.sec, header.stamp.nanosec)
+    def _scalars(self) -> list[Input]:
+        def reader(channel: str) -> Callable[[Any], Readings]:
+            return lambda message: {channel: message.data}
 
+        return [Input(f"{self.prefix}/{name}", FLOAT64, (name,), reader(name)) for name in PLAIN_SCALARS]
 
-def seconds(sec: int, nanosec: int) -> float:
-    """ROS time in s; one rounding, the same for nodes and replay."""
-    return (int(sec) * 1_000_000_000 + int(nanosec)) / 1_000_000_000
+    def _plain(self, given: Input) -> Input:
+        channel = given.channels[0]
+        if given.type_name == FLOAT64 or channel not in self.float64_channels:
+            return given
+        scale, offset = self._plain_conversion(channel)
+        return Input(given.topic, FLOAT64, (channel,), lambda message: {channel: message.data * scale - offset})
 
+    def _plain_conversion(self, channel: str) -> tuple[float, float]:
+        if channel.endswith(".displacement"):
+            return self._displacement_factor, 0.0
+        if channel.rpartition(".")[2] in ("pressure_a", "pressure_b"):
+            return 1.0, ATMOSPHERE if self.pressure_reference == "absolute" else 0.0
+        return (self.gear_ratio if channel == "motor_speed" and self.speed_joint == self.drum_joint else 1.0), 0.0
 
-def nanoseconds(time: float) -> int:
-    """Time in ns, rounded."""
-    whole = int(time)  # apart, because a Unix time in ns does not fit a float
-    return whole * 1_000_000_000 + round((time - whole) * 1e9)
+    # -- the way out
+    def encode(self, sample: Sample, factory: MessageFactory) -> list[tuple[str, Any]]:
+        """The messages of one sample as (topic, message), the speed last, so that it closes the set; NaN stays out."""
+        header = stamp_header(sample.time, factory)
+        out = [
+            (f"{self.prefix}/{name}", factory.make(FLOAT64, data=float(value)))
+            for name in PLAIN_SCALARS
+            if (value := getattr(sample, name)) == value
+        ]
+        if sample.oil_temperature == sample.oil_temperature:
+            fields = {"temperature": float(sample.oil_temperature), "variance": 0.0}
+            out.append((f"{self.prefix}/oil_temperature", factory.make(TEMPERATURE, header=header, **fields)))
+        for group in sample.groups:
+            out.extend(self._encode_group(sample, group, header, factory))
+        if sample.speed_reference == sample.speed_reference:
+            joint = joint_state(factory, header, self.motor_joint, velocity=sample.speed_reference)
+            out.append((f"{self.prefix}/reference", joint))
+        out.append((self.speed_topic, self._encode_motion(sample, header, factory)))
+        return out
 
+    def _encode_group(self, sample: Sample, group: str, header: Any, factory: MessageFactory) -> list[tuple[str, Any]]:
+        offset = ATMOSPHERE if self.pressure_reference == "absolute" else 0.0
+        values, base = sample.groups[group], f"{self.prefix}/{group}"
+        pressures = {"pressure_a": values.pressure_a, "pressure_b": values.pressure_b}
+        out = [
+            (
+                f"{base}/{port}",
+                factory.make(FLUID_PRESSURE, header=header, fluid_pressure=float(value + offset), variance=0.0),
+            )
+            for port, value in pressures.items()
+            if value == value
+        ]
+        if values.displacement == values.displacement:
+            setting = values.displacement / self._displacement_factor
+            out.append((f"{base}/displacement", joint_state(factory, header, f"{group}_swash", position=setting)))
+        return out
 
-def header(time: float) -> dict[str, Any]:
-    """A std_msgs/Header as nested mappings."""
-    sec, nanosec = divmod(nanoseconds(time), 1_000_000_000)
-    return {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""}
-
-
-def joint_state(time: float, joint: str, position: float = NAN, velocity: float = NAN, effort: float = NAN) -> dict:
-    """A JointState of one joint with all arrays as long as `name`; a plot tool hides shorter ones."""
-    return {
-        "header": header(time),
-        "name": [joint],
-        "position": [position],
-        "velocity": [velocity],
-        "effort": [effort],
-    }
-
-
-def _entry(array: Any, index: int) -> float:
-    return float(array[index]) if 0 <= index < len(array) else NAN
-
-
-def _joint_content(topic: Topic, time: float, values: Mapping[str, float]) -> dict[str, Any]:
-    fields = {r.field: r.from_si(values.get(r.column, NAN)) for r in topic.readings}
-    return joint_state(time, topic.joint, **fields)
-
-
-def _pressure_content(topic: Topic, time: float, values: Mapping[str, float]) -> dict[str, Any]:
-    reading = topic.readings[0]
-    return {"header": header(time), "fluid_pressure": reading.from_si(values[reading.column]), "variance": 0.0}
-
-
-def _temperature_content(topic: Topic, time: float, values: Mapping[str, float]) -> dict[str, Any]:
-    reading = topic.readings[0]
-    return {"header": header(time), "temperature": reading.from_si(values[reading.column]), "variance": 0.0}
-
-
-def _float_content(topic: Topic, time: float, values: Mapping[str, float]) -> dict[str, Any]:
-    reading = topic.readings[0]
-    return {"data": reading.from_si(values[reading.column])}
-
-
-_CONTENTS: dict[str, Callable[[Topic, float, Mapping[str, float]], dict[str, Any]]] = {
-    JOINT_STATE: _joint_content,
-    FLUID_PRESSURE: _pressure_content,
-    TEMPERATURE: _temperature_content,
-    FLOAT64: _float_content,
-}
-
-
-def carries(topic: Topic, values: Mapping[str, float]) -> bool:
-    """Whether any of the topic's columns has a finite value."""
-    return any(isfinite(values.get(column, NAN)) for column in topic.columns)
+    def _encode_motion(self, sample: Sample, header: Any, factory: MessageFactory) -> Any:
+        ratio = self.gear_ratio if self.speed_joint == self.drum_joint else 1.0
+        return joint_state(
+            factory,
+            header,
+            self.speed_joint,
+            position=sample.shaft_angle / ratio,
+            velocity=sample.motor_speed / ratio,
+            effort=sample.motor_torque * ratio,
+        )
 
 
-def _one_of(what: str, value: str, allowed: Sequence[str]) -> None:
-    if value not in allowed:
-        raise InputError(f"{what} '{value}' is not one of {', '.join(allowed)}")
+def crane_topics(crane: Crane, groups: Sequence[str] = ("active", "passive"), **conventions: Any) -> TopicMap:
+    """The topics of a crane; `conventions` are the other fields of `TopicMap`."""
+    groups = () if crane.electric else tuple(groups)
+    for group in groups:
+        crane.motor_count(group)
+    return TopicMap(groups=groups, gear_ratio=crane.gear_ratio, max_displacement=crane.max_displacement, **conventions)
+
+
+def joint_state(
+    factory: MessageFactory,
+    header: Any,
+    joint: str,
+    position: float = NAN,
+    velocity: float = NAN,
+    effort: float = NAN,
+) -> Any:
+    """A JointState of one joint with arrays as long as `name`: shorter ones are hidden by plot tools."""
+    arrays = {"position": position, "velocity": velocity, "effort": effort}
+    fields = {key: factory.doubles([float(value)]) for key, value in arrays.items()}
+    return factory.make(JOINT_STATE, header=header, name=[joint], **fields)
+
+
+def stamp_header(time: float, factory: MessageFactory, frame_id: str = "") -> Any:
+    """A header whose stamp is `time` in s, to the nanosecond."""
+    seconds, nanoseconds = split_time(time)
+    stamp = factory.make("builtin_interfaces/msg/Time", sec=seconds, nanosec=nanoseconds)
+    return factory.make("std_msgs/msg/Header", stamp=stamp, frame_id=frame_id)
+
+
+def split_time(time: float) -> tuple[int, int]:
+    """Whole seconds and nanoseconds of a time in s."""
+    seconds = math.floor(time)
+    nanoseconds = round((time - seconds) * 1e9)
+    return (seconds + 1, 0) if nanoseconds == 1_000_000_000 else (seconds, nanoseconds)
+
+
+def stamp_time(message: Any) -> float:
+    """The header's stamp in s."""
+    stamp = message.header.stamp
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def _joint_index(message: Any, joint: str) -> int:
+    """Position of a joint by name, -1 without it."""
+    names = message.name
+    return names.index(joint) if joint in names else -1
+
+
+def _entry(values: Any, index: int) -> float:
+    """An entry of an array that may be shorter than `name`; NaN when it is not there."""
+    return float(values[index]) if 0 <= index < len(values) else NAN
+
+
+def _one_of(name: str, value: str, known: Sequence[str]) -> None:
+    if value not in known:
+        raise InputError(f"{name} must be one of {', '.join(known)}; found '{value}'")

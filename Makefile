@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates clean
+.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates clean
 
 setup: $(READY)
 
@@ -31,6 +31,12 @@ lint: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy winch_friction
 	$(BIN)/lint-imports --no-cache
+
+# the same tests with the library versions of Ubuntu 24.04, ROS 2 Jazzy's own platform
+test-ubuntu24.04:
+	python3.11 -m venv .venv-ubuntu24.04
+	.venv-ubuntu24.04/bin/python -m pip install --quiet -c constraints-ubuntu24.04.txt -e '.[all]'
+	.venv-ubuntu24.04/bin/python -m pytest $(ARGS)
 
 # the report pages are opened in a real browser; without one and without the right to install it those tests skip and say so
 browser:

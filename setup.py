@@ -14,7 +14,7 @@ def tree(folder: str) -> list[tuple[str, list[str]]]:
     return [(f"{SHARE}/{each}", [str(f) for f in each.iterdir() if f.is_file()]) for each in folders]
 
 
-IDENTIFICATION = ["pint>=0.23", "pandas>=2.1", "pyarrow>=14", "matplotlib>=3.6", "jinja2>=3.1", "plotly>=5.18"]
+IDENTIFICATION = ["pint>=0.19", "pandas>=2.1", "pyarrow>=14", "matplotlib>=3.6", "jinja2>=3.1", "plotly>=5.18"]
 EXTRAS = {
     "ros": [
         "ros-rclpy[fastrtps]==7.1.6",
@@ -27,17 +27,17 @@ EXTRAS = {
     "desk": [
         *IDENTIFICATION,
         "numba>=0.58",
-        "pydantic>=2.5",
-        "rosbags>=0.10",
+        "pydantic>=1.10",
+        "rosbags>=0.9",
         "scikit-learn>=1.4",
         "statsmodels>=0.14",
-        "arch>=7.0",
+        "arch>=6",
         "typer>=0.9",
         "rich>=13",
     ],
     "fleet": ["dask[distributed]>=2024.1"],
     "test": [
-        "pytest>=8",
+        "pytest>=7.4",
         "pytest-timeout>=2.2",
         "hypothesis>=6.98",
         "pytest-benchmark>=4",

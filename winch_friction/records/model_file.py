@@ -1,4 +1,4 @@
-"""The model file: the contract between identification, nodes, simulator and the discrepancy workflow (DESIGN section 1)."""
+"""The model file: the contract between identification, nodes, simulator and the discrepancy workflow."""
 
 from collections.abc import Mapping
 from pathlib import Path

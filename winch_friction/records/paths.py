@@ -9,7 +9,7 @@ _PACKAGE = "winch_friction"
 
 
 def config_directory() -> Path:
-    """The directory with cranes/, models/, nodes/ and scenarios/; raises `InputError` when the installation lacks it."""
+    """The directory with cranes/, models/, nodes/, scenarios/; raises `InputError` when the installation lacks it."""
     for candidate in _candidates():
         if (candidate / "models").is_dir():
             return candidate

@@ -1,5 +1,6 @@
 """YAML read strictly: every key is asked for by name, the rest is refused in one line that says where."""
 
+import contextlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -67,10 +68,8 @@ class Section:
 def finite(value: Any, where: str) -> float:
     """A finite float, or `InputError`."""
     if isinstance(value, str):  # YAML 1.1 reads 1e-3 as a string
-        try:
+        with contextlib.suppress(ValueError):
             value = float(value)
-        except ValueError:
-            pass
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise InputError(f"{where} must be a finite number, found {_said(value)}")
     return float(value)

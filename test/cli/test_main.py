@@ -1,0 +1,82 @@
+"""The command line's frame: exit statuses, one clear line for bad input, help without importing the verbs."""
+
+import subprocess
+import sys
+
+import pytest
+import typer
+
+from winch_friction import __version__
+from winch_friction.cli import main, verbs
+from winch_friction.physics.errors import InputError
+
+
+def failing(error):
+    def command() -> None:
+        raise error
+
+    return command
+
+
+@pytest.fixture
+def verb(monkeypatch):
+    def install(error):
+        app = typer.Typer()
+        app.command("replay")(failing(error))
+        monkeypatch.setattr(verbs.Verb, "load", lambda self: typer.main.get_command(app))
+
+    return install
+
+
+def test_version_and_help(capsys):
+    assert main.run(["--version"]) == 0
+    assert __version__ in capsys.readouterr().out
+    assert main.run([]) == 0
+    shown = capsys.readouterr().out
+    assert all(each.name in shown for each in verbs.VERBS)
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "said"),
+    [
+        (InputError("run.csv: row 3,\n column x"), 2, "run.csv: row 3, column x"),
+        (PermissionError(13, "Permission denied", "/root/out"), 2, "/root/out: Permission denied"),
+        (ModuleNotFoundError("no dask", name="dask"), 2, "pip install"),
+    ],
+)
+def test_bad_input_is_one_line_without_a_traceback(verb, capsys, error, status, said):
+    verb(error)
+    assert main.run(["replay"]) == status
+    line = capsys.readouterr().err
+    assert said in line
+    assert line.count("\n") == 1
+    assert "Traceback" not in line
+
+
+def test_a_defect_is_said_to_be_one(verb, capsys):
+    verb(ZeroDivisionError("oops"))
+    assert main.run(["replay"]) == 1
+    shown = capsys.readouterr().err
+    assert "Traceback" in shown
+    assert "defect: ZeroDivisionError: oops" in shown.splitlines()[-1]
+
+
+@pytest.mark.parametrize("arguments", [["weld"], ["--nonsense"]])
+def test_usage_errors_are_bad_input(arguments, capsys):
+    assert main.run(arguments) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_an_interrupt_has_its_own_status(verb):
+    verb(KeyboardInterrupt())
+    assert main.run(["replay"]) == 130
+
+
+def test_help_imports_no_verb():
+    code = (
+        "import sys; from winch_friction.cli.main import run; run(['--help'])\n"
+        "heavy = {'pandas', 'pint', 'rosbags', 'matplotlib', 'scipy', 'sympy'} & set(sys.modules)\n"
+        "sys.exit(str(heavy) if heavy else 0)"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert result.returncode == 0, result.stderr

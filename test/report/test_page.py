@@ -1,0 +1,70 @@
+"""The page: self-contained, escaped, with pictures that follow the page's colours."""
+
+import re
+
+import numpy as np
+
+from winch_friction.report.base import TextSection, render, write_report
+from winch_friction.report.figures import figure_html, new_figure, save_figure
+from winch_friction.report.tables import number, paragraph, table_html
+
+
+def picture(points=50):
+    figure, axes = new_figure()
+    axes.plot(np.linspace(0, 1, points), np.random.default_rng(0).normal(size=points))
+    axes.set_xlabel("time, s")
+    return figure
+
+
+def page():
+    table = table_html(["speed", "error"], [["0–50 rpm", 1.25], ["<script>", float("nan")]], caption="Errors")
+    sections = [
+        TextSection("Result", paragraph("5 < 6 & done") + table),
+        TextSection("Picture", figure_html(picture(), "A line")),
+    ]
+    return render("Winch <150 t>", sections)
+
+
+def test_a_page_refers_to_nothing_outside_itself():
+    text = re.sub(r'xmlns(:\w+)?="[^"]*"', "", page())
+    assert not re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', text)
+    assert "http" not in text
+    assert "@import" not in text
+
+
+def test_what_people_wrote_is_escaped():
+    text = page()
+    assert "Winch &lt;150 t&gt;" in text
+    assert "&lt;script&gt;" in text
+    assert "5 &lt; 6 &amp; done" in text
+    assert "<script" not in text
+
+
+def test_pictures_follow_the_colours_of_the_page():
+    text = figure_html(picture(), 'a "line"')
+    assert "currentColor" in text
+    assert "time, s" in text
+    assert 'aria-label="a &quot;line&quot;"' in text
+
+
+def test_a_picture_of_very_many_points_becomes_a_png():
+    figure, axes = new_figure()
+    rng = np.random.default_rng(1)
+    axes.scatter(rng.normal(size=20_000), rng.normal(size=20_000), s=2)
+    assert "data:image/png;base64," in figure_html(figure)
+
+
+def test_files_are_written(tmp_path):
+    path = write_report(tmp_path / "deep" / "report.html", "Title", [TextSection("One", "<p>x</p>")])
+    assert path.read_text(encoding="utf-8").startswith("<!doctype html>")
+    assert save_figure(picture(), tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_numbers_are_written_for_people():
+    assert [number(v) for v in (0.0, 1234.56, 123456.7, 1.5e-7, float("nan"))] == [
+        "0",
+        "1235",
+        "123457",
+        "1.5e-07",
+        "–",
+    ]

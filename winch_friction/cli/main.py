@@ -1,0 +1,98 @@
+"""`winch-friction <verb>`: exit 0 done, 2 bad input (one clear line), 1 a defect of this program."""
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+
+import typer
+
+from winch_friction import __version__
+from winch_friction.cli.verbs import VerbGroup
+from winch_friction.physics.errors import InputError
+
+DONE, DEFECT, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+HELP = """Friction of a hydraulic winch: compensated and learned online, identified offline, questioned always.
+
+Examples, each with more under [bold]--help[/bold]:
+
+  [cyan]winch-friction demo[/cyan]
+
+  [cyan]winch-friction replay bag/ --crane crane_150t --model a6vm215_crane2 --out replay.csv[/cyan]
+
+  [cyan]winch-friction gap runs/*.csv --crane crane_150t --model a6vm215_crane2 --out gap/[/cyan]
+
+Exit status: 0 done, 2 bad input (one line says what, where and what to do), 1 a defect.
+"""
+
+app = typer.Typer(cls=VerbGroup, help=HELP, rich_markup_mode="rich", add_completion=True)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"winch-friction {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: bool = typer.Option(
+        False, "--version", is_eager=True, callback=_show_version, help="Print the version and exit."
+    ),
+) -> None:
+    """Options before the verb."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Carry out one command line; returns the exit status and writes errors to stderr."""
+    try:
+        result = typer.main.get_command(app).main(
+            list(arguments) or ["--help"], "winch-friction", standalone_mode=False
+        )
+        return result if isinstance(result, int) else DONE
+    except InputError as error:
+        return _bad_input(str(error))
+    except (KeyboardInterrupt, typer.Abort):
+        return _said("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the pipe's reader has gone: nothing to say
+        return DONE
+    except OSError as error:
+        return _bad_input(f"{error.filename or 'input or output'}: {error.strerror or error}")
+    except ModuleNotFoundError as error:
+        return _missing_library(error)
+    except Exception as error:
+        if hasattr(error, "format_message"):  # a usage error of Typer's, from whichever click it carries
+            return _bad_input(error.format_message() + _usage_hint(error))
+        return _defect(error)
+
+
+def _missing_library(error: ModuleNotFoundError) -> int:
+    if (error.name or "").startswith("winch_friction"):
+        return _defect(error)
+    extras = "pip install 'winch_friction[desk]' (or [fleet], [ros])"
+    return _bad_input(f"the library '{error.name}' is not installed: {extras}")
+
+
+def _defect(error: Exception) -> int:
+    traceback.print_exception(error)
+    return _said(f"defect: {type(error).__name__}: {error}; please report it with the lines above", DEFECT)
+
+
+def _usage_hint(error: Exception) -> str:
+    context = getattr(error, "ctx", None)
+    return f" (see '{context.command_path} --help')" if context is not None else ""
+
+
+def _bad_input(message: str) -> int:
+    return _said(" ".join(message.split()), BAD_INPUT)
+
+
+def _said(message: str, status: int) -> int:
+    print(f"winch-friction: {message}", file=sys.stderr)
+    return status
+
+
+def main() -> None:
+    """Entry point of the console script."""
+    sys.exit(run(sys.argv[1:]))

@@ -1,0 +1,53 @@
+"""Tables and text of a report as HTML, escaped."""
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from math import isfinite
+from typing import Any
+
+
+def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "", digits: int = 4) -> str:
+    """A table; numbers are aligned to the right with `digits` significant digits, text is escaped."""
+    rows = [list(row) for row in rows]
+    numeric = [bool(rows) and all(_is_number(row[k]) for row in rows) for k in range(len(columns))]
+    head = "".join(f"<th{_class(n)}>{escape(name)}</th>" for name, n in zip(columns, numeric, strict=True))
+    body = "".join("<tr>" + _cells(row, numeric, digits) + "</tr>" for row in rows)
+    title = f"<caption>{escape(caption)}</caption>" if caption else ""
+    table = f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f'<div class="scroll">{table}</div>'
+
+
+def paragraph(text: str, kind: str = "") -> str:
+    """A paragraph of escaped text; `kind` is a class of the style: faint, good, bad, verdict."""
+    return f'<p class="{escape(kind)}">{escape(text)}</p>' if kind else f"<p>{escape(text)}</p>"
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number for people: significant digits without an exponent where it stays short, a dash for none."""
+    if not isfinite(value):
+        return "–"
+    size = abs(value)
+    if value == 0.0 or 1e-3 <= size < 1e6:
+        shown = f"{value:.{digits}g}"
+        return f"{value:.0f}" if "e" in shown else shown
+    return f"{value:.{digits}g}"
+
+
+def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:
+    return "".join(f"<td{_class(n)}>{_shown(value, digits)}</td>" for value, n in zip(row, numeric, strict=True))
+
+
+def _shown(value: Any, digits: int) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool) or not _is_number(value):
+        return escape(str(value))
+    return str(value) if isinstance(value, int) else number(float(value), digits)
+
+
+def _is_number(value: Any) -> bool:
+    return value is None or (hasattr(value, "__float__") and not isinstance(value, (str, bool)))
+
+
+def _class(numeric: bool) -> str:
+    return ' class="number"' if numeric else ""

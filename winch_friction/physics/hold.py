@@ -1,12 +1,13 @@
 """Latest-sample hold with an age limit per input: what turns topics of their own rates into one `Sample`.
 
-The speed drives: the node (or the replay of a bag) puts every value as it arrives and takes a sample at each speed. A value older
-than its limit is handed out as NaN, so that whoever needs it sees that it is missing.
+The speed drives: the node (or the replay of a bag) puts every value as it arrives and takes a sample at each speed. A
+value older than its limit is handed out as NaN, so that whoever needs it sees that it is missing.
 """
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, GroupSample, Run, Sample
 
@@ -18,8 +19,8 @@ SLOW_INPUTS = {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "w
 class InputHold:
     """Holds the latest value of every input.
 
-    `groups`: the motor groups that a sample must show, present or not. `max_age` s for every input that `max_ages` does not name
-    (by column, `active.pressure_a`, or by channel, `pressure_a`).
+    `groups`: the motor groups that a sample must show, present or not. `max_age` s for every input that `max_ages`
+    does not name (by column, `active.pressure_a`, or by channel, `pressure_a`).
     """
 
     groups: tuple[str, ...] = ()
@@ -57,9 +58,15 @@ class InputHold:
         return Sample(time=time, groups=members, **scalars)
 
     def fill(self, sample: Sample) -> Sample:
-        """`sample` with the holes filled by what is held."""
+        """`sample` with its holes filled by what is held; what it brings itself is never replaced."""
         self.put_sample(sample)
-        return self.sample(sample.time)
+        held = self.sample(sample.time)
+        for name in SAMPLE_SCALARS:
+            _keep(sample, held, name)
+        for group, member in sample.groups.items():
+            for channel in GROUP_CHANNELS:
+                _keep(member, held.groups[group], channel)
+        return held
 
     def samples(self, run: Run) -> Iterator[Sample]:
         """A run's samples with NaN entries filled the same way."""
@@ -82,3 +89,9 @@ class InputHold:
         if column in self.max_ages:
             return self.max_ages[column]
         return self.max_ages.get(column.rpartition(".")[2], self.max_age)
+
+
+def _keep(own: Any, held: Any, name: str) -> None:
+    value = getattr(own, name)
+    if math.isfinite(value):
+        setattr(held, name, value)

@@ -1,4 +1,5 @@
-"""Configuration as frozen dataclasses whose fields carry their own limits; built from YAML or from ROS parameters alike."""
+"""Configuration as frozen dataclasses whose fields carry their own limits; built from YAML or from ROS parameters
+alike."""
 
 import math
 from collections.abc import Mapping
@@ -37,14 +38,14 @@ def limits_of(each: "Field[Any]") -> Limits:
 
 def default_of(each: "Field[Any]") -> Any:
     """The default of a field."""
-    return each.default if each.default is not MISSING else each.default_factory()  # type: ignore[misc]
+    return each.default if each.default is not MISSING else each.default_factory()  # type: ignore[misc, operator]
 
 
 def from_mapping(kind: type[T], content: Mapping[str, Any], where: str) -> T:
     """A configuration of this dataclass from a plain mapping.
 
-    Absent keys keep their default. Raises `InputError` for unknown keys, wrong types and values out of range, in one line that
-    begins with `where`.
+    Absent keys keep their default. Raises `InputError` for unknown keys, wrong types and values out of range, in one
+    line that begins with `where`.
     """
     if not isinstance(content, Mapping):
         raise InputError(f"{where}: expected a mapping of keys, found {content!r}")

@@ -10,8 +10,8 @@ SIGMAS_OF_ZERO_SEED = 3.0
 def seed_range(seed: FrictionModel, fraction: float) -> dict[str, tuple[float, float]]:
     """Lower and upper value by parameter: seed +- `fraction` of it, inside the bounds.
 
-    A parameter that is zero in the seed, or may have either sign, has no size of its own to take a fraction of: it may also move by
-    three standard deviations of the seed (without a covariance: by its typical size).
+    A parameter that is zero in the seed, or may have either sign, has no size of its own to take a fraction of: it
+    may also move by three standard deviations of the seed (without a covariance: by its typical size).
     """
     return {p.name: _range(seed, k, p, fraction) for k, p in enumerate(seed.parameters)}
 
@@ -34,6 +34,6 @@ def refuse_outside_seed(model: FrictionModel, seed: FrictionModel, fraction: flo
         slack = 1e-9 * max(abs(lower), abs(upper)) if name in allowed else 0.0
         if not lower - slack <= value <= upper + slack:
             raise InputError(
-                f"model '{model.name}': parameter {name} = {value:g} is outside {lower:g} ... {upper:g}, the range around the "
-                f"seed '{seed.name}'; the last good model is kept"
+                f"model '{model.name}': parameter {name} = {value:g} is outside {lower:g} ... {upper:g}, "
+                f"the range around the seed '{seed.name}'; the last good model is kept"
             )

@@ -1,0 +1,290 @@
+"""The feedforward law and the rules of DOMAIN section 9."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.options import from_mapping
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.units import BAR, CM3_PER_REV
+from winch_friction.physics.winch import sample_operating_point
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+CRANE = load_crane("crane_150t")
+SEED = load_model("a6vm215_crane1")
+PERIOD = 0.02
+
+
+def ahc_sample(time, speed, *, hook_load=55e3, pressure=120 * BAR, displacement=215 * CM3_PER_REV):
+    groups = {
+        "active": GroupSample(pressure + 25 * BAR, 25 * BAR, displacement),
+        "passive": GroupSample(160 * BAR, 30 * BAR, 215 * CM3_PER_REV),
+    }
+    return Sample(time, speed, speed_reference=speed, groups=groups, hook_load=hook_load)
+
+
+def compensator(**settings):
+    return FeedforwardCompensator(CRANE, SEED, CompensatorConfig(**{"ramp_time": 0.2, **settings}))
+
+
+def run_up(each, speed=100.0, until=1.0, **channels):
+    """Constant speed long enough to be fully faded in; returns the outputs and the next time."""
+    times = np.arange(0.0, until, PERIOD)
+    return [each.step(ahc_sample(t, speed, **channels)) for t in times], float(times[-1] + PERIOD)
+
+
+def model_torque(model, sample, speed):
+    drum_torque = CRANE.drum_torque(sample.hook_load, sample.wire_layer)
+    return float(model.torque(sample_operating_point(sample, CRANE, drum_torque=drum_torque, speed=speed)))
+
+
+def test_is_the_scaled_friction_of_the_model_and_its_pressure_on_the_active_group():
+    each = compensator(scale=0.85)
+    outputs, _ = run_up(each)
+    expected = 0.85 * model_torque(SEED, ahc_sample(0.0, 100.0), 100.0)
+    assert outputs[-1].state == "active"
+    assert outputs[-1].friction_torque == pytest.approx(expected, rel=1e-12)
+    assert outputs[-1].pressure == pytest.approx(expected / (3 * 215 * CM3_PER_REV), rel=1e-12)
+
+
+def test_gains_act_term_by_term():
+    without = compensator(gains={"stribeck": 0.0}, scale=1.0)
+    outputs, _ = run_up(without, speed=5.0)
+    reduced = SEED.subset([name for name in SEED.term_names if name != "stribeck"])
+    expected = model_torque(reduced, ahc_sample(0.0, 5.0), 5.0) * math.tanh(5.0 / 3.0)
+    assert outputs[-1].friction_torque == pytest.approx(expected, rel=1e-9)
+
+
+def test_extrapolates_a_sine_reference_by_the_lead():
+    each = compensator(lead=0.1, scale=1.0)
+    omega = 2 * math.pi / 10
+    errors = []
+    for time in np.arange(0.0, 20.0, PERIOD):
+        out = each.step(ahc_sample(time, 200 * math.sin(omega * time)))
+        errors.append(out.speed - 200 * math.sin(omega * (time + 0.1)))
+    assert max(map(abs, errors[50:])) < 0.1  # rad/s of 200; without extrapolation 12.6
+
+
+def test_reversal_is_spread_over_the_reversal_time():
+    each = compensator(reversal_time=0.05)
+    torques = [each.step(ahc_sample(t, -130.0 * (t - 2.0))).friction_torque for t in np.arange(0.0, 4.0, PERIOD)]
+    steps = np.abs(np.diff(torques[60:]))
+    assert torques[60] > 0.0 > torques[-1]
+    assert steps.max() < 0.35 * (torques[60] - torques[-1])  # a sign would do it in one step
+
+
+def test_estimates_the_load_from_the_pressures_when_there_is_no_load_cell():
+    speed = 100.0
+    friction = model_torque(SEED, ahc_sample(0.0, speed), speed)
+    held = CRANE.drum_torque(55e3) / CRANE.gear_ratio + friction
+    passive = 8 * 215 * CM3_PER_REV * 130 * BAR
+    pressure = (held - passive) / (3 * 215 * CM3_PER_REV)
+    each = compensator(scale=1.0, load_filter=1.0)
+    outputs, _ = run_up(each, speed=speed, hook_load=math.nan, pressure=pressure, until=20.0)
+    assert outputs[-1].drum_torque == pytest.approx(CRANE.drum_torque(55e3), rel=0.01)
+
+
+# -- limits
+def test_never_leaves_the_seed_envelope_nor_the_absolute_limit():
+    hot = SEED.with_values({"C6": SEED.value("C6") * 1.5, "C1": SEED.value("C1") * 1.5, "K4": SEED.value("K4") * 1.5})
+    each = compensator(scale=1.3)
+    each.load_model(hot)
+    outputs, _ = run_up(each)
+    assert outputs[-1].friction_torque == pytest.approx(1.3 * model_torque(SEED, ahc_sample(0.0, 100.0), 100.0))
+    assert each.status()["envelope_clamps"] > 0
+    tight = compensator(absolute_limit=50.0)
+    outputs, _ = run_up(tight, speed=-100.0)
+    assert outputs[-1].friction_torque == -50.0
+
+
+def test_slew_limit_bounds_every_step():
+    each = compensator(slew_limit=1000.0)
+    rng = np.random.default_rng(5)
+    torques = [each.step(ahc_sample(k * PERIOD, s)).friction_torque for k, s in enumerate(rng.normal(0, 100, 300))]
+    assert np.abs(np.diff(torques)).max() <= 1000.0 * PERIOD * (1 + 1e-9)
+    assert each.status()["slew_clamps"] > 0
+
+
+# -- lost inputs
+@pytest.mark.parametrize("lost", ["reference", "pressure", "displacement", "groups"])
+def test_a_lost_input_ramps_to_zero_and_back_without_a_bump(lost):
+    each = compensator()
+    outputs, time = run_up(each)
+    torques = [outputs[-1].friction_torque]
+    for k in range(60):
+        sample = ahc_sample(time + k * PERIOD, 100.0 if k < 20 else -100.0)
+        if k < 30:
+            _lose(sample, lost)
+        out = each.step(sample)
+        torques.append(out.friction_torque)
+        if k == 29:
+            assert out.state == "stale"
+            assert out.friction_torque == 0.0
+    assert torques[-1] < -0.9 * torques[0]
+    assert np.abs(np.diff(torques)).max() < 0.12 * torques[0]  # ramp of 0.2 s in steps of 0.02 s
+
+
+def _lose(sample, what):
+    if what == "reference":
+        sample.speed_reference = math.nan
+    elif what == "groups":
+        sample.groups.clear()
+    else:
+        setattr(sample.groups["passive"], "pressure_a" if what == "pressure" else what, math.nan)
+
+
+def test_returning_in_the_middle_of_the_ramp_with_the_opposite_sign_is_bumpless():
+    each = compensator(ramp_time=1.0)
+    outputs, time = run_up(each, until=2.0)
+    torques = [outputs[-1].friction_torque]
+    for k in range(120):
+        sample = ahc_sample(time + k * PERIOD, 100.0 if k < 10 else -100.0)
+        if k < 10:
+            _lose(sample, "pressure")
+        torques.append(each.step(sample).friction_torque)
+    assert np.abs(np.diff(torques)).max() < 3.0 * PERIOD * abs(torques[0])  # bridge 1.6 and fade 1 per second
+    assert torques[-1] == pytest.approx(-torques[0], rel=1e-9)
+
+
+def test_expiry_fades_the_output_and_changes_nothing():
+    each = compensator(max_age=0.1)
+    outputs, time = run_up(each)
+    last = outputs[-1]
+    assert each.expire(last.time + 0.09) is last
+    assert each.expire(last.time + 0.2).friction_torque == pytest.approx(0.5 * last.friction_torque)
+    assert each.expire(last.time + 5.0).friction_torque == 0.0
+    twin = compensator(max_age=0.1)
+    run_up(twin)
+    assert each.step(ahc_sample(time, 100.0)) == twin.step(ahc_sample(time, 100.0))
+
+
+def test_a_silent_spell_counts_as_expired_whether_or_not_a_watchdog_looked():
+    each = compensator()
+    _, time = run_up(each)
+    out = each.step(ahc_sample(time + 5.0, 100.0))
+    assert abs(out.friction_torque) < 1e-9
+    assert out.state == "fading"
+
+
+def test_time_stepping_back_holds_the_output_for_that_sample_and_carries_on():
+    each = compensator()
+    outputs, _ = run_up(each)
+    out = each.step(ahc_sample(0.0, 100.0))
+    assert out.friction_torque == outputs[-1].friction_torque
+    assert each.step(ahc_sample(PERIOD, 100.0)).friction_torque == pytest.approx(out.friction_torque)
+    assert each.status()["time_steps_back"] == 1
+
+
+def test_nan_and_infinity_never_leave():
+    each = compensator()
+    rng = np.random.default_rng(3)
+    values = [math.nan, math.inf, -math.inf, 1e308, -1e308, 0.0, 1e-308]
+    for k in range(600):
+        sample = ahc_sample(k * PERIOD, 100.0)
+        for target, name in _channels(sample):
+            if rng.random() < 0.15:
+                setattr(target, name, values[rng.integers(len(values))])
+        out = each.step(sample)
+        assert math.isfinite(out.friction_torque)
+        assert math.isfinite(out.pressure)
+        assert abs(out.friction_torque) <= CRANE.absolute_torque_limit
+    outputs = [each.step(ahc_sample(12.0 + k * PERIOD, 100.0)) for k in range(50)]
+    assert outputs[-1].state == "active"
+
+
+def _channels(sample):
+    yield from ((sample, name) for name in ("time", "motor_speed", "speed_reference", "hook_load"))
+    for group in sample.groups.values():
+        yield from ((group, name) for name in ("pressure_a", "pressure_b", "displacement"))
+
+
+# -- models
+def test_a_model_swap_is_bumpless_and_arrives():
+    each = compensator(ramp_time=0.5)
+    _, time = run_up(each, until=2.0)
+    learned = SEED.with_values({"C6": SEED.value("C6") * 1.3})
+    before = each.step(ahc_sample(time, 100.0)).friction_torque
+    each.load_model(learned)
+    torques = [each.step(ahc_sample(time + (k + 1) * PERIOD, 100.0)).friction_torque for k in range(60)]
+    target = 0.9 * model_torque(learned, ahc_sample(0.0, 100.0), 100.0)
+    assert torques[-1] == pytest.approx(target, rel=1e-9)
+    assert np.abs(np.diff([before, *torques])).max() <= 1.01 * (target - before) * PERIOD / 0.5
+
+
+@pytest.mark.parametrize("factor", [0.49, 1.51])
+def test_a_model_outside_half_the_seed_is_refused_and_the_last_good_one_kept(factor):
+    each = compensator()
+    good = SEED.with_values({"C6": SEED.value("C6") * 1.2})
+    each.load_model(good)
+    with pytest.raises(InputError, match="K4 .*last good model is kept"):
+        each.load_model(SEED.with_values({"K4": SEED.value("K4") * factor}))
+    assert each.model is good
+    assert each.status()["refused_models"] == 1
+
+
+def test_disabling_fades_out_and_enabling_fades_in():
+    each = compensator()
+    outputs, time = run_up(each)
+    each.set_enabled(False)
+    off = [each.step(ahc_sample(time + k * PERIOD, 100.0)) for k in range(20)]
+    assert off[-1].state == "disabled"
+    assert off[-1].friction_torque == 0.0
+    assert np.abs(np.diff([outputs[-1].friction_torque, *(o.friction_torque for o in off)])).max() < 0.11 * abs(
+        outputs[-1].friction_torque
+    )
+    each.set_enabled(True)
+    on = [each.step(ahc_sample(time + 1 + k * PERIOD, 100.0)) for k in range(20)]
+    assert on[-1].friction_torque == pytest.approx(outputs[-1].friction_torque)
+
+
+# -- configuration
+def test_measured_speed_on_a_torque_commanded_drive_is_refused_unless_very_smooth():
+    with pytest.raises(InputError, match="reversal_speed"):
+        CompensatorConfig(drive="torque", velocity_source="measured")
+    CompensatorConfig(drive="torque", velocity_source="measured", reversal_speed=80.0)
+    CompensatorConfig(drive="torque", velocity_source="reference")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ({"scal": 0.9}, "unknown key 'scal'"),
+        ({"scale": 2.0}, "scale must be 0 ... 1.3"),
+        ({"scale": math.nan}, "scale must be"),
+        ({"scale": True}, "scale must be a number"),
+        ({"velocity_source": "guessed"}, "must be one of reference, measured"),
+        ({"gains": {"stribeck": "much"}}, "gains.stribeck must be a number"),
+        ({"gains": 1.0}, "gains must be a mapping"),
+    ],
+)
+def test_wrong_settings_are_refused_in_one_line(content, said):
+    with pytest.raises(InputError, match=said) as caught:
+        from_mapping(CompensatorConfig, content, "compensator.yaml")
+    assert str(caught.value).startswith("compensator.yaml: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_gains_for_unknown_terms_are_refused():
+    with pytest.raises(InputError, match="there is no term 'strobeck'"):
+        compensator(gains={"strobeck": 1.0})
+
+
+def test_what_only_a_sensor_shows_is_not_compensated():
+    model = load_model("emps_symmetric")
+    each = FeedforwardCompensator(load_crane("emps"), model, CompensatorConfig(scale=1.0, ramp_time=0.1))
+    for k in range(50):
+        sample = Sample(k * 0.01, 0.5, speed_reference=0.5, motor_torque=1.0)
+        out = each.step(sample)
+    width = each.config.reversal_speed
+    assert out.friction_torque == pytest.approx((20.39 + 203.5 * 0.5) * math.tanh(0.5 / width))
+
+
+def test_a_hydraulic_model_is_refused_on_an_electric_drive():
+    each = FeedforwardCompensator(load_crane("emps"), load_model("emps_symmetric"))
+    with pytest.raises(InputError, match="hydraulic terms"):
+        each.load_model(replace(SEED, name="wrong crane"))

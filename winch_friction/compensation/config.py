@@ -1,0 +1,76 @@
+"""What a compensator can be told, with the limits of every value."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.options import check, option
+
+# below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed (DOMAIN
+# section 10)
+SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s
+
+
+@dataclass(frozen=True)
+class CompensatorConfig:
+    """Settings of the friction feedforward; SI. Raises `InputError` for values out of range."""
+
+    velocity_source: str = option(
+        "reference", choices=("reference", "measured"), doc="speed that the friction is taken at"
+    )
+    drive: str = option(
+        "pump", choices=("pump", "torque"), doc="what the controller commands: a pump's flow, or torque"
+    )
+    scale: float = option(0.9, lower=0.0, upper=1.3, doc="share of the friction that is compensated; 0.8-0.9 is robust")
+    gains: Mapping[str, float] = option(
+        {}, lower=0.0, upper=1.5, doc="gain by term name on top of the scale, 1 unless given"
+    )
+    lead: float = option(0.0, lower=0.0, upper=0.5, unit="s", doc="how far ahead the speed is extrapolated")
+    reversal_time: float = option(0.05, lower=0.0, upper=1.0, unit="s", doc="the sign change is spread over this time")
+    reversal_speed: float = option(3.0, lower=0.01, upper=200.0, unit="rad/s", doc="... and over at least this speed")
+    jerk_filter: float = option(0.1, lower=0.0, upper=2.0, unit="s", doc="time constant of the extrapolation's jerk")
+    acceleration_filter: float = option(
+        0.0,
+        lower=0.0,
+        upper=2.0,
+        unit="s",
+        doc="time constant of the acceleration; needs to be above 0 for measured speed",
+    )
+    load: float = option(
+        math.nan, lower=0.0, upper=1e7, unit="kg", may_be_nan=True,
+        doc="hanging mass where hook_load is not measured; NaN: from the pressures",
+    )  # fmt: skip
+    load_filter: float = option(
+        5.0, lower=0.1, upper=120.0, unit="s", doc="time constant of the load from the pressures"
+    )
+    pressure_group: str = option(
+        "active", doc="motor group that carries the friction; the only group where there is one"
+    )
+    absolute_limit: float = option(
+        math.inf, lower=0.0, upper=math.inf, unit="N*m", doc="bound of the torque; never above the crane's own"
+    )
+    envelope: float = option(1.3, lower=0.0, upper=2.0, doc="bound of the torque as a multiple of the seed's friction")
+    slew_limit: float = option(2.0e4, lower=1.0, upper=1e7, unit="N*m/s", doc="bound of the torque's rate")
+    ramp_time: float = option(
+        1.0, lower=0.02, upper=60.0, unit="s", doc="time to fade in, out, and over to another model"
+    )
+    max_age: float = option(0.1, lower=0.001, upper=10.0, unit="s", doc="age beyond which an input counts as lost")
+    max_ages: Mapping[str, float] = option(
+        {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0},
+        lower=0.001, upper=3600.0, unit="s", doc="the same by input where it differs",
+    )  # fmt: skip
+    seed_range: float = option(0.5, lower=0.0, upper=0.5, doc="how far a model's parameters may lie from the seed's")
+    min_displacement: float = option(0.1, lower=0.01, upper=1.0, doc="floor of D/D_max in the pressure feedforward")
+
+    def __post_init__(self) -> None:
+        check(self)
+        if (
+            self.drive == "torque"
+            and self.velocity_source == "measured"
+            and self.reversal_speed < SAFE_MEASURED_SPEED_WIDTH
+        ):
+            raise InputError(
+                "velocity_source 'measured' makes a torque-commanded drive cycle at reversal: use the reference speed, "
+                f"or set reversal_speed to at least {SAFE_MEASURED_SPEED_WIDTH:g} rad/s (found {self.reversal_speed:g})"
+            )

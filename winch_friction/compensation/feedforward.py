@@ -1,0 +1,21 @@
+"""What a compensator says at one instant."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Feedforward:
+    """Friction feedforward at `time` s.
+
+    `friction_torque`: N m, total, at the motor shaft, to be added to what the drive needs without friction;
+    `pressure`: the same in Pa on the group that carries it (0 for an electric drive); `speed`: rad/s at which it
+    was taken; `state`: disabled, waiting (an input was never seen), stale (an input was lost), fading (in), active.
+    """
+
+    time: float
+    friction_torque: float
+    pressure: float
+    speed: float
+    state: str
+    drum_torque: float
+    fade: float

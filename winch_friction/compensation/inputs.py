@@ -1,0 +1,49 @@
+"""Which inputs a feedforward needs, and how its torque becomes a pressure."""
+
+import math
+from collections.abc import Set
+
+from winch_friction.compensation.config import CompensatorConfig
+from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.torque_balance import pressure_feedforward
+
+
+def missing_inputs(sample: Sample, crane: Crane, reads: Set[str], source: str, load_known: bool) -> tuple[str, ...]:
+    """Columns that the feedforward needs and the sample does not have."""
+    needed = {"speed_reference" if source == "reference" else "motor_speed"}
+    if "oil_temperature" in reads:
+        needed.add("oil_temperature")
+    lost = [name for name in sorted(needed) if not math.isfinite(getattr(sample, name))]
+    if crane.electric:
+        return (*lost, *_missing_torque(sample, reads, load_known))
+    return (*lost, *_missing_groups(sample))
+
+
+def _missing_torque(sample: Sample, reads: Set[str], load_known: bool) -> tuple[str, ...]:
+    from_balance = "drum_torque" in reads and not load_known and not math.isfinite(sample.hook_load)
+    return ("motor_torque",) if from_balance and not math.isfinite(sample.motor_torque) else ()
+
+
+def _missing_groups(sample: Sample) -> tuple[str, ...]:
+    if not sample.groups:
+        return ("motor groups",)
+    return tuple(
+        f"{name}.{channel}"
+        for name, group in sample.groups.items()
+        for channel in GROUP_CHANNELS
+        if not math.isfinite(getattr(group, channel))
+    )
+
+
+def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:
+    """Pa on the carrying group per N m at the shaft; 0 for an electric drive or a group that is not there.
+
+    The displacement has a floor: a group that is swung out cannot carry friction, and its pressure would be without
+    bound.
+    """
+    name = config.pressure_group if len(sample.groups) != 1 else next(iter(sample.groups))
+    if crane.electric or name not in sample.groups:
+        return 0.0
+    displacement = max(sample.groups[name].displacement, config.min_displacement * crane.max_displacement)
+    return pressure_feedforward(1.0, crane.motor_count(name), displacement)

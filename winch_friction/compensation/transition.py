@@ -1,0 +1,44 @@
+"""Getting from one feedforward to another without a bump: fading in and out, and over to another model."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Fade:
+    """A factor between 0 and 1 that moves at 1/`duration` per second."""
+
+    duration: float  # s
+    value: float = 0.0
+
+    def step(self, up: bool, dt: float) -> float:
+        """Move for `dt` s."""
+        change = dt / self.duration
+        self.value = min(1.0, self.value + change) if up else self.after(dt)
+        return self.value
+
+    def after(self, dt: float) -> float:
+        """What fading out for `dt` s would leave."""
+        return max(0.0, self.value - dt / self.duration)
+
+
+@dataclass
+class Bridge:
+    """A difference that is carried along and let go over `duration` s, so that the sum starts where the old value
+    ended."""
+
+    duration: float  # s
+    _height: float = 0.0
+    _left: float = 0.0
+
+    def start(self, difference: float) -> None:
+        """Carry `difference` (old minus new) from now on, on top of nothing else."""
+        self._height, self._left = difference, self.duration
+
+    def value(self) -> float:
+        """What is still carried."""
+        return self._height * self._left / self.duration
+
+    def step(self, dt: float) -> float:
+        """Let go for `dt` s."""
+        self._left = max(0.0, self._left - dt)
+        return self.value()

@@ -38,6 +38,7 @@ VERBS = (
     Verb("gap", "gap", "Where model and runs disagree, the missing effect's name, the repaired model."),
     Verb("fleet", "fleet", "The same verbs over many bags, on Dask."),
     Verb("bench", "bench", "Speed as ratios against what one would use instead."),
+    Verb("terms", "terms", "The declared friction terms: equations, parameters, sources."),
     Verb("convert", "convert", "Run files from one format to another; the EMPS benchmark to a run."),
 )
 

@@ -1,5 +1,13 @@
 """The declared terms, grouped by the place where the friction arises."""
 
-from winch_friction.physics.friction.terms import drive, gear_and_drum, motor
+from winch_friction.physics.friction.terms import (
+    drive,
+    effects_memory,
+    effects_motor,
+    effects_winch,
+    gear_and_drum,
+    motor,
+    paper1,
+)
 
-__all__ = ["drive", "gear_and_drum", "motor"]
+__all__ = ["drive", "effects_memory", "effects_motor", "effects_winch", "gear_and_drum", "motor", "paper1"]

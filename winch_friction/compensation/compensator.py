@@ -85,6 +85,21 @@ class FeedforwardCompensator:
         """Fade in or out from the next step on."""
         self._enabled = bool(enabled)
 
+    def configure(self, config: CompensatorConfig) -> None:
+        """Other settings from the next step on, without a bump; the model and the load estimate stay.
+
+        Raises `InputError`, and changes nothing, for gains for unknown terms.
+        """
+        check_gains(config.gains)
+        self.config = config
+        self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)
+        self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
+        self._load.configure(config.load, config.load_filter)
+        self._limits.absolute = min(config.absolute_limit, self.crane.absolute_torque_limit)
+        self._limits.slew = config.slew_limit
+        self._fade.duration = self._bridge.duration = config.ramp_time
+        self._bump = True
+
     def load_model(self, model: FrictionModel) -> None:
         """Use another model from the next step on, without a bump.
 

@@ -21,6 +21,10 @@ class DrumTorque:
         self._time_constant = time_constant
         self.reset()
 
+    def configure(self, load: float, time_constant: float) -> None:
+        """Other settings, the estimate kept."""
+        self._load, self._time_constant = load, time_constant
+
     def reset(self) -> None:
         """Forget the estimate from the pressures."""
         self._estimate = math.nan

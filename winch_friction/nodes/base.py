@@ -1,0 +1,232 @@
+"""What the nodes have in common: parameters, lifecycle, time jumps, diagnostics, services."""
+
+import functools
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, JumpThreshold
+from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from std_srvs.srv import SetBool, Trigger
+
+from winch_friction.nodes.messages import diagnostic_array, diagnostic_status
+from winch_friction.nodes.options import FIXED, NodeOptions
+from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+FORWARD_JUMP = 5.0  # s; a simulated clock that leaps further was restarted or skipped a piece of the recording
+OK, WARN, ERROR = 0, 1, 2
+
+
+def said_aloud(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., TransitionCallbackReturn]:
+    """Log what a transition raises: rclpy would only answer ERROR and keep the reason to itself."""
+
+    @functools.wraps(transition)
+    def wrapped(node: Any, state: LifecycleState) -> TransitionCallbackReturn:
+        try:
+            return transition(node, state)
+        except Exception:
+            node.get_logger().error(f"{transition.__name__} failed:\n{traceback.format_exc()}")
+            raise
+
+    return wrapped
+
+
+@dataclass(frozen=True)
+class Health:
+    """What a node says about one of its parts: level (0 ok, 1 warn, 2 error), one line, and numbers."""
+
+    part: str
+    level: int
+    summary: str
+    values: Mapping[str, Any]
+
+
+class WinchNode(LifecycleNode):
+    """A lifecycle node around one object that steps through samples.
+
+    A node says what it is made of in `build` (after the files are read), what it does while active in `start` and
+    `stop`, and how it fares in `health`.
+    """
+
+    def __init__(self, name: str, *settings: OptionParameters[Any], **node_arguments: Any) -> None:
+        super().__init__(name, **node_arguments)
+        self._node_parameters = OptionParameters(NodeOptions, fixed=FIXED)
+        self._settings = (self._node_parameters, *settings)
+        for each in self._settings:
+            each.declare(self)
+        self.options: NodeOptions = self._node_parameters.read(self)
+        self.check_settings({})
+        self.crane: Crane
+        self._active_entities: list[Callable[[], Any]] = []
+        self._switches: list[Any] = []
+        self._publishers_made: list[Any] = []
+        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self.add_on_set_parameters_callback(self._on_set)
+        self.add_post_set_parameters_callback(self._on_post_set)
+        self._jump_handle = self.get_clock().create_jump_callback(_threshold(), post_callback=self._on_clock_jump)
+
+    # -- what a node fills in
+    def build(self, crane: Crane, model: FrictionModel) -> None:
+        """Make the object inside and its publishers; `InputError` refuses to configure."""
+        raise NotImplementedError
+
+    def start(self) -> None:
+        """Subscribe and begin."""
+
+    def stop(self) -> None:
+        """End and unsubscribe."""
+
+    def save(self) -> None:
+        """Write what should outlive the node."""
+
+    def forget(self) -> None:
+        """Start anew after a jump of time or on request."""
+
+    def health(self) -> Sequence[Health]:
+        """The node's parts, for diagnostics."""
+        return ()
+
+    def check_settings(self, changes: Mapping[str, Any]) -> None:
+        """Raise `InputError` when the settings with these changes do not fit; changes nothing."""
+        for each in self._settings:
+            each.read(self, changes)
+
+    def apply_settings(self) -> None:
+        """Take over changed parameters."""
+
+    # -- lifecycle
+    @said_aloud
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Read the files, build; a bad file is one line and leaves the node unconfigured."""
+        try:
+            self.options = self._node_parameters.read(self)
+            self.crane = load_crane(self.options.crane)
+            self.build(self.crane, load_model(self.options.model_file))
+        except InputError as error:
+            self.get_logger().error(str(error))
+            return TransitionCallbackReturn.FAILURE
+        self._diagnostics = self.publisher(DiagnosticArray, "/diagnostics", 10)
+        return TransitionCallbackReturn.SUCCESS
+
+    @said_aloud
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Enable the publishers, then let the inputs in."""
+        super().on_activate(state)
+        self.forget()
+        self.start()
+        self.every(self.options.diagnostics_period, self._publish_health)
+        return TransitionCallbackReturn.SUCCESS
+
+    @said_aloud
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Shut the inputs out, keep what was learned."""
+        self._halt()
+        return super().on_deactivate(state)
+
+    @said_aloud
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Take down what `build` made."""
+        self._take_down()
+        return TransitionCallbackReturn.SUCCESS
+
+    @said_aloud
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """From any state: keep what was learned, then take down."""
+        if state.label == "active":
+            self._halt()
+            super().on_deactivate(state)
+        self._take_down()
+        return TransitionCallbackReturn.SUCCESS
+
+    def _halt(self) -> None:
+        self.stop()
+        for end in self._active_entities:
+            end()
+        self._active_entities.clear()
+        self.save()
+
+    def _take_down(self) -> None:
+        while self._switches:
+            self.destroy_service(self._switches.pop())
+        while self._publishers_made:
+            self.destroy_lifecycle_publisher(self._publishers_made.pop())
+
+    # -- building blocks
+    def publisher(self, message_type: Any, topic: str, qos: Any, **arguments: Any) -> Any:
+        """A publisher that is silent unless the node is active, gone after cleanup."""
+        made = self.create_lifecycle_publisher(message_type, topic, qos, **arguments)
+        self._publishers_made.append(made)
+        return made
+
+    def every(self, period: float, action: Callable[[], None]) -> None:
+        """Call `action` on the steady clock while active: timers on ROS time freeze when it steps back (rclpy#1490)."""
+        timer = self.create_timer(period, action, clock=self.steady_clock)
+        self._active_entities.append(lambda: self.destroy_timer(timer))
+
+    def while_active(self, subscription: Any) -> None:
+        """Drop a subscription when the node stops being active."""
+        self._active_entities.append(lambda: self.destroy_subscription(subscription))
+
+    def trigger(self, name: str, action: Callable[[], str]) -> None:
+        """A Trigger service; `action` says what it did, `InputError` is its refusal."""
+        self._switches.append(self.create_service(Trigger, f"~/{name}", lambda _, response: _answer(action, response)))
+
+    def switch(self, name: str, action: Callable[[bool], str]) -> None:
+        """A SetBool service."""
+
+        def answer(request: Any, response: Any) -> Any:
+            return _answer(lambda: action(request.data), response)
+
+        self._switches.append(self.create_service(SetBool, f"~/{name}", answer))
+
+    def ros_now(self) -> float:
+        """The node's clock in s."""
+        return float(self.get_clock().now().nanoseconds * 1e-9)
+
+    # -- parameters
+    def _on_set(self, changes: Sequence[Any]) -> SetParametersResult:
+        try:
+            self.check_settings({each.name: each.value for each in changes})
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _on_post_set(self, changes: Sequence[Any]) -> None:
+        self.options = self._node_parameters.read(self)
+        self.apply_settings()
+
+    # -- time and diagnostics
+    def _on_clock_jump(self, jump: Any) -> None:
+        self.get_logger().info("time jumped: starting anew")
+        self.forget()
+
+    def _publish_health(self) -> None:
+        name = self.get_fully_qualified_name().lstrip("/")
+        statuses = [
+            diagnostic_status(f"{name}: {each.part}", self.crane.name, each.level, each.summary, each.values)
+            for each in self.health()
+        ]
+        self._diagnostics.publish(diagnostic_array(self.get_clock().now().to_msg(), statuses))
+
+
+def _threshold() -> JumpThreshold:
+    forward, backward = Duration(nanoseconds=int(FORWARD_JUMP * 1e9)), Duration(nanoseconds=-1)
+    return JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
+
+
+def _answer(action: Callable[[], str], response: Any) -> Any:
+    try:
+        response.message, response.success = action(), True
+    except InputError as error:
+        response.message, response.success = str(error), False
+    return response

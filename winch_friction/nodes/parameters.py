@@ -1,0 +1,96 @@
+"""ROS parameters from option dataclasses: declared once, with description and range, and read back as one object."""
+
+import math
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from typing import Any, Generic, TypeVar
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.options import Limits, default_of, from_mapping, limits_of
+
+T = TypeVar("T")
+_LARGEST = sys.float_info.max
+
+
+class OptionParameters(Generic[T]):
+    """The fields of an option dataclass as parameters of a node.
+
+    A mapping field becomes one parameter per key, `gains.stribeck`; `keys` names keys beyond those of the default.
+    `fixed` names the fields that cannot change while the node lives.
+    """
+
+    def __init__(
+        self,
+        kind: type[T],
+        *,
+        fixed: Iterable[str] = (),
+        keys: Mapping[str, Mapping[str, float]] | None = None,
+        skip: Iterable[str] = (),
+    ) -> None:
+        self.kind = kind
+        self.fixed = frozenset(fixed)
+        self._keys = dict(keys or {})
+        self._fields = [each for each in fields(kind) if each.name not in frozenset(skip)]  # type: ignore[arg-type]
+        self.names: dict[str, tuple[str, str | None]] = {}
+
+    def declare(self, node: Any) -> None:
+        """Declare every field; a bad override is an `InputError` that names the parameter."""
+        for each in self._fields:
+            for name, key, default in self._entries(each):
+                self.names[name] = (each.name, key)
+                declare(node, name, default, limits_of(each), each.name in self.fixed)
+
+    def _entries(self, each: Any) -> list[tuple[str, str | None, Any]]:
+        default = default_of(each)
+        if not isinstance(default, dict):
+            return [(each.name, None, list(default) if isinstance(default, tuple) else default)]
+        merged = {**default, **self._keys.get(each.name, {})}
+        return [(f"{each.name}.{key}", key, float(value)) for key, value in merged.items()]
+
+    def read(self, node: Any, changes: Mapping[str, Any] | None = None) -> T:
+        """The options as the parameters stand, with `changes` by parameter name; `InputError` when they do not fit."""
+        content: dict[str, Any] = {}
+        for name, (option, key) in self.names.items():
+            value = changes[name] if changes and name in changes else node.get_parameter(name).value
+            if key is None:
+                content[option] = tuple(value) if isinstance(value, (list, tuple)) else value
+            else:
+                content.setdefault(option, {})[key] = value
+        return from_mapping(self.kind, content, f"{node.get_name()}: parameters")
+
+
+def declare(node: Any, name: str, default: Any, limits: Limits, read_only: bool = False) -> None:
+    """Declare one parameter with its descriptor."""
+    try:
+        if not node.has_parameter(name):
+            node.declare_parameter(name, default, descriptor(default, limits, read_only))
+    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+        allowed = f" ({limits.lower:g} ... {limits.upper:g})" if isinstance(default, (int, float)) else ""
+        raise InputError(f"{node.get_name()}: parameter '{name}': {_one_line(error)}{allowed}") from error
+
+
+def descriptor(default: Any, limits: Limits, read_only: bool) -> ParameterDescriptor:
+    """Description and range of a parameter."""
+    unit = f" [{limits.unit}]" if limits.unit not in ("", "1") else ""
+    choices = f" One of: {', '.join(limits.choices)}." if limits.choices else ""
+    made = ParameterDescriptor(description=f"{limits.doc}{unit}{choices}", read_only=read_only)
+    bounded = math.isfinite(limits.lower) or math.isfinite(limits.upper)
+    if isinstance(default, float) and bounded:
+        made.floating_point_range = [_range(FloatingPointRange, limits, _LARGEST, float)]
+    elif isinstance(default, int) and not isinstance(default, bool) and bounded:
+        made.integer_range = [_range(IntegerRange, limits, 2**62, int)]
+    return made
+
+
+def _range(kind: Any, limits: Limits, largest: Any, cast: Any) -> Any:
+    lower = cast(limits.lower) if math.isfinite(limits.lower) else -largest
+    upper = cast(limits.upper) if math.isfinite(limits.upper) else largest
+    return kind(from_value=lower, to_value=upper)
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())

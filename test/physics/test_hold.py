@@ -41,4 +41,15 @@ def test_fills_the_holes_of_a_run_and_never_replaces_what_it_says():
     run = Run("holes", {name: np.array(values) for name, values in columns.items()})
     samples = list(InputHold().samples(run))
     assert [s.motor_speed for s in samples] == [1.0, 2.0, 3.0, 4.0]
-    assert [s.groups["main"].pressure_a for s in samples] == [5.0, 5.0, 6.0, 6.0]
+    assert [s.groups["main"].pressure_a for s in samples] == [5.0, 5.0, 6.0, 5.0]
+
+
+def test_the_order_of_arrival_between_inputs_does_not_matter():
+    early, late = InputHold(), InputHold()
+    for stamp in (0.0, 0.02):
+        early.put("motor_torque", stamp, 10.0 + stamp)
+    early.put("motor_speed", 0.0, 1.0)
+    late.put("motor_torque", 0.0, 10.0)
+    late.put("motor_speed", 0.0, 1.0)
+    assert early.sample(0.0).motor_torque == late.sample(0.0).motor_torque
+    assert early.sample(0.0).motor_torque == 10.0

@@ -1,0 +1,1 @@
+"""Long campaigns whose tables are committed under docs/."""

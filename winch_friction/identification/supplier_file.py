@@ -1,0 +1,62 @@
+"""Reading a supplier's table: CSV with units in the headers, efficiency or torque."""
+
+from pathlib import Path
+
+import numpy as np
+
+from winch_friction.identification.supplier_table import SupplierTable
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.records.table import Table, read_table
+
+_AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
+_LOSSES = ("efficiency", "torque", "torque_loss")
+
+
+def read_supplier_table(path: str | Path, max_displacement: float | None = None) -> SupplierTable:
+    """A supplier's table with columns speed, pressure, displacement and one of three for the loss.
+
+    These are efficiency (hydro-mechanical), torque (at the shaft) or torque_loss; a column weight is optional. Raises
+    `InputError` naming file, row and column.
+    """
+    table = read_table(Path(path))
+    axes = {name: _positive(table, name, unit) for name, unit in _AXES.items()}
+    displacement = axes["displacement"]
+    return SupplierTable(
+        name=table.name,
+        torque_loss=_torque_loss(table, axes["pressure"] * displacement),
+        weight=_positive(table, "weight", "1") if "weight" in table else np.ones(len(displacement)),
+        max_displacement=float(max_displacement or displacement.max()),
+        **axes,
+    )
+
+
+def _torque_loss(table: Table, nominal: FloatArray) -> FloatArray:
+    given = [name for name in _LOSSES if name in table]
+    if len(given) != 1:
+        found = " and ".join(given) or "none"
+        raise InputError(f"{table.path}: exactly one of the columns {', '.join(_LOSSES)} is needed, found {found}")
+    if given == ["torque_loss"]:
+        return table.column("torque_loss", "N*m")
+    if given == ["torque"]:
+        return nominal - _torque(table, nominal)
+    return (1.0 - _efficiency(table)) * nominal
+
+
+def _efficiency(table: Table) -> FloatArray:
+    values = table.column("efficiency", "1")
+    table.refuse("efficiency", values > 1.0, "is above 1 (100 %); a motor cannot give more torque than D dp")
+    table.refuse("efficiency", values <= 0.0, "is not above 0; leave such rows out")
+    return values
+
+
+def _torque(table: Table, nominal: FloatArray) -> FloatArray:
+    values = table.column("torque", "N*m")
+    table.refuse("torque", values > nominal * (1 + 1e-9), "is above D dp: the efficiency would exceed 1")
+    return values
+
+
+def _positive(table: Table, column: str, unit: str) -> FloatArray:
+    values = table.column(column, unit)
+    table.refuse(column, values <= 0.0, "must be above 0")
+    return values

@@ -1,0 +1,95 @@
+"""The supplier's data: torque loss of one motor over speed, pressure and displacement (paper 2 section 2.1)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from winch_friction.identification.fit_data import FitData
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.winch import operating_point
+
+WEIGHTINGS = ("equal", "nominal", "column")
+
+
+@dataclass(frozen=True)
+class SupplierTable:
+    """Rows of a supplier's table, SI, arrays (n,): speed rad/s, pressure Pa, displacement m^3/rad, torque loss N m.
+
+    `weight` is the table's own weight column (ones without it); `max_displacement` m^3/rad.
+    """
+
+    name: str
+    speed: FloatArray
+    pressure: FloatArray
+    displacement: FloatArray
+    torque_loss: FloatArray
+    weight: FloatArray
+    max_displacement: float
+
+    def __len__(self) -> int:
+        return len(self.speed)
+
+    @property
+    def nominal_torque(self) -> FloatArray:
+        """T_N = D dp in N m (paper 1 eq 21)."""
+        return self.displacement * self.pressure
+
+    def where(self, keep: FloatArray) -> "SupplierTable":
+        """The rows of a mask (n,)."""
+        columns = ("speed", "pressure", "displacement", "torque_loss", "weight")
+        return replace(self, **{name: getattr(self, name)[keep] for name in columns})
+
+    def fit_data(self, weighting: str = "nominal") -> FitData:
+        """The table as data for a fit: `nominal` divides errors by D dp (a table's rounding is one of
+        efficiency), `equal` is the papers' plain squared error, `column` uses the table's own weights. Groups are the
+        displacements; errors persist over a displacement and over a pressure, so both are clusters.
+        """
+        return FitData(
+            name=self.name,
+            points=motor_points(self.speed, self.pressure, self.displacement),
+            torque=self.torque_loss,
+            weight=self._weights(weighting),
+            group=np.round(self.displacement / CM3_PER_REV, 1),
+            cluster=np.column_stack([self.displacement, self.pressure]).round(12),
+        )
+
+    def _weights(self, weighting: str) -> FloatArray:
+        if weighting == "equal":
+            return np.ones(len(self))
+        if weighting == "column":
+            return self.weight
+        if weighting == "nominal":
+            inverse = 1.0 / self.nominal_torque**2
+            return inverse / inverse.mean()
+        raise InputError(f"weighting '{weighting}' is not known; weightings are {', '.join(WEIGHTINGS)}")
+
+
+@dataclass(frozen=True)
+class FitRange:
+    """Which rows count; paper 2's by default: 400-2500 rpm, 50-350 bar, 50 cm^3/rev to D_max. SI."""
+
+    speed: tuple[float, float] = (400 * RPM, 2500 * RPM)
+    pressure: tuple[float, float] = (50 * BAR, 350 * BAR)
+    displacement: tuple[float, float] = (50 * CM3_PER_REV, float("inf"))
+
+    def select(self, table: SupplierTable) -> SupplierTable:
+        """The rows inside the range; raises `InputError` when none is."""
+        keep = np.ones(len(table), bool)
+        for column in ("speed", "pressure", "displacement"):
+            lower, upper = getattr(self, column)
+            values = getattr(table, column)
+            keep &= (values >= lower * (1 - 1e-9)) & (values <= upper * (1 + 1e-9))
+        if not keep.any():
+            raise InputError(
+                f"{table.name}: no row lies inside the range of the fit; widen speed, pressure or displacement"
+            )
+        return table.where(keep)
+
+
+def motor_points(speed: FloatArray, pressure: FloatArray, displacement: FloatArray) -> tuple[FloatArray, ...]:
+    """Operating points of one motor on its own."""
+    return operating_point(
+        direction=1.0, speed=speed, drum_torque=0.0, groups=[(1.0, pressure, pressure, displacement)], motor_total=1.0
+    )

@@ -1,0 +1,136 @@
+"""Small tables at the desk: CSV with units in brackets in the headers, every defect named by file, row and column."""
+
+import csv
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns as text with their units; numbers are made, converted and checked when a column is asked for.
+
+    `rows` are the file's line numbers, counted from 1 with the header as the first.
+    """
+
+    path: Path
+    cells: Mapping[str, tuple[str, ...]]
+    units: Mapping[str, str | None]
+    rows: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """The table's identity: its file name."""
+        return self.path.name
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.cells
+
+    def column(self, name: str, si_unit: str) -> FloatArray:
+        """A column in SI; raises `InputError` for a missing one, an unknown unit, text and NaN."""
+        if name not in self.cells:
+            raise InputError(f"{self.path}: column '{name}' is missing; the table has {', '.join(self.cells)}")
+        values = np.array(
+            [self._number(text, name, row) for text, row in zip(self.cells[name], self.rows, strict=True)]
+        )
+        return values * _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
+
+    def _number(self, text: str, column: str, row: int) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise InputError(
+                f"{self.path} row {row}: column '{column}' holds {text or 'nothing'!r}, not a finite number"
+            )
+        return value
+
+    def refuse(self, column: str, bad: Any, reason: str) -> None:
+        """Raise `InputError` at the first row where `bad` is true."""
+        if np.any(bad):
+            k = int(np.argmax(bad))
+            raise InputError(f"{self.path} row {self.rows[k]}: column '{column}' = {self.cells[column][k]} {reason}")
+
+
+def read_table(path: Path) -> Table:
+    """A CSV file as a table; lines starting with # are comments."""
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+    numbered = [(k + 1, line) for k, line in enumerate(lines) if line.strip() and not line.startswith("#")]
+    if len(numbered) < 2:
+        raise InputError(f"{path}: a header and at least one row are needed, found {len(numbered)} line(s)")
+    records = list(csv.reader(line for _, line in numbered))
+    return _table(Path(path), records, [row for row, _ in numbered])
+
+
+def _table(path: Path, records: list[list[str]], rows: list[int]) -> Table:
+    headers = [_header(text, path) for text in records[0]]
+    names = [name for name, _ in headers]
+    doubled = [name for name in names if names.count(name) > 1]
+    if doubled:
+        raise InputError(f"{path} row {rows[0]}: column '{doubled[0]}' appears twice")
+    for row, record in zip(rows[1:], records[1:], strict=True):
+        if len(record) != len(names):
+            raise InputError(f"{path} row {row}: {len(record)} cells, the header has {len(names)} columns")
+    cells = {name: tuple(record[k].strip() for record in records[1:]) for k, name in enumerate(names)}
+    return Table(path, cells, dict(headers), tuple(rows[1:]))
+
+
+def _header(text: str, path: Path) -> tuple[str, str | None]:
+    name, bracket, rest = text.strip().partition("[")
+    if bracket and not rest.rstrip().endswith("]"):
+        raise InputError(f"{path}: header '{text}' lacks the closing bracket of its unit")
+    return name.strip().lower().replace(" ", "_"), rest.rstrip().removesuffix("]").strip() if bracket else None
+
+
+def _factor(unit: str | None, si_unit: str, where: str) -> float:
+    """Factor from a header's unit to SI; no bracket means SI already."""
+    if unit is None or unit == si_unit:
+        return 1.0
+    import pint
+
+    registry = _registry()
+    try:
+        given = registry.Quantity(1.0, _spelled(unit))
+        return float(given.to(_spelled(si_unit)).magnitude)
+    except (pint.UndefinedUnitError, pint.DimensionalityError, AttributeError, TypeError, ValueError) as error:
+        raise InputError(f"{where}: unit '{unit}' cannot be read as {si_unit} ({error})".replace("\n", " ")) from error
+    except Exception as error:  # pint's parser raises tokenizer errors of many kinds
+        raise InputError(f"{where}: unit '{unit}' is not a unit") from error
+
+
+def _spelled(unit: str) -> str:
+    return {"%": "percent", "-": "dimensionless", "1": "dimensionless", "rpm": "revolution/minute"}.get(unit, unit)
+
+
+_REGISTRIES: list[Any] = []
+
+
+def _registry() -> Any:
+    if not _REGISTRIES:
+        import pint
+
+        registry: Any = pint.UnitRegistry()
+        registry.define("rev = revolution")
+        _REGISTRIES.append(registry)
+    return _REGISTRIES[0]
+
+
+def write_table(path: Path, columns: Mapping[str, Iterable[Any]], comments: Iterable[str] = ()) -> Path:
+    """Write a CSV table atomically; the keys are whole headers, `speed [rpm]`."""
+    from winch_friction.records.atomic import write_text
+
+    rows = zip(*columns.values(), strict=True)
+    body = [",".join(str(cell) for cell in row) for row in rows]
+    head = [f"# {comment}" for comment in comments]
+    return write_text(path, "\n".join([*head, ",".join(columns), *body]) + "\n")

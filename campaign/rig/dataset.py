@@ -79,19 +79,24 @@ def suitable_flavours(effect: str) -> list[str]:
 
 
 def make_dataset(
-    seed: int, flavour: str, effects: Sequence[tuple[str, float]] = (), truth: Friction | None = None
+    seed: int,
+    flavour: str,
+    effects: Sequence[tuple[str, float]] = (),
+    truth: Friction | None = None,
+    length: float = 1.0,
 ) -> list[Columns]:
     """Twelve runs as SI columns under the names of DESIGN section 3.
 
     `effects` are (identifier, size) with size 1 the catalogue's typical size; `truth` fixes the base parameters, else
-    they are drawn within 1.5 sigma of the shipped prior. Raises KeyError for an unknown flavour or effect.
+    they are drawn within 1.5 sigma of the shipped prior; `length` multiplies the runs' duration of 170-240 s.
+    Raises KeyError for an unknown flavour or effect.
     """
     style = FLAVOURS[flavour]
     rng = np.random.default_rng([seed, sorted(FLAVOURS).index(flavour)])
     truth = truth or draw_friction(rng, style.uniform_truth)
     # a stream of its own, so that the same seed without the effect is the same crane in the same sea
     hidden = Hidden(**strengths(list(effects), np.random.default_rng([seed, 7, 7]), truth))
-    return [_run(plan, style, truth, hidden, rng) for plan in _plans(style, rng)]
+    return [_run(plan, style, truth, hidden, length, rng) for plan in _plans(style, rng)]
 
 
 def _plans(style: Flavour, rng: np.random.Generator) -> list[Plan]:
@@ -110,8 +115,10 @@ def _plans(style: Flavour, rng: np.random.Generator) -> list[Plan]:
     ]  # fmt: skip
 
 
-def _run(plan: Plan, style: Flavour, truth: Friction, hidden: Hidden, rng: np.random.Generator) -> Columns:
-    duration = rng.uniform(170, 240)
+def _run(
+    plan: Plan, style: Flavour, truth: Friction, hidden: Hidden, length: float, rng: np.random.Generator
+) -> Columns:
+    duration = length * rng.uniform(170, 240)
     plant = _plant(plan, style, hidden, rng)
     if plan.ahc:
         heave = profiles.sea(style.irregular_sea, duration, rng.uniform(0.45, 0.95), rng)

@@ -1,0 +1,107 @@
+"""The cases of the gap campaign: what is hidden, in which flavour of data, from which seed."""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from campaign.rig import CATALOGUE, FLAVOURS, OUTSIDE, suitable_flavours
+
+# structurally the same trace (DOMAIN section 3), so not a pair of two
+_TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"}, {"brake_drag", "wear_drift"})
+
+
+@dataclass(frozen=True)
+class Case:
+    """One data set to be diagnosed."""
+
+    kind: str  # null, single, pair, outside
+    effects: tuple[tuple[str, float], ...]
+    flavour: str
+    seed: int
+
+    @property
+    def key(self) -> str:
+        """Its name in the results file."""
+        hidden = "+".join(f"{name}*{size:g}" for name, size in self.effects) or "nothing"
+        return f"{self.kind}/{hidden}/{self.flavour}/{self.seed}"
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many data sets of each kind."""
+
+    nulls: int = 200
+    seeds: int = 10
+    small_seeds: int = 10  # at 0.3
+    tiny_seeds: int = 10  # at 0.1
+    pairs: int = 20
+    pair_seeds: int = 5
+    outside_seeds: int = 10
+
+
+QUICK = Counts(nulls=2, seeds=1, small_seeds=0, tiny_seeds=0, pairs=1, pair_seeds=1, outside_seeds=0)
+
+
+def all_cases(counts: Counts, first_seed: int) -> list[Case]:
+    """Every case, the most telling first: nulls, full size, 0.3, outside, pairs, 0.1. No seed is used twice."""
+    seeds = itertools.count(first_seed)
+    blocks = (
+        _nulls(counts.nulls, seeds),
+        _singles(1.0, counts.seeds, seeds),
+        _singles(0.3, counts.small_seeds, seeds),
+        _outside(counts.outside_seeds, seeds),
+        _pairs(counts.pairs, counts.pair_seeds, seeds),
+        _singles(0.1, counts.tiny_seeds, seeds),
+    )
+    return [case for block in blocks for case in block]
+
+
+def _nulls(count: int, seeds: Iterator[int]) -> list[Case]:
+    names = list(FLAVOURS)
+    return [Case("null", (), names[k % len(names)], next(seeds)) for k in range(count)]
+
+
+def _singles(size: float, count: int, seeds: Iterator[int]) -> list[Case]:
+    return [
+        Case("single", ((effect, size),), _flavour([effect], k), next(seeds))
+        for k in range(count)
+        for effect in CATALOGUE
+    ]
+
+
+def _outside(count: int, seeds: Iterator[int]) -> list[Case]:
+    return [
+        Case("outside", ((effect, 1.0),), _flavour([effect], k), next(seeds))
+        for k in range(count)
+        for effect in OUTSIDE
+    ]
+
+
+def _pairs(pairs: int, count: int, seeds: Iterator[int]) -> list[Case]:
+    chosen = list(itertools.islice(_pair_names(), pairs))
+    return [
+        Case("pair", tuple((name, 1.0) for name in pair), _flavour(list(pair), k), next(seeds))
+        for k in range(count)
+        for pair in chosen
+    ]
+
+
+def _pair_names() -> Iterator[tuple[str, str]]:
+    """Pairs in a fixed random order, so that the first twenty visit most effects."""
+    rng = np.random.default_rng(20)
+    while True:
+        order = list(rng.permutation(list(CATALOGUE)))
+        for first, second in zip(order[::2], order[1::2], strict=False):
+            if not any({first, second} <= tied for tied in _TIED) and _shared_flavours([first, second]):
+                yield str(first), str(second)
+
+
+def _shared_flavours(effects: list[str]) -> list[str]:
+    return [name for name in FLAVOURS if all(name in suitable_flavours(effect) for effect in effects)]
+
+
+def _flavour(effects: list[str], k: int) -> str:
+    flavours = _shared_flavours(effects)
+    return flavours[k % len(flavours)]

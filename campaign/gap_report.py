@@ -1,0 +1,186 @@
+"""The gap campaign's table: issue bars, then every effect, then what went wrong."""
+
+import subprocess
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from campaign.gap_cases import Counts
+
+Row = dict[str, Any]
+
+
+def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
+    """Markdown with the bars, each effect's line and the wrong answers."""
+    failed = [row for row in rows if "error" in row]
+    good = [row for row in rows if "error" not in row]
+    parts = [
+        _head(rows, failed, counts),
+        _bars(good, failed),
+        _effects(good),
+        _outside(good),
+        _pairs(good),
+        _wrong(good),
+    ]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n\n".join(part for part in parts if part) + "\n")
+
+
+def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    seeds = [row["seed"] for row in rows]
+    kinds = Counter(row["kind"] for row in rows)
+    return "\n".join(
+        [
+            "# Naming a missing effect: the gap campaign",
+            "",
+            "Data from `campaign/rig`, a generator that shares no code with the package; 12 runs of 170–240 s at 50 Hz",
+            "per data set; sizes relative to the typical size of each effect.",
+            "",
+            "* Command: `make campaign-gap` (`python -m campaign.gap`; resumable)",
+            f"* Commit: {commit}",
+            f"* Data sets: {len(rows)} of {_planned(counts)} planned"
+            f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",
+            f"* Ended with an error: {len(failed)}",
+        ]
+    )
+
+
+def _planned(c: Counts) -> int:
+    return c.nulls + 27 * (c.seeds + c.small_seeds + c.tiny_seeds) + c.pairs * c.pair_seeds + 9 * c.outside_seeds
+
+
+def share(rows: Sequence[Row], key: str) -> str:
+    """'k of n (p %)'."""
+    k = sum(bool(row[key]) for row in rows)
+    return f"{k} of {len(rows)} ({100 * k / len(rows):.1f} %)" if rows else "–"
+
+
+def _size(row: Row) -> float:
+    return float(row["effects"][0][1]) if row["effects"] else 0.0
+
+
+def _bars(good: Sequence[Row], failed: Sequence[Row]) -> str:
+    singles = [row for row in good if row["kind"] == "single"]
+    lines = ["| what | bar | measured |", "|---|---|---|"]
+    lines.append(
+        f"| null data sets that got anything but `nothing_missing` | ≤ 2 % | {share(_kind(good, 'null'), 'detected')} |"
+    )
+    for size, bar in ((1.0, "≥ 90 %"), (0.3, "≥ 80 %"), (0.1, "shown")):
+        rows = [row for row in singles if _size(row) == size]
+        detected = [row for row in rows if row["detected"]]
+        named, wrong = ("≥ 95 %", "≤ 1 %") if size > 0.2 else ("shown", "shown")
+        lines.append(f"| detected at {size:g} of the size | {bar} | {share(rows, 'detected')} |")
+        lines.append(
+            f"| right name, or set of at most 3, of the detected at {size:g} | {named} | {share(detected, 'right')} |"
+        )
+        lines.append(f"| wrong single name at {size:g} | {wrong} | {share(detected, 'wrong_single')} |")
+    pairs = [row | {"both": row["found"] == 2} for row in _kind(good, "pair")]
+    lines.append(f"| pairs: both found | ≥ 70 % | {share(pairs, 'both')} |")
+    lines.append(f"| pairs: a wrong one | ≤ 5 % | {share(pairs, 'wrong_entry')} |")
+    outside = [
+        row | {"named": row["verdict"] in ("missing_effect", "ambiguous"), "known": _known(row)}
+        for row in _kind(good, "outside")
+    ]
+    lines.append(f"| outside the library: named | ≤ 10 % | {share(outside, 'named')} |")
+    lines.append(f"| outside the library: `unexplained`, right signal first | ≥ 70 % | {share(outside, 'known')} |")
+    lines.append(
+        f"| held-out gap above the noise floor reduced, median of the correctly named at size 1 | ≥ 80 % |"
+        f" {_reduction(singles)} |"
+    )
+    lines.append(
+        f"| time per data set on one core, median and longest | ≤ 60 s on two | {_spread(good, 'seconds', 's')} |"
+    )
+    lines.append(f"| peak memory of the process | < 1.5 GB | {_spread(good, 'megabytes', 'MB')} |")
+    lines.append(f"| data sets that ended with an error | 0 | {len(failed)} |")
+    return "\n".join(lines)
+
+
+def _kind(rows: Sequence[Row], kind: str) -> list[Row]:
+    return [row for row in rows if row["kind"] == kind]
+
+
+def _known(row: Row) -> bool:
+    return row["verdict"] == "unexplained" and row["right_signal"]
+
+
+def _reduction(singles: Sequence[Row]) -> str:
+    values = [r["reduction"] for r in singles if r["right"] and _size(r) == 1.0 and r["reduction"] is not None]
+    return f"{100 * median(values):.0f} % ({len(values)} data sets)" if values else "–"
+
+
+def _spread(rows: Sequence[Row], key: str, unit: str) -> str:
+    values = [row[key] for row in rows]
+    return f"{median(values):.0f} and {max(values):.0f} {unit}" if values else "–"
+
+
+def _effects(good: Sequence[Row]) -> str:
+    table: dict[str, list[Row]] = defaultdict(list)
+    for row in _kind(good, "single"):
+        table[row["effects"][0][0]].append(row)
+    if not table:
+        return ""
+    lines = [
+        "## Every effect",
+        "",
+        "Detected / right (name, or set of at most 3) / wrong single name, of the data sets.",
+        "",
+        "| effect | size 1 | 0.3 | 0.1 | the usual answer at size 1 |",
+        "|---|---|---|---|---|",
+    ]
+    for effect, rows in table.items():
+        cells = [_cell([row for row in rows if _size(row) == size]) for size in (1.0, 0.3, 0.1)]
+        answers = Counter(_answer(row) for row in rows if _size(row) == 1.0).most_common(2)
+        lines.append(f"| `{effect}` | {' | '.join(cells)} | {'; '.join(f'{n}× {a}' for a, n in answers)} |")
+    return "\n".join(lines)
+
+
+def _cell(rows: Sequence[Row]) -> str:
+    if not rows:
+        return "–"
+    detected, right, wrong = (sum(bool(row[key]) for row in rows) for key in ("detected", "right", "wrong_single"))
+    return f"{detected} / {right} / {wrong} of {len(rows)}"
+
+
+def _answer(row: Row) -> str:
+    sets = " + ".join("{" + ", ".join(each) + "}" if len(each) > 1 else each[0] for each in row["sets"])
+    return f"{row['verdict']}: {sets}" if sets else row["verdict"]
+
+
+def _outside(good: Sequence[Row]) -> str:
+    rows = _kind(good, "outside")
+    if not rows:
+        return ""
+    lines = [
+        "## Outside the library",
+        "",
+        "| hidden | flavour | verdict | signals, first to last |",
+        "|---|---|---|---|",
+    ]
+    for row in sorted(rows, key=lambda r: r["effects"][0][0]):
+        signals = ", ".join(row["signals"][:3])
+        lines.append(f"| {row['effects'][0][0]} | {row['flavour']} | {_answer(row)} | {signals} |")
+    return "\n".join(lines)
+
+
+def _pairs(good: Sequence[Row]) -> str:
+    table: dict[str, list[Row]] = defaultdict(list)
+    for row in _kind(good, "pair"):
+        table[" + ".join(name for name, _ in row["effects"])].append(row)
+    if not table:
+        return ""
+    lines = ["## Pairs", "", "| hidden | both found | one found | with a wrong one | of |", "|---|---|---|---|---|"]
+    for pair, rows in table.items():
+        found = Counter(row["found"] for row in rows)
+        lines.append(f"| {pair} | {found[2]} | {found[1]} | {sum(r['wrong_entry'] for r in rows)} | {len(rows)} |")
+    return "\n".join(lines)
+
+
+def _wrong(good: Sequence[Row]) -> str:
+    rows = [r for r in good if (r["kind"] == "null" and r["detected"]) or (r["kind"] == "single" and r["wrong_single"])]
+    if not rows:
+        return ""
+    lines = ["## Wrong answers", "", "| data set | answer |", "|---|---|"]
+    return "\n".join(lines + [f"| {row['key']} | {_answer(row)} |" for row in rows])

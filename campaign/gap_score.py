@@ -1,0 +1,45 @@
+"""Judging one diagnosis (the content of gap.json) against what was hidden."""
+
+from typing import Any
+
+from campaign.gap_cases import Case
+from campaign.rig import OUTSIDE_SIGNAL
+
+LARGEST_SET = 3
+
+
+def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
+    """What the table needs of one answer: detected, right, wrong single names, gap reduction, signals."""
+    truth = {name for name, _ in case.effects}
+    sets = [{effect["name"], *effect.get("indistinguishable_from", [])} for effect in answer["effects"]]
+    verdict = answer["verdict"]
+    named = [each for each in sets if each & truth and len(each) <= LARGEST_SET]
+    signals = (answer.get("unexplained") or {}).get("depends_on") or []
+    return {
+        "verdict": verdict,
+        "sets": [sorted(each) for each in sets],
+        "detected": verdict != "nothing_missing",
+        "right": bool(named) and case.kind == "single",
+        "found": len({name for name in truth if any(name in each for each in sets)}),
+        "wrong_single": any(len(each) == 1 and not each & truth for each in sets),
+        "wrong_entry": any(not each & truth for each in sets),
+        "signals": signals,
+        "right_signal": bool(signals) and signals[0] in _right_signals(case),
+        **_reduction(answer["gap"]),
+    }
+
+
+def _right_signals(case: Case) -> tuple[str, ...]:
+    return OUTSIDE_SIGNAL[case.effects[0][0]] if case.kind == "outside" else ()
+
+
+def _reduction(gap: dict[str, Any]) -> dict[str, float | None]:
+    held = gap["holdout"]
+    before, after, floor = held["before"], held["after"], held["noise_floor"]
+    above = before - floor
+    return {
+        "before": before,
+        "after": after,
+        "floor": floor,
+        "reduction": (before - after) / above if above > 0.02 * floor else None,
+    }

@@ -1,0 +1,76 @@
+"""Headers of run files: `motor_speed [rpm]` is a column with its unit, read with pint, `rev` meaning a revolution.
+
+Angle is a dimension of its own here: `Hz` or `cm^3` alone would leave open whether a revolution or a radian is meant.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray, column_unit
+
+# what people write for the units a winch is logged in; quoted in error messages
+_EXAMPLES = {"rad/s": "rpm", "Pa": "bar", "m^3/rad": "cm^3/rev", "kg": "t", "s": "ms", "rad": "deg", "N*m": "kN*m"}
+
+
+@dataclass(frozen=True)
+class Header:
+    """One header: `text` as it stands, the column's `name`, the `unit` in brackets (empty: SI)."""
+
+    text: str
+    name: str
+    unit: str
+
+    @property
+    def known(self) -> bool:
+        """Whether the name is one of the contract's columns."""
+        return column_unit(self.name) is not None
+
+    def to_si(self, values: FloatArray, where: str) -> FloatArray:
+        """Values of a known column in SI; raises `InputError` for a unit that does not fit."""
+        expected = column_unit(self.name) or "1"
+        if self.unit in ("", expected):
+            return values
+        scale, offset = _conversion(self.unit, expected, f"{where}: column '{self.text}'")
+        return values * scale + offset if offset else values * scale
+
+
+def parse_header(text: str, where: str = "") -> Header:
+    """Name and unit of a header; a bracket that does not close raises `InputError`."""
+    name, bracket, rest = text.strip().partition("[")
+    if bracket and not rest.rstrip().endswith("]"):
+        raise InputError(
+            f"{where}: header '{text}' opens a bracket that does not close; write e.g. 'motor_speed [rpm]'"
+        )
+    return Header(text.strip(), name.strip(), rest.strip().removesuffix("]").strip())
+
+
+def header_text(column: str) -> str:
+    """The header that this package writes for a column: with its SI unit, bare for an unknown one or a plain number."""
+    unit = column_unit(column)
+    return column if unit in (None, "1") else f"{column} [{unit}]"
+
+
+@lru_cache(maxsize=256)
+def _conversion(unit: str, expected: str, where: str) -> tuple[float, float]:
+    """Scale and offset to SI."""
+    registry = _registry()
+    try:
+        at = [registry.Quantity(np.float64(value), unit).to(expected).magnitude for value in (0.0, 1.0)]
+    except Exception as error:  # pint raises whatever its tokenizer and parser meet
+        example = f", e.g. '{_EXAMPLES[expected]}'" if expected in _EXAMPLES else ""
+        raise InputError(f"{where}: unit '{unit}' cannot be read as {expected}{example}") from error
+    return float(at[1] - at[0]), float(at[0])
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    registry: Any = pint.UnitRegistry(on_redefinition="ignore", autoconvert_offset_to_baseunit=True)
+    for definition in ("radian = [angle] = rad", "revolution = 2 * pi * radian = rev", "rpm = rev / minute"):
+        registry.define(definition)
+    return registry

@@ -1,0 +1,62 @@
+"""Run files as Parquet: the same headers as CSV; the run's metadata travels in the schema."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.atomic import atomic_path
+from winch_friction.records.csv_file import unique_headers
+from winch_friction.records.headers import Header, header_text, parse_header
+from winch_friction.records.run_checks import Place, checked_run
+
+_METADATA = b"winch_friction"
+
+
+def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
+    """A run from a Parquet file; raises `InputError` with row (from 1) and column."""
+    table = _table(path)
+    headers = unique_headers([parse_header(name, str(path)) for name in table.column_names], path)
+    place: Place = lambda row: f"row {row + 1}"
+    columns, aside = {}, {}
+    for header, chunked in zip(headers, table.columns, strict=True):
+        if header.known:
+            columns[header.name] = header.to_si(_numbers(path, header, chunked), str(path))
+        else:
+            aside[header.text] = chunked.to_numpy()
+    metadata = json.loads((table.schema.metadata or {}).get(_METADATA, b"{}"))
+    return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata)
+
+
+def write_parquet_run(run: Run, path: Path) -> Path:
+    """Write a run atomically, SI units in the headers, metadata in the schema."""
+    import pyarrow
+    from pyarrow import parquet
+
+    content = {header_text(name): values for name, values in run.columns.items()} | dict(run.aside)
+    metadata = {_METADATA: json.dumps(dict(run.metadata), default=str).encode()}
+    table = pyarrow.table(content).replace_schema_metadata(metadata)
+    with atomic_path(path) as temporary:
+        parquet.write_table(table, temporary)
+    return path
+
+
+def _table(path: Path) -> Any:
+    import pyarrow
+    from pyarrow import parquet
+
+    try:
+        return parquet.ParquetFile(path).read()  # read_table would refuse nothing less, but merges folders
+    except (pyarrow.ArrowException, OSError) as error:
+        raise InputError(f"{path}: not a readable Parquet file ({str(error).splitlines()[0][:100]})") from error
+
+
+def _numbers(path: Path, header: Header, chunked: Any) -> FloatArray:
+    try:
+        return np.asarray(chunked.to_pandas(), dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: column '{header.text}': {chunked.type} values are not numbers") from error

@@ -1,0 +1,146 @@
+"""What is checked of every run that is read, and said by row and column.
+
+Refused with an `InputError`: a required column missing, a row without time, time that goes back, fewer than two rows,
+a required column without any value. Said as a warning of the run: values that are NaN or infinite (kept as
+NaN), an optional column without any value (left out), repeated times (the later rows left out), gaps in time, a run
+shorter than a second, columns that are not of the contract (kept aside).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
+from winch_friction.physics.winch.crane import Crane
+
+GAP = 5.0  # times the median step counts as a gap
+SHORT = 1.0  # s
+_SHOWN = 3  # places named in one warning
+
+Columns = dict[str, FloatArray]
+Place = Callable[[int], str]  # index of a row -> how the file's reader finds it
+
+
+def checked_run(
+    name: str,
+    columns: Columns,
+    *,
+    place: Place,
+    crane: Crane | None = None,
+    complete: bool = True,
+    aside: Mapping[str, Any] | None = None,
+    warnings: Sequence[str] = (),
+    metadata: Mapping[str, Any] | None = None,
+) -> Run:
+    """A run of columns in SI after all checks; `complete=False` asks for `time` alone. Raises `InputError`."""
+    said, aside = list(warnings), dict(aside or {})
+    if aside:
+        said.append(f"{name}: unknown columns kept aside: {', '.join(aside)}")
+    _check_time(name, columns, place)
+    rows = _rows_of_new_time(name, columns["time"], place, said)
+    columns = {column: values[rows] for column, values in columns.items()}
+    aside = {column: np.asarray(values)[rows] for column, values in aside.items()}
+    place = _place_after(rows, place)
+    columns = _with_finite_values(name, columns, place, said)
+    if complete:
+        columns = _with_motor_speed(name, columns, crane)
+        _check_required(name, columns, crane)
+    _note_gaps(name, columns["time"], place, said)
+    return Run(name=name, columns=columns, aside=aside, warnings=tuple(said), metadata=dict(metadata or {}))
+
+
+def _check_time(name: str, columns: Columns, place: Place) -> None:
+    if "time" not in columns:
+        raise InputError(f"{name}: column 'time' is missing; found {', '.join(columns) or 'no known column'}")
+    time = columns["time"]
+    if len(time) < 2:
+        raise InputError(f"{name}: {len(time)} rows are too few; a run needs at least two")
+    missing = np.flatnonzero(~np.isfinite(time))
+    if missing.size:
+        raise InputError(f"{name}: {place(missing[0])}, column 'time': no time; fill it in or remove the row")
+    back = np.flatnonzero(np.diff(time) < 0.0)
+    if back.size:
+        k = back[0]
+        raise InputError(
+            f"{name}: {place(k + 1)}, column 'time': time goes back from {time[k]:.6g} s to {time[k + 1]:.6g} s; "
+            "sort the rows or split the file there"
+        )
+
+
+def _rows_of_new_time(name: str, time: FloatArray, place: Place, said: list[str]) -> Any:
+    keep = np.concatenate(([True], np.diff(time) > 0.0))
+    repeated = np.flatnonzero(~keep)
+    if repeated.size:
+        said.append(f"{name}: column 'time': {repeated.size} repeated times left out, {_places(repeated, place)}")
+    if keep.sum() < 2:
+        raise InputError(f"{name}: column 'time': all rows have the same time")
+    return np.flatnonzero(keep)
+
+
+def _place_after(rows: Any, place: Place) -> Place:
+    """The reader's place of a row among those that were kept."""
+    return lambda row: place(int(rows[row]))
+
+
+def _with_finite_values(name: str, columns: Columns, place: Place, said: list[str]) -> Columns:
+    kept = {}
+    for column, values in columns.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size == len(values):
+            said.append(f"{name}: column '{column}' has no value at all and is left out")
+            continue
+        if bad.size:
+            share = f"{bad.size} of {len(values)} values are not numbers"
+            said.append(f"{name}: column '{column}': {share}, {_places(bad, place)}")
+            values = np.where(np.isfinite(values), values, np.nan)
+        kept[column] = values
+    return kept
+
+
+def _with_motor_speed(name: str, columns: Columns, crane: Crane | None) -> Columns:
+    if "motor_speed" in columns:
+        return columns
+    if "drum_speed" not in columns:
+        found = ", ".join(columns)
+        raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing or empty; found {found}")
+    if crane is None:
+        raise InputError(f"{name}: 'drum_speed' needs the crane's gear ratio to become 'motor_speed'; give the crane")
+    rest = {column: values for column, values in columns.items() if column != "drum_speed"}
+    return {"time": rest.pop("time"), "motor_speed": columns["drum_speed"] * crane.gear_ratio, **rest}
+
+
+def _check_required(name: str, columns: Columns, crane: Crane | None) -> None:
+    groups = dict.fromkeys(c.rpartition(".")[0] for c in columns if c.rpartition(".")[2] in GROUP_CHANNELS and "." in c)
+    for group in groups:
+        lacking = [channel for channel in GROUP_CHANNELS if f"{group}.{channel}" not in columns]
+        if lacking:
+            raise InputError(f"{name}: motor group '{group}' lacks {', '.join(f'{group}.{each}' for each in lacking)}")
+        if crane is not None and not crane.electric and group not in crane.groups:
+            known = ", ".join(crane.groups)
+            raise InputError(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
+    electric = crane.electric if crane is not None else not groups
+    if electric and "motor_torque" not in columns:
+        raise InputError(f"{name}: column 'motor_torque' (or the pressures of a motor group) is missing or empty")
+    if not electric and not groups:
+        raise InputError(
+            f"{name}: no motor group: <group>.pressure_a, .pressure_b and .displacement are required with crane "
+            f"'{crane.name if crane else ''}'"
+        )
+
+
+def _note_gaps(name: str, time: FloatArray, place: Place, said: list[str]) -> None:
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    gaps = np.flatnonzero(steps > GAP * usual)
+    if gaps.size:
+        widest = f"widest {steps[gaps].max():.3g} s, usual step {usual:.3g} s"
+        said.append(f"{name}: column 'time': {gaps.size} gaps ({widest}), before {_places(gaps + 1, place)}")
+    if time[-1] - time[0] < SHORT:
+        said.append(f"{name}: only {time[-1] - time[0]:.3g} s long ({len(time)} rows)")
+
+
+def _places(rows: Any, place: Place) -> str:
+    shown = ", ".join(place(int(row)) for row in rows[:_SHOWN])
+    return shown if len(rows) <= _SHOWN else f"{shown} and {len(rows) - _SHOWN} more"

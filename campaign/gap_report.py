@@ -42,7 +42,8 @@ def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
             "* Command: `make campaign-gap` (`python -m campaign.gap`; resumable)",
             f"* Commit: {commit}",
             f"* Data sets: {len(rows)} of {_planned(counts)} planned"
-            f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",
+            f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds"
+            f" {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",
             f"* Ended with an error: {len(failed)}",
         ]
     )

@@ -71,7 +71,7 @@ OUTSIDE: dict[str, Effect] = {
     "pressure_memory": lambda s, rng, f: {"pressure_memory": 45.0 * s},
     "root_speed": lambda s, rng, f: {"root_speed": 80.0 * s},
     "speed_bump": lambda s, rng, f: {"speed_bump": 80.0 * s},
-    "acceleration_loss": lambda s, rng, f: {"jerkiness": 30.0 * s},
+    "acceleration_loss": lambda s, rng, f: {"jerkiness": 20.0 * s},
     "layer_scrub": lambda s, rng, f: {"layer_scrub": 50.0 * s},
 }
 

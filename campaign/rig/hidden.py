@@ -49,5 +49,5 @@ class Hidden(NamedTuple):
     pressure_memory: float = 0.0  # N m per 100 bar of the pressure of the last half minute
     root_speed: float = 0.0  # N m at 100 rad/s, growing with the root of the speed
     speed_bump: float = 0.0  # N m at 90 rad/s, 12 rad/s wide
-    jerkiness: float = 0.0  # N m per 10 rad/s^2 of acceleration, whatever its sign
+    jerkiness: float = 0.0  # N m per 10 rad/s^2 of the acceleration that is asked for, whatever its sign
     layer_scrub: float = 0.0  # N m per wire layer below the sixth

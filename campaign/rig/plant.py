@@ -77,7 +77,7 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
     inertia = r.inertia + h.inertia + load_inertia
     heave_gain = (r.load + h.tare) * r.radius / GEAR
     drift = 1.0 + h.coulomb_drift * r.date
-    speed, angle, a = 0.0, 0.0, 0.0
+    speed, angle, a = 0.0, 0.0, 0.0  # a: the acceleration that is asked for
     gas = r.gas_pressure * (1.0 + h.gas_warm)
     warm = 1.0 + h.gas_warm
     volume = GAS_VOLUME * (300e5 / r.gas_pressure)
@@ -89,6 +89,8 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
     for k in range(len(reference)):
         t = k * STEP
         wanted += reference[k] * STEP
+        if k > 0:
+            a += ((reference[k] - reference[k - 1]) / STEP - a) * STEP / 0.1
         command = active * (reference[k] + r.position_gain * (wanted - angle)) + r.leakage * known
         flow += (command - flow) * STEP / r.pump_lag
         dp = p_a - p_b
@@ -114,7 +116,6 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
         age = age * exp(-w * STEP / h.dwell_angle) + STEP
         drive = active * dp_motor + passive * dp_passive - static - heave_gain * heave_acceleration[k]
         drive -= h.ripple * static * sin(h.ripple_order * angle)
-        before = speed
         if h.presliding_angle > 0.0:
             s = 1.0 if speed >= 0.0 else -1.0
             bristle = s + (bristle - s) * exp(-w * STEP / h.presliding_angle)
@@ -129,7 +130,6 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
                 speed = free - hold
             else:
                 speed = free + hold
-        a += ((speed - before) / STEP - a) * 0.2
         angle += speed * STEP
         # oil: the pump's flow, what the motors swallow, leakage; the low side is tied to boost
         q = flow - active * speed - (r.leakage + h.leakage / viscosity[k]) * dp

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from winch_friction.physics.winch.operating_point import run_drum_torque
 class PlateauRule:
     """What counts as constant speed; s, rad/s, rad/s^2.
 
-    The slope of the speed, averaged over `window`, stays below `slope` plus `relative_slope` times the speed. The first
-    `settle` seconds are dropped, what remains lasts `duration` at least and is faster than `standstill`.
+    The slope of the speed, averaged over `window`, stays below `slope` plus `relative_slope` times the speed. The
+    first `settle` seconds are dropped, what remains lasts `duration` at least and is faster than `standstill`.
     """
 
     window: float = 0.6
@@ -32,8 +33,8 @@ class PlateauRule:
 class Plateau:
     """Means over one stretch of constant speed; SI, speed signed (hoisting positive).
 
-    `pressure_error` is the standard error of the mean pressure drop, from the means of four parts of the plateau, so that
-    slow oscillation of the load counts. `drum_torque` is T_d of the hanging mass on the wire layer in use.
+    `pressure_error` is the standard error of the mean pressure drop, from the means of four parts of the plateau, so
+    that slow oscillation of the load counts. `drum_torque` is T_d of the hanging mass on the wire layer in use.
     """
 
     run: str
@@ -88,7 +89,7 @@ def _moving_mean(values: FloatArray, half: int) -> FloatArray:
     return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
 
 
-def _changes(displacement: FloatArray, half: int) -> FloatArray:
+def _changes(displacement: FloatArray, half: int) -> Any:
     """Where the displacement is on the move: more than 2 % over the window."""
     mean = _moving_mean(displacement, half)
     moved = np.zeros(len(mean), bool)
@@ -96,12 +97,12 @@ def _changes(displacement: FloatArray, half: int) -> FloatArray:
     return moved
 
 
-def _steps(layer: FloatArray) -> FloatArray:
+def _steps(layer: FloatArray) -> Any:
     stepped = np.diff(layer, prepend=layer[:1]) != 0.0
     return stepped & np.isfinite(layer)
 
 
-def _stretches(mask: FloatArray) -> Iterator[tuple[int, int]]:
+def _stretches(mask: Any) -> Iterator[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 

@@ -110,7 +110,7 @@ def _factor(unit: str | None, si_unit: str, where: str) -> float:
 
 
 def _spelled(unit: str) -> str:
-    return {"%": "percent", "-": "dimensionless", "1": "dimensionless", "rpm": "revolution/minute"}.get(unit, unit)
+    return {"%": "percent", "-": "dimensionless", "1": "dimensionless"}.get(unit, unit)
 
 
 _REGISTRIES: list[Any] = []
@@ -120,8 +120,10 @@ def _registry() -> Any:
     if not _REGISTRIES:
         import pint
 
-        registry: Any = pint.UnitRegistry()
-        registry.define("rev = revolution")
+        registry: Any = pint.UnitRegistry(on_redefinition="ignore")
+        # angle is a dimension of its own: cm^3 alone would leave open whether a revolution or a radian is meant
+        for definition in ("radian = [angle] = rad", "revolution = 2 * pi * radian = rev", "rpm = rev / minute"):
+            registry.define(definition)
         _REGISTRIES.append(registry)
     return _REGISTRIES[0]
 

@@ -10,7 +10,7 @@ def smooth_sign(speed: float, width: float) -> float:
     """tanh(speed/width); the sign itself for width 0. Both in rad/s."""
     if width > 0.0:
         return math.tanh(speed / width)
-    return float((speed > 0.0) - (speed < 0.0))
+    return float(speed > 0.0) - float(speed < 0.0)
 
 
 def smooth_signs(speed: Any, width: Any) -> np.ndarray:

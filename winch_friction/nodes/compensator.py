@@ -54,6 +54,7 @@ class CompensatorNode(WinchNode):
     def build(self, crane: Crane, model: FrictionModel) -> None:
         """The feedforward law on its seed, its outputs and its switches."""
         self.own, config = self._own.read(self), self._config.read(self)
+        model.compile(len(self.options.topics(crane).groups))  # now, not while the first sample waits
         self.law = FeedforwardCompensator(crane, model, config)
         self.schedule = ModelSchedule(self.own.model_delay)
         hold = InputHold(self.options.topics(crane).groups, config.max_age, dict(config.max_ages))

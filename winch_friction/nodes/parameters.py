@@ -1,7 +1,6 @@
 """ROS parameters from option dataclasses: declared once, with description and range, and read back as one object."""
 
 import math
-import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any, Generic, TypeVar
@@ -13,14 +12,15 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.options import Limits, default_of, from_mapping, limits_of
 
 T = TypeVar("T")
-_LARGEST = sys.float_info.max
+_LARGEST = 2**62
 
 
 class OptionParameters(Generic[T]):
     """The fields of an option dataclass as parameters of a node.
 
-    A mapping field becomes one parameter per key, `gains.stribeck`; `keys` names keys beyond those of the default.
-    `fixed` names the fields that cannot change while the node lives.
+    A mapping field becomes one parameter per key, `gains.stribeck`; `keys` names keys beyond those of the default. An
+    empty tuple is declared as `[""]`, for rclpy cannot tell the type of an empty list. `fixed` names the fields that
+    cannot change while the node lives.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class OptionParameters(Generic[T]):
     def _entries(self, each: Any) -> list[tuple[str, str | None, Any]]:
         default = default_of(each)
         if not isinstance(default, dict):
-            return [(each.name, None, list(default) if isinstance(default, tuple) else default)]
+            return [(each.name, None, (list(default) or [""]) if isinstance(default, tuple) else default)]
         merged = {**default, **self._keys.get(each.name, {})}
         return [(f"{each.name}.{key}", key, float(value)) for key, value in merged.items()]
 
@@ -57,7 +57,7 @@ class OptionParameters(Generic[T]):
         for name, (option, key) in self.names.items():
             value = changes[name] if changes and name in changes else node.get_parameter(name).value
             if key is None:
-                content[option] = tuple(value) if isinstance(value, (list, tuple)) else value
+                content[option] = tuple(v for v in value if v) if isinstance(value, (list, tuple)) else value
             else:
                 content.setdefault(option, {})[key] = value
         return from_mapping(self.kind, content, f"{node.get_name()}: parameters")
@@ -78,18 +78,16 @@ def descriptor(default: Any, limits: Limits, read_only: bool) -> ParameterDescri
     unit = f" [{limits.unit}]" if limits.unit not in ("", "1") else ""
     choices = f" One of: {', '.join(limits.choices)}." if limits.choices else ""
     made = ParameterDescriptor(description=f"{limits.doc}{unit}{choices}", read_only=read_only)
-    bounded = math.isfinite(limits.lower) or math.isfinite(limits.upper)
+    bounded = (math.isfinite(limits.lower) or math.isfinite(limits.upper)) and not limits.may_be_nan
     if isinstance(default, float) and bounded:
-        made.floating_point_range = [_range(FloatingPointRange, limits, _LARGEST, float)]
+        made.floating_point_range = [FloatingPointRange(from_value=limits.lower, to_value=limits.upper)]
     elif isinstance(default, int) and not isinstance(default, bool) and bounded:
-        made.integer_range = [_range(IntegerRange, limits, 2**62, int)]
+        made.integer_range = [IntegerRange(from_value=int(limits.lower), to_value=_whole(limits.upper))]
     return made
 
 
-def _range(kind: Any, limits: Limits, largest: Any, cast: Any) -> Any:
-    lower = cast(limits.lower) if math.isfinite(limits.lower) else -largest
-    upper = cast(limits.upper) if math.isfinite(limits.upper) else largest
-    return kind(from_value=lower, to_value=upper)
+def _whole(value: float) -> int:
+    return int(value) if math.isfinite(value) else _LARGEST
 
 
 def _one_line(error: Exception) -> str:

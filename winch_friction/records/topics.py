@@ -254,6 +254,12 @@ def split_time(time: float) -> tuple[int, int]:
     return (seconds + 1, 0) if nanoseconds == 1_000_000_000 else (seconds, nanoseconds)
 
 
+def whole_nanoseconds(time: float) -> float:
+    """A time in s as it comes back from a stamp."""
+    seconds, nanoseconds = split_time(time)
+    return float(seconds + nanoseconds * 1e-9)
+
+
 def stamp_time(message: Any) -> float:
     """The header's stamp in s."""
     stamp = message.header.stamp

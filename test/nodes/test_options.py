@@ -1,0 +1,60 @@
+"""Parameters come from the option dataclasses, bounded and described."""
+
+import pytest
+
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.nodes.options import NodeOptions
+from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.physics.errors import InputError
+
+
+class Board:
+    """A parameter board with rclpy's interface: values and descriptors, nothing else."""
+
+    def __init__(self, overrides: dict | None = None) -> None:
+        self.values, self.descriptors, self._overrides = {}, {}, overrides or {}
+
+    def get_name(self) -> str:
+        return "board"
+
+    def has_parameter(self, name: str) -> bool:
+        return name in self.values
+
+    def declare_parameter(self, name: str, default: object, descriptor: object) -> None:
+        self.values[name] = self._overrides.get(name, default)
+        self.descriptors[name] = descriptor
+
+    def get_parameter(self, name: str) -> object:
+        return type("P", (), {"value": self.values[name]})()
+
+
+def test_every_option_is_a_described_parameter() -> None:
+    board, options = Board(), OptionParameters(CompensatorConfig, keys={"gains": {"stribeck": 1.0}})
+    options.declare(board)
+    assert all(descriptor.description for descriptor in board.descriptors.values())
+    assert board.values["gains.stribeck"] == 1.0
+    limits = board.descriptors["scale"].floating_point_range[0]
+    assert (limits.from_value, limits.to_value) == (0.0, 1.3)
+
+
+def test_options_come_back_as_they_were_declared() -> None:
+    board, options = Board({"scale": 0.8, "max_ages.hook_load": 3.0}), OptionParameters(CompensatorConfig)
+    options.declare(board)
+    assert options.read(board) == CompensatorConfig(
+        scale=0.8, max_ages={"hook_load": 3.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0}
+    )
+
+
+def test_changes_are_checked_together_without_being_taken_over() -> None:
+    board, options = Board(), OptionParameters(CompensatorConfig)
+    options.declare(board)
+    with pytest.raises(InputError, match="cycle at reversal"):
+        options.read(board, {"velocity_source": "measured", "drive": "torque"})
+    assert board.values["velocity_source"] == "reference"
+
+
+def test_an_empty_list_of_strings_survives_ros() -> None:
+    board, options = Board(), OptionParameters(NodeOptions)
+    options.declare(board)
+    assert board.values["float64_inputs"] == [""]  # rclpy cannot tell the type of an empty list
+    assert options.read(board) == NodeOptions()

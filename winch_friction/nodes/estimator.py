@@ -1,0 +1,186 @@
+"""The estimator node: inputs in, the learned friction model out, latched."""
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from winch_friction.compensation.model_schedule import LEARNED_AT
+from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
+from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
+from winch_friction.nodes.inputs import Inputs
+from winch_friction.nodes.messages import ROS
+from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
+from winch_friction.nodes.rates import InputHealth
+from winch_friction.nodes.run import run
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.options import check, option
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.checkpoint import read_checkpoint, write_checkpoint
+from winch_friction.records.model_file import model_to_text
+from winch_friction.records.topics import joint_state, stamp_header
+
+
+@dataclass(frozen=True)
+class EstimatorNodeOptions:
+    """What only the estimator node can be told. Raises `InputError` for values out of range."""
+
+    model_period: float = option(
+        5.0, lower=1.0, upper=3600.0, unit="s", doc="time between models on friction_model, in the inputs' time"
+    )
+    checkpoint: str = option("", doc="file that keeps what was learned; empty: nothing is kept")
+    checkpoint_period: float = option(
+        60.0, lower=1.0, upper=86400.0, unit="s", doc="time between checkpoints, besides the one at the end"
+    )
+    max_age: float = option(0.1, lower=0.001, upper=10.0, unit="s", doc="age beyond which an input counts as lost")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class EstimatorNode(WinchNode):
+    """Learns at every speed message; publishes `friction_model` and `~/friction_torque`."""
+
+    def __init__(self, **node_arguments: Any) -> None:
+        self._config = OptionParameters(EstimatorConfig, fixed=EstimatorConfig.__dataclass_fields__)
+        self._own = OptionParameters(EstimatorNodeOptions, fixed=("checkpoint",))
+        super().__init__("estimator", self._config, self._own, **node_arguments)
+
+    def build(self, crane: Crane, model: FrictionModel) -> None:
+        """The filter on its seed, what an earlier run left, and the outputs."""
+        self.own = self._own.read(self)
+        topics = self.options.topics(crane)
+        model.compile(len(topics.groups))  # now, not while the first sample waits
+        self.seed = model
+        self.law = FrictionEstimator(crane, model, self._config.read(self))
+        self._restore()
+        self.inputs = Inputs(
+            self, topics, InputHold(topics.groups, self.own.max_age, dict(SLOW_INPUTS)), self._on_sample, self.forget
+        )
+        self._input_health = InputHealth(self.inputs, self.ros_now)
+        self._model = self.publisher(String, "friction_model", LATCHED, qos_overriding_options=overridable())
+        self._torque = self.publisher(JointState, "~/friction_torque", OUTPUT, qos_overriding_options=overridable())
+        self._last: Estimate | None = None
+        self._friction = 0.0
+        self._published_at = float("-inf")
+        self.switch("enable", self._enable)
+        self.trigger("reset", self._reset)
+        self.trigger("save", self._save)
+
+    def start(self) -> None:
+        """Let the inputs in."""
+        self.inputs.open()
+        if self.own.checkpoint:
+            self.every(self.own.checkpoint_period, self.save)
+
+    def stop(self) -> None:
+        """Shut the inputs out."""
+        self.inputs.close()
+
+    def forget(self) -> None:
+        """After a jump of time: nothing held; the filter restarts its speed by itself and keeps what it learned."""
+        if hasattr(self, "law"):
+            self.inputs.forget()
+            self._published_at = float("-inf")
+
+    def save(self) -> None:
+        """Write the checkpoint; a full disk is said, not fatal."""
+        if not hasattr(self, "law") or not self.own.checkpoint:
+            return
+        try:
+            write_checkpoint(self.own.checkpoint, self.law.snapshot())
+        except (InputError, OSError) as error:
+            self.get_logger().error(f"checkpoint not written: {error}")
+
+    # -- callbacks
+    def _on_sample(self, sample: Sample) -> None:
+        self._last = self.law.step(sample)
+        self._publish(self._last)
+        if sample.time >= self._published_at + self.own.model_period:
+            self._publish_model(sample.time)
+
+    # -- services
+    def _enable(self, wanted: bool) -> str:
+        self.law.set_enabled(wanted)
+        return f"learning {'enabled' if wanted else 'disabled'}"
+
+    def _reset(self) -> str:
+        self.law.reset()
+        self.forget()
+        return "everything learned is forgotten: the seed again"
+
+    def _save(self) -> str:
+        if not self.own.checkpoint:
+            raise InputError("parameter 'checkpoint' is empty: name a file")
+        write_checkpoint(self.own.checkpoint, self.law.snapshot())
+        return f"saved to {self.own.checkpoint}"
+
+    # -- outputs
+    def _publish(self, estimate: Estimate) -> None:
+        """One answer to each sample; a sample that taught nothing gets the torque before it."""
+        if math.isfinite(estimate.friction_torque):
+            self._friction = estimate.friction_torque
+        header = stamp_header(estimate.time, ROS)
+        speed = estimate.speed if math.isfinite(estimate.speed) else 0.0
+        self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=self._friction))
+
+    def _publish_model(self, time: float) -> None:
+        self._published_at = time
+        learned = self.law.model()
+        dated = replace(learned, provenance={**learned.provenance, LEARNED_AT: time})
+        self._model.publish(String(data=model_to_text(dated)))
+
+    # -- what an earlier run left, health
+    def _restore(self) -> None:
+        if not self.own.checkpoint:
+            return
+        try:
+            snapshot = read_checkpoint(self.own.checkpoint)
+            if snapshot is not None:
+                self.law.restore(snapshot)
+                self.get_logger().info(f"continues from {self.own.checkpoint}")
+        except InputError as error:
+            self.get_logger().warning(f"starts from the seed: {error}")
+
+    def apply_settings(self) -> None:
+        """Take over the periods."""
+        if hasattr(self, "law"):
+            self.own = self._own.read(self)
+
+    def health(self) -> Sequence[Health]:
+        """The filter, every parameter with deviation and status, and the inputs."""
+        return [self._filter_health(), self._parameter_health(), self._input_health.report()]
+
+    def _filter_health(self) -> Health:
+        status = dict(self.law.status())
+        if self._last:
+            status |= {"innovation": self._last.innovation, "nis": self._last.nis, "speed": self._last.speed}
+        silent = self.inputs.silence() > self.options.watchdog_timeout
+        state = "waiting" if silent else str(status.get("state", "waiting"))
+        return Health("filter", WARN if state in ("waiting", "rejected") else OK, state, status)
+
+    def _parameter_health(self) -> Health:
+        values: dict[str, Any] = {}
+        invalid = []
+        for each in self.law.parameters():
+            values |= {each.name: each.value, f"{each.name} std": each.std, f"{each.name} status": each.status}
+            invalid += [each.name] if each.status == "invalid" else []
+        summary = f"invalid: {', '.join(invalid)}" if invalid else "within the range around the seed"
+        return Health("parameters", ERROR if invalid else OK, summary, values)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point of the executable `estimator`."""
+    return run(EstimatorNode, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -139,6 +139,11 @@ class CompiledTerms:
         return self._lambdify(self._state_equations, "math")
 
     @cached_property
+    def vector_state_rates(self) -> Callable[..., list[Any]]:
+        """[gain_0, decay_0, gain_1, ...] over arrays."""
+        return self._lambdify(self._state_equations, _NUMPY)
+
+    @cached_property
     def initial_states(self) -> tuple[float, ...]:
         """States at the start of a record."""
         return tuple(term.state.initial for term in self.stateful if term.state for _ in self._groups(term))

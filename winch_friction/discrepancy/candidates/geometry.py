@@ -1,0 +1,68 @@
+"""Candidates in the geometry, the load and the inertia: what hangs, on which radius, and what has to be accelerated."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant, single_shape
+from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.physics.friction.term import Parameter
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import GRAVITY
+
+WIRE_LENGTH = 100.0  # m; a missing wire's weight is given per so much of it
+
+m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain (of 100 m of wire, for the wire)")
+e_R = Parameter("e_R", "1", 0.06, lower=-0.5, upper=0.5, doc="relative error of the rope radius")
+dJ = Parameter("dJ", "kg*m^2", 0.2, lower=-5.0, upper=10.0, doc="missing inertia at the motor shaft")
+
+
+def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
+    """Torque at the motor shaft of a hanging mass, its inertia included, N m."""
+    return mass * run.radius / run.gear_ratio * (GRAVITY + run.load_acceleration)
+
+
+def tare_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+    """A constant mass, or the wire paid out."""
+    if shape["wire"]:
+        wire = run.channels["wire_out"] if "wire_out" in run.channels else np.zeros(len(run.time))
+        return _hanging(run, wire / WIRE_LENGTH)[:, None]
+    return _hanging(run, 1.0)[:, None]
+
+
+def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+    return [Variant("hook", {"wire": 0.0}), Variant("wire", {"wire": 1.0})]
+
+
+def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+    """The load's torque on the layers concerned."""
+    torque = _hanging(run, run.load)
+    layer = run.channels.get("wire_layer")
+    if shape["layer"] == 0.0 or layer is None:
+        return torque[:, None]
+    if shape["layer"] < 0.0:
+        return (torque * (-shape["layer"] - layer))[:, None]
+    return (torque * (np.rint(layer) == shape["layer"]))[:, None]
+
+
+def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+    layers = sorted({float(v) for run in runs if "wire_layer" in run.channels for v in np.unique(np.rint(run.channels["wire_layer"]))})
+    shapes = [Variant("all layers", {"layer": 0.0})]
+    if len(layers) > 1:
+        shapes += [Variant(f"layer {layer:g}", {"layer": layer}) for layer in layers]
+        shapes.append(Variant("growing with depth", {"layer": -layers[-1]}))
+    return shapes
+
+
+def inertia_columns(run: PreparedRun, _: Shape) -> FloatArray:
+    """The shaft's acceleration."""
+    return run.acceleration[:, None]
+
+
+def geometry_candidates() -> list[Candidate]:
+    """Tare, rope radius, inertia."""
+    return [
+        Candidate("tare_load", r"m_h\,(g+\ddot x)\,R/i", (m_h,), tare_columns, _tare_shapes, kind="geometry", needs=("hook_load",)),
+        Candidate("layer_radius", r"e_R\,m\,(g+\ddot x)\,R/i", (e_R,), radius_columns, _radius_shapes, kind="geometry", needs=("hook_load",)),
+        Candidate("inertia_error", r"\Delta J\,\dot\omega", (dJ,), inertia_columns, single_shape, kind="inertia"),
+    ]

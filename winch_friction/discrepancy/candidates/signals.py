@@ -1,0 +1,73 @@
+"""Candidates in the signals: what a transducer, a clock or a feedback adds to the measured drive torque.
+
+The true pressure stands for itself only through the base model's prediction; the noisy one never becomes a regressor.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant, single_shape
+from winch_friction.discrepancy.prepare import GroupSignals, PreparedRun
+from winch_friction.physics.friction.term import Parameter
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import BAR, CM3_PER_REV
+
+DELAY_STEP = 0.06  # s, half the width of the difference that stands for a derivative
+ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
+
+_GroupLaw = Callable[[GroupSignals], FloatArray]
+
+p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
+e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
+D_0 = Parameter("D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset")
+tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
+
+
+def _which(run: PreparedRun, shape: Shape) -> list[GroupSignals]:
+    which = shape["groups"]
+    return [g for g in run.groups if which == ALL or g.balances == (which == BALANCING)]
+
+
+def group_columns(law: _GroupLaw, run: PreparedRun, shape: Shape) -> FloatArray:
+    """Sum of a law over the affected motor groups, N m at the shaft, shape (samples, 1)."""
+    return sum((law(g) for g in _which(run, shape)), np.zeros(len(run.time)))[:, None]
+
+
+def group_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+    """Which transducers are off: all alike, or, with several groups about, those of one side alone."""
+    shapes = [Variant("all groups", {"groups": ALL})]
+    if any(len(run.groups) > 1 for run in runs):
+        shapes += [Variant("the driving group", {"groups": BALANCING}), Variant("the passive group", {"groups": OTHER})]
+    return shapes
+
+
+def _offset(g: GroupSignals) -> FloatArray:
+    return g.count * g.displacement
+
+
+def _scale(g: GroupSignals) -> FloatArray:
+    return g.count * g.displacement * g.pressure
+
+
+def _swivel(g: GroupSignals) -> FloatArray:
+    return g.count * g.pressure
+
+
+def delay_columns(run: PreparedRun, _: Shape) -> FloatArray:
+    """Rate of change of the predicted drive torque: a speed that comes late makes the pressures come early, N m/s."""
+    ahead = np.interp(run.time + DELAY_STEP, run.time, run.predicted)
+    behind = np.interp(run.time - DELAY_STEP, run.time, run.predicted)
+    return ((ahead - behind) / (2.0 * DELAY_STEP))[:, None]
+
+
+def signal_candidates() -> list[Candidate]:
+    """Offset, gain, delay and displacement feedback."""
+    groups = {"shapes": group_shapes, "kind": "signal", "hydraulic": True}
+    return [
+        Candidate("pressure_offset", r"\sum_g n_g D_g\,p_0", (p_0,), partial(group_columns, _offset), **groups),  # type: ignore[arg-type]
+        Candidate("pressure_scale", r"e_p\sum_g n_g D_g\,\Delta p_g", (e_p,), partial(group_columns, _scale), **groups),  # type: ignore[arg-type]
+        Candidate("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", (D_0,), partial(group_columns, _swivel), **groups),  # type: ignore[arg-type]
+        Candidate("signal_delay", r"\tau\,\dot M", (tau,), delay_columns, single_shape, kind="signal"),
+    ]  # fmt: skip

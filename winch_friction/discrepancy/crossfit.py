@@ -1,0 +1,86 @@
+"""Held-out losses per segment: coefficients from the other runs, judged on tens of seconds at a time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Slot
+from winch_friction.discrepancy.problem import Problem
+from winch_friction.physics.signals import FloatArray
+
+FEWEST_RUNS = 5  # with fewer, folds are stretches of time
+FOLDS = 8
+FLIPS = 2000
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A set of effects with its held-out losses per segment and its fit to all training runs."""
+
+    slots: tuple[Slot, ...]
+    losses: FloatArray
+    beta: FloatArray
+    train_loss: float
+
+    @property
+    def loss(self) -> float:
+        """Summed held-out loss in units of the noise."""
+        return float(self.losses.sum())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(slot.candidate.name for slot in self.slots)
+
+
+class CrossFit:
+    """Folds of a problem, with the sums that make each fit independent of the number of samples."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        g = problem.grams
+        self.fold = _folds(g.run)
+        self.total_g, self.total_b = g.g.sum(axis=0), g.b.sum(axis=0)
+        self.total_y2 = float(g.y2.sum())
+        self.sums = []
+        for k in np.unique(self.fold):
+            own = self.fold == k
+            self.sums.append((own, self.total_g - g.g[own].sum(axis=0), self.total_b - g.b[own].sum(axis=0)))
+
+    def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
+        """Loss and coefficients of a fit to all training runs."""
+        columns = self.problem.columns(slots)
+        beta = self.problem.fit(self.total_g, self.total_b, columns)
+        index = np.asarray(columns)
+        loss = self.total_y2 - 2.0 * self.total_b[index] @ beta + beta @ self.total_g[np.ix_(index, index)] @ beta
+        return float(loss), beta
+
+    def explain(self, slots: Sequence[Slot]) -> Explanation:
+        """Held-out losses of a set of effects."""
+        columns = self.problem.columns(slots)
+        index = np.asarray(columns)
+        losses = np.empty(len(self.fold))
+        g = self.problem.grams
+        for own, sum_g, sum_b in self.sums:
+            beta = self.problem.fit(sum_g, sum_b, columns)
+            part = g.g[own][:, index[:, None], index]
+            losses[own] = g.y2[own] - 2.0 * g.b[own][:, index] @ beta + np.einsum("i,sij,j->s", beta, part, beta)
+        loss, beta = self.train_loss(slots)
+        return Explanation(tuple(slots), losses, beta, loss)
+
+
+def _folds(run: np.ndarray) -> np.ndarray:
+    if len(np.unique(run)) >= FEWEST_RUNS:
+        return run
+    return np.arange(len(run)) * min(FOLDS, len(run)) // len(run)
+
+
+def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Family-wise p-values of mean gain > 0 for rows of `gains` (candidates, segments), by sign flips and the largest t."""
+    scale = np.sqrt((gains**2).sum(axis=1))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    observed = gains.sum(axis=1) / scale
+    signs = rng.choice([-1.0, 1.0], size=(FLIPS, gains.shape[1]))
+    largest = ((signs @ gains.T) / scale).max(axis=1)
+    return (1.0 + (largest[:, None] >= observed).sum(axis=0)) / (1.0 + FLIPS)

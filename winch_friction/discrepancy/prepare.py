@@ -1,0 +1,273 @@
+"""From a measured run to what every candidate reads: smooth signals, regimes, the base model's balance.
+
+Regressors are never built from the noisy pressure that is being explained: the pressure of the group that closes the torque
+balance is predicted from the base model (fixed point), only the passive group's is measured, smoothed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.units import BAR, GRAVITY
+from winch_friction.physics.winch import Crane, operating_point
+from winch_friction.physics.winch.operating_point import run_drum_torque
+
+GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
+GUARD_SAMPLES = 8  # kept away from a reversal on both sides, half a smoothing window
+MIN_SAMPLES = 100
+MIN_DISPLACEMENT_SHARE = 0.05
+FIXED_POINT_STEPS = 3
+
+
+@dataclass(frozen=True)
+class GroupSignals:
+    """One motor group along a run: motors, predicted or smoothed |dp|, sum of pressures, displacement; Pa, m^3/rad."""
+
+    name: str
+    count: int
+    pressure: FloatArray  # signed drop
+    pressure_sum: FloatArray
+    low_pressure: FloatArray
+    displacement: FloatArray
+    balances: bool  # closes the torque balance: its pressure is predicted
+
+
+@dataclass(frozen=True)
+class PreparedRun:
+    """A run on a uniform grid; SI. `gap` is measured minus predicted drive torque at the shaft in N m."""
+
+    name: str
+    start: float  # absolute time of the first sample, s
+    dt: float
+    time: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    direction: FloatArray
+    angle: FloatArray
+    load: FloatArray
+    load_acceleration: FloatArray
+    radius: FloatArray
+    drum_torque: FloatArray
+    groups: tuple[GroupSignals, ...]
+    point: tuple[Any, ...]
+    gap: FloatArray
+    predicted: FloatArray  # drive torque of the base model, N m
+    jacobian: FloatArray
+    gear_ratio: float
+    inertia: float
+    constants: tuple[tuple[str, float], ...]  # for the candidates' equations
+    unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
+    moving: np.ndarray
+    turning: np.ndarray
+    valid: np.ndarray
+    present: frozenset[str]  # columns that the file had
+    channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
+
+    @property
+    def mode(self) -> tuple[str, ...]:
+        """Names of the motor groups: which kind of run this is."""
+        return tuple(group.name for group in self.groups)
+
+
+def prepare(run: Run, crane: Crane, model: FrictionModel, load: float = float("nan")) -> PreparedRun:
+    """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
+
+    Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
+    """
+    columns, dt, valid = _uniform(run)
+    size = len(columns["time"])
+    raw_speed = _motor_speed(run, columns, crane)
+    window = speed_window(raw_speed)
+    speed = smooth(raw_speed, window)
+    acceleration = np.gradient(speed, dt)  # of the smoothed speed: the same kernel as the pressures'
+    if "shaft_angle" in columns:
+        angle = columns["shaft_angle"]
+    else:
+        angle = np.concatenate([[0.0], np.cumsum(0.5 * (raw_speed[1:] + raw_speed[:-1])) * dt])
+    guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw_speed) / np.sqrt(window / 3.0))
+    still = np.abs(speed) <= guard
+    moving = ~dilated(still, max(GUARD_SAMPLES, window // 2 + 1))
+    turning = ~moving & ~_long(still, int(0.6 / dt) + 1)
+    state_speed = np.where(np.abs(speed) > guard / 8.0, speed, 0.0)
+    static, load_side = _load(run, columns, crane, load, acceleration, window, dt, size)
+    mass, radius, drum_torque, load_acceleration = load_side
+    inertial = crane.inertia * acceleration + mass * radius / crane.gear_ratio * load_acceleration
+    direction = np.sign(state_speed)
+    extra = _optional(columns, angle, run.time[0], size)
+    measured, groups, point, predicted, jacobian, unit = _balance(
+        columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra, window
+    )
+    # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
+    # remain in the pressures
+    measured = smooth(measured, window)
+    channels = _channels(run, columns, speed, acceleration, mass, groups, angle, crane)
+    return PreparedRun(
+        name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
+        direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
+        drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted, predicted=predicted,
+        jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, turning=turning & valid, valid=valid,
+        present=frozenset(run.columns), channels=channels,
+    )  # fmt: skip
+
+
+def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:
+    own = {"max_displacement": crane.max_displacement, "gear_ratio": crane.gear_ratio, **model.constants}
+    return tuple(sorted(own.items()))
+
+
+def _uniform(run: Run) -> tuple[dict[str, FloatArray], float, np.ndarray]:
+    time = run.time - run.time[0]
+    if len(time) < MIN_SAMPLES:
+        raise InputError(f"{run.name}: only {len(time)} samples; at least {MIN_SAMPLES} are needed")
+    steps = np.diff(time)
+    if not np.isfinite(time).all() or steps.min() <= 0.0:
+        raise InputError(f"{run.name}: column 'time' is not increasing; sort or repair the file")
+    dt = float(np.median(steps))
+    grid = np.arange(0.0, time[-1] + 0.5 * dt, dt)
+    even = len(grid) == len(time) and np.abs(grid - time).max() < 1e-3 * dt
+    valid = np.ones(len(grid), bool)
+    columns: dict[str, FloatArray] = {"time": grid}
+    for name, values in run.columns.items():
+        good = np.isfinite(values)
+        if name == "time" or not good.any():
+            continue
+        columns[name] = values if even and good.all() else np.interp(grid, time[good], values[good])
+        if not good.all():
+            valid &= np.interp(grid, time, (~good).astype(float)) < 0.5
+    holes = np.flatnonzero(steps > 5.0 * dt)
+    for k in holes:
+        valid &= ~((grid > time[k]) & (grid < time[k + 1]))
+    return columns, dt, valid
+
+
+def _motor_speed(run: Run, columns: Mapping[str, FloatArray], crane: Crane) -> FloatArray:
+    if "motor_speed" in columns:
+        return columns["motor_speed"]
+    if "drum_speed" in columns:
+        return columns["drum_speed"] * crane.gear_ratio
+    raise InputError(f"{run.name}: neither 'motor_speed' nor 'drum_speed' holds values; one of them is needed")
+
+
+def _long(mask: np.ndarray, samples: int) -> np.ndarray:
+    """The stretches of a mask that last at least so many samples."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
+    out = np.zeros(len(mask), bool)
+    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+        out[begin:end] = end - begin >= samples
+    return out
+
+
+def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: ignore[no-untyped-def]
+    mass = columns.get("hook_load", np.full(size, 0.0 if np.isnan(load) else load))
+    steady = np.median(mass)
+    # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant
+    mass = np.full(size, steady) if np.std(mass) <= 0.05 * abs(steady) else smooth(mass, 5 * window)
+    layers = np.rint(columns["wire_layer"]) if "wire_layer" in columns else np.full(size, np.nan)
+    unit = Run(run.name, {"time": columns["time"], "hook_load": np.ones(size), "wire_layer": layers})
+    radius = run_drum_torque(unit, crane) / GRAVITY
+    load_acceleration = radius / crane.gear_ratio * acceleration
+    if "heave_velocity" in columns:
+        load_acceleration = load_acceleration + np.gradient(smooth(columns["heave_velocity"], window), dt)
+    drum_torque = mass * GRAVITY * radius
+    return drum_torque / crane.gear_ratio, (mass, radius, drum_torque, load_acceleration)
+
+
+def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float, size: int) -> dict[str, Any]:
+    extra: dict[str, Any] = {"time": columns["time"] + start, "shaft_angle": angle}
+    for name in ("oil_temperature", "wire_layer", "wire_out"):
+        if name in columns:
+            extra[name] = columns[name]
+    return extra
+
+
+def _balance(columns, run, crane, model, speed, direction, acceleration, drum_torque, frictionless, extra, window):  # type: ignore[no-untyped-def]
+    """Measured and predicted drive torque, groups with predicted pressures, operating point, Jacobian, N m per bar."""
+    size = len(speed)
+    names = run.groups
+
+    def point_of(groups: tuple[GroupSignals, ...]) -> tuple[Any, ...]:
+        return operating_point(
+            direction=direction, speed=speed, drum_torque=drum_torque, acceleration=acceleration,
+            groups=[(np.full(size, float(g.count)), np.abs(g.pressure), g.pressure_sum, g.displacement) for g in groups],
+            motor_total=np.full(size, float(crane.motor_total(names))), **extra,
+        )  # fmt: skip
+
+    if crane.electric:
+        total = crane.motor_total(())
+        point = point_of(())
+        if "motor_torque" not in columns:
+            raise InputError(f"{run.name}: column 'motor_torque' is missing; an electric drive needs it")
+        return (columns["motor_torque"] * total, (), point, frictionless + model.torque(point),
+                model.jacobian(point), float(total))  # fmt: skip
+    if not names:
+        raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
+    groups = _measured_groups(columns, run, crane, window)
+    measured = sum(crane.motor_count(g.name) * g.displacement * (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"])
+                   for g in groups)  # fmt: skip
+    predicted = frictionless
+    for _ in range(FIXED_POINT_STEPS):
+        groups = _predicted_pressure(groups, predicted)
+        point = point_of(groups)
+        predicted = frictionless + model.torque(point)
+    own = next(g for g in groups if g.balances)
+    unit = BAR * own.count * float(np.median(own.displacement))
+    return measured, groups, point, predicted, model.jacobian(point), unit
+
+
+def _measured_groups(columns, run, crane, window) -> tuple[GroupSignals, ...]:  # type: ignore[no-untyped-def]
+    names = run.groups
+    balancing = next((name for name in ("active", "main") if name in names), names[0])
+    groups = []
+    for name in names:
+        for channel in ("pressure_a", "pressure_b", "displacement"):
+            if f"{name}.{channel}" not in columns:
+                raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
+        a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
+        displacement = smooth(columns[f"{name}.displacement"], 5 * window)
+        steady = float(np.median(displacement))
+        if np.std(displacement) <= 0.02 * steady:
+            displacement = np.full(len(displacement), steady)
+        if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and name == balancing:
+            raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
+        groups.append(GroupSignals(name, crane.motor_count(name), smooth(a - b, 2 * window), smooth(a + b, 2 * window),
+                                   smooth(np.minimum(a, b), 2 * window), displacement, name == balancing))  # fmt: skip
+    return tuple(groups)
+
+
+def _predicted_pressure(groups: tuple[GroupSignals, ...], torque: FloatArray) -> tuple[GroupSignals, ...]:
+    rest = torque - sum(g.count * g.displacement * g.pressure for g in groups if not g.balances)
+    out = []
+    for g in groups:
+        if not g.balances:
+            out.append(g)
+            continue
+        pressure = rest / (g.count * np.maximum(g.displacement, 1e-9))
+        out.append(GroupSignals(g.name, g.count, pressure, np.abs(pressure) + 2.0 * g.low_pressure, g.low_pressure,
+                                g.displacement, True))  # fmt: skip
+    return tuple(out)
+
+
+def _channels(run, columns, speed, acceleration, mass, groups, angle, crane) -> dict[str, FloatArray]:  # type: ignore[no-untyped-def]
+    size = len(speed)
+    found: dict[str, FloatArray] = {"motor_speed": np.abs(speed), "acceleration": acceleration}
+    if not crane.electric or "hook_load" in columns:
+        found["hook_load"] = mass
+    for group in groups:
+        found[f"{group.name}.pressure"] = group.pressure
+        found[f"{group.name}.displacement"] = group.displacement
+    for name in ("oil_temperature", "wire_layer", "wire_out", "heave_velocity"):
+        if name in columns:
+            found[name] = columns[name]
+    found["shaft_angle"] = np.mod(angle / crane.gear_ratio, 2.0 * np.pi)
+    found["time"] = columns["time"]
+    for name, values in run.aside.items():
+        array = np.asarray(values)
+        if array.dtype.kind in "fiu" and len(array) == len(run):
+            found[name] = np.interp(columns["time"], run.time - run.time[0], np.nan_to_num(array.astype(float)))
+    return {name: np.broadcast_to(values, size) for name, values in found.items()}

@@ -1,0 +1,172 @@
+"""Which effects are missing: forward by held-out loss, checked as a set, each with the rivals that do as well."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Slot
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.physics.signals import FloatArray
+
+SIGNIFICANCE = 0.01  # family-wise over all candidates
+LEAST_GAIN = 0.02  # of the held-out RMSE
+MOST_EFFECTS = 4
+RIVAL_P = 0.05
+RIVAL_SHARE = 0.03  # a rival within this share of the effect's own gain does as well for any purpose
+MOST_NAMES = 3
+
+
+@dataclass(frozen=True)
+class Considered:
+    """One candidate at one stage: its gain in held-out RMSE, its family-wise p-value and why it was not taken."""
+
+    name: str
+    variant: str
+    gain: float
+    p_value: float
+    stage: int
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """One missing effect, its rivals, and the evidence for it."""
+
+    slot: Slot
+    rivals: tuple[Slot, ...]
+    p_value: float
+    gain: float
+    selection_frequency: float
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What was found, what it was compared with, and the two fits that the proof is about."""
+
+    base: Explanation
+    final: Explanation
+    found: tuple[Found, ...]
+    considered: tuple[Considered, ...] = field(default_factory=tuple)
+
+
+def select(cross: CrossFit, rng: np.random.Generator) -> Selection:
+    """Add effects as long as one brings a significant and useful gain, then look for rivals of each."""
+    base = cross.explain(())
+    current, considered = base, []
+    p_values: dict[str, float] = {}
+    for stage in range(MOST_EFFECTS):
+        trials = _trials(cross, current)
+        if not trials:
+            break
+        gains = np.array([current.losses - each.losses for each in trials])
+        p = flip_p_values(gains, rng)
+        relative = np.array([1.0 - np.sqrt(each.loss / current.loss) for each in trials])
+        worthy = (p <= SIGNIFICANCE) & (relative >= LEAST_GAIN)
+        order = np.argsort([each.loss for each in trials])
+        considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k]) for k in order]
+        if not worthy.any():
+            break
+        best = next(int(k) for k in order if worthy[k])
+        p_values[trials[best].slots[-1].candidate.name] = float(p[best])
+        current = _exchanged(cross, trials[best])
+    current = _pruned(cross, current, rng)
+    found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
+    return Selection(base, current, found, tuple(considered))
+
+
+def _trials(cross: CrossFit, current: Explanation) -> list[Explanation]:
+    """Every other candidate added to the current set, each in the variant that fits the training runs best."""
+    taken = set(current.names)
+    best: dict[str, tuple[float, Slot]] = {}
+    for slot in cross.problem.slots:
+        name = slot.candidate.name
+        if name in taken:
+            continue
+        loss, _ = cross.train_loss((*current.slots, slot))
+        if name not in best or loss < best[name][0]:
+            best[name] = (loss, slot)
+    return [cross.explain((*current.slots, slot)) for _, slot in best.values()]
+
+
+def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
+    """The set in which no single effect can be swapped for a better one: an early choice may have stood in for two."""
+    for _ in range(3):
+        improved = False
+        for k in range(len(current.slots)):
+            rest = current.slots[:k] + current.slots[k + 1 :]
+            taken = {slot.candidate.name for slot in rest}
+            losses = [
+                (cross.train_loss((*rest[:k], slot, *rest[k:]))[0], j)
+                for j, slot in enumerate(cross.problem.slots)
+                if slot.candidate.name not in taken
+            ]
+            loss, j = min(losses)
+            if loss < current.train_loss * (1.0 - 1e-3):
+                trial = cross.explain((*rest[:k], cross.problem.slots[j], *rest[k:]))
+                if trial.loss < current.loss:
+                    current, improved = trial, True
+        if not improved:
+            break
+    return current
+
+
+def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
+    """Drop what the rest of the set has made superfluous."""
+    while len(current.slots) > 1:
+        smaller = [cross.explain(current.slots[:k] + current.slots[k + 1 :]) for k in range(len(current.slots))]
+        weakest = min(smaller, key=lambda each: each.loss)
+        p = flip_p_values((weakest.losses - current.losses)[None], rng)[0]
+        if p <= SIGNIFICANCE and 1.0 - np.sqrt(current.loss / weakest.loss) >= LEAST_GAIN:
+            break
+        current = weakest
+    return current
+
+
+def _found(cross: CrossFit, current: Explanation, k: int, p_values: dict[str, float], rng: np.random.Generator) -> Found:
+    rest = current.slots[:k] + current.slots[k + 1 :]
+    without = cross.explain(rest)
+    own = current.slots[k]
+    gain_losses = without.losses - current.losses
+    rivals, frequency = _rivals(cross, current, without, k, rng)
+    name = own.candidate.name
+    p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
+    return Found(own, rivals, p, float(1.0 - np.sqrt(current.loss / without.loss)), frequency)
+
+
+def _rivals(
+    cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator
+) -> tuple[tuple[Slot, ...], float]:
+    """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn."""
+    rest = current.slots[:k] + current.slots[k + 1 :]
+    own = current.slots[k]
+    best: dict[str, tuple[float, Slot]] = {}
+    for slot in cross.problem.slots:
+        name = slot.candidate.name
+        if name in current.names:
+            continue
+        loss, _ = cross.train_loss((*rest, slot))
+        if name not in best or loss < best[name][0]:
+            best[name] = (loss, slot)
+    trials = [cross.explain((*rest, slot)) for _, slot in best.values()]
+    worth = without.loss - current.loss
+    equal = []
+    for trial in trials:
+        worse = trial.losses - current.losses
+        gained = without.loss - trial.loss
+        if gained < 0.5 * worth:
+            continue
+        p = flip_p_values(worse[None], rng)[0]
+        if p > RIVAL_P or worse.sum() < RIVAL_SHARE * worth:
+            equal.append((trial.loss, trial.slots[-1]))
+    equal.sort(key=lambda pair: pair[0])
+    frequency = _frequency(current.losses, [t.losses for t in trials], rng)
+    return tuple(slot for _, slot in equal if slot is not own)[: MOST_NAMES - 1], frequency
+
+
+def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:
+    if not others:
+        return 1.0
+    weights = rng.multinomial(len(own), np.full(len(own), 1.0 / len(own)), size=draws)
+    rival = (weights @ np.array(others).T).min(axis=1)
+    return float(np.mean(weights @ own <= rival * (1.0 + 1e-12)))

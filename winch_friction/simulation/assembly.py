@@ -12,14 +12,14 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.control.settings import CONTROL
 from winch_friction.simulation.motion.profile import plateau_points, profile_reference
 from winch_friction.simulation.motion.sea import Waves, fade, jonswap_sea, regular_wave
-from winch_friction.simulation.plant.parameters import PLANT, record
+from winch_friction.simulation.plant.parameters import PLANT, PLANT_FIELDS, record
 from winch_friction.simulation.plant_file import PlantFile
 from winch_friction.simulation.scenario import Jonswap, Regular, Scenario
 
 WATER_DENSITY = 1025.0  # kg/m^3
 # gains of every published comparison: position loop 1/s, speed loop N m s/rad, pressure damping m^3/s/Pa, washout s
-PRIMARY_GAINS = {"position_gain": 1.2, "speed_gain": 0.0, "damping": 1.0e-10, "damping_time": 0.5}
-SECONDARY_GAINS = {"position_gain": 2.0, "speed_gain": 20.0, "damping": 0.0, "damping_time": 1.0}
+PRIMARY_GAINS = {"position_gain": 2.0, "speed_gain": 0.0, "damping": 1.0e-10, "damping_time": 0.5}
+SECONDARY_GAINS = {"position_gain": 2.5, "speed_gain": 20.0, "damping": 0.0, "damping_time": 1.0}
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def _check(scenario: Scenario, crane: Crane) -> None:
 
 def _apply_mismatch(out: np.ndarray, scenario: Scenario) -> None:
     for name, factor in scenario.mismatch.items():
-        if name not in PLANT.names:
+        if name not in PLANT_FIELDS:
             raise InputError(
                 f"scenario '{scenario.name}': mismatch.{name} is not a plant parameter; "
                 "try leakage, bulk_modulus, line_volume, inertia, pump_lag, torque_lag or wire_stiffness"

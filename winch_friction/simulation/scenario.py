@@ -8,7 +8,18 @@ from pydantic import BeforeValidator, Field, model_validator
 from winch_friction.physics.errors import InputError
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import as_quantity, read_yaml
-from winch_friction.simulation.plant_file import Strict, quantity, validated
+from winch_friction.simulation.quantities import (
+    CubicMetres,
+    Displacement,
+    Kilograms,
+    Metres,
+    MetresPerSecond,
+    Pascals,
+    RadiansPerSecond,
+    Seconds,
+    Strict,
+    validated,
+)
 
 SCHEMA = "winch_friction.scenario/1"
 
@@ -36,18 +47,18 @@ class Regular(Strict):
     """One harmonic of crane tip heave."""
 
     kind: Literal["regular"]
-    amplitude: quantity("m") = Field(gt=0.0, le=10.0)
-    period: quantity("s") = Field(gt=2.0)
+    amplitude: Metres = Field(gt=0.0, le=10.0)
+    period: Seconds = Field(gt=2.0)
 
 
 class Jonswap(Strict):
     """An irregular sea; the crane tip follows it by `response` (vessel and crane, [J])."""
 
     kind: Literal["jonswap"]
-    significant_height: quantity("m") = Field(gt=0.0, le=15.0)
-    peak_period: quantity("s") = Field(9.0, gt=2.0)
-    gamma: float = Field(3.3, ge=1.0, le=7.0)
-    response: float = Field(0.6, gt=0.0, le=2.0)
+    significant_height: Metres = Field(gt=0.0, le=15.0)
+    peak_period: Seconds = Field(default=9.0, gt=2.0)
+    gamma: float = Field(default=3.3, ge=1.0, le=7.0)
+    response: float = Field(default=0.6, gt=0.0, le=2.0)
     seed: int | None = None
 
 
@@ -56,83 +67,83 @@ class Profile(Strict):
 
     points: Annotated[tuple[tuple[float, float], ...], BeforeValidator(_corners)] = ()
     plateaus: Annotated[tuple[float, ...], BeforeValidator(_speeds)] = ()
-    hold: quantity("s") = Field(8.0, gt=0.0)
-    ramp: quantity("s") = Field(2.0, gt=0.0)
-    rest: quantity("s") = Field(2.0, ge=0.0)
+    hold: Seconds = Field(default=8.0, gt=0.0)
+    ramp: Seconds = Field(default=2.0, gt=0.0)
+    rest: Seconds = Field(default=2.0, ge=0.0)
 
 
 class OilTemperature(Strict):
     """Oil temperature in degC: from start to end with a time constant."""
 
-    start: float = Field(40.0, ge=-20.0, le=95.0)
-    end: float | None = Field(None, ge=-20.0, le=95.0)
-    time_constant: quantity("s") = Field(600.0, gt=0.0)
+    start: float = Field(default=40.0, ge=-20.0, le=95.0)
+    end: float | None = Field(default=None, ge=-20.0, le=95.0)
+    time_constant: Seconds = Field(default=600.0, gt=0.0)
 
 
 class Water(Strict):
     """A body that is lowered through the surface."""
 
-    volume: quantity("m^3") = Field(gt=0.0)
-    height: quantity("m") = Field(gt=0.0)
-    surface: quantity("m")
-    drag_area: float = Field(5.0, ge=0.0)
-    wave_share: float = Field(0.3, ge=0.0, le=1.0)
+    volume: CubicMetres = Field(gt=0.0)
+    height: Metres = Field(gt=0.0)
+    surface: Metres
+    drag_area: float = Field(default=5.0, ge=0.0)
+    wave_share: float = Field(default=0.3, ge=0.0, le=1.0)
 
 
 class Sensors(Strict):
     """The PLC's view of the winch. Skew and offsets by channel; standard deviations in SI."""
 
-    rate: float = Field(50.0, ge=5.0, le=500.0)
-    jitter: quantity("s") = Field(0.001, ge=0.0)
-    delay: quantity("s") = Field(0.0, ge=0.0, le=0.5)
-    skew: dict[str, quantity("s")] = Field(default_factory=dict)
+    rate: float = Field(default=50.0, ge=5.0, le=500.0)
+    jitter: Seconds = Field(default=0.001, ge=0.0)
+    delay: Seconds = Field(default=0.0, ge=0.0, le=0.5)
+    skew: dict[str, Seconds] = Field(default_factory=dict)
     noise: bool = True
     quantisation: bool = True
-    pressure_noise: quantity("Pa") = Field(0.3e5, ge=0.0)
-    pressure_step: quantity("Pa") = Field(600e5 / 4096, ge=0.0)
-    pressure_offset: dict[str, quantity("Pa")] = Field(default_factory=dict)
+    pressure_noise: Pascals = Field(default=0.3e5, ge=0.0)
+    pressure_step: Pascals = Field(default=600e5 / 4096, ge=0.0)
+    pressure_offset: dict[str, Pascals] = Field(default_factory=dict)
     pressure_scale: dict[str, float] = Field(default_factory=dict)
-    encoder_counts: float = Field(1024.0, ge=0.0)
-    displacement_noise: float = Field(0.0003, ge=0.0)
+    encoder_counts: float = Field(default=1024.0, ge=0.0)
+    displacement_noise: float = Field(default=0.0003, ge=0.0)
     displacement_scale: dict[str, float] = Field(default_factory=dict)
-    displacement_offset: dict[str, quantity("m^3/rad")] = Field(default_factory=dict)
-    load_noise: quantity("kg") = Field(10.0, ge=0.0)
-    heave_noise: quantity("m/s") = Field(0.003, ge=0.0)
-    temperature_noise: float = Field(0.05, ge=0.0)
-    dropout_rate: float = Field(0.0, ge=0.0, le=1.0)
-    dropout_length: quantity("s") = Field(0.1, gt=0.0)
+    displacement_offset: dict[str, Displacement] = Field(default_factory=dict)
+    load_noise: Kilograms = Field(default=10.0, ge=0.0)
+    heave_noise: MetresPerSecond = Field(default=0.003, ge=0.0)
+    temperature_noise: float = Field(default=0.05, ge=0.0)
+    dropout_rate: float = Field(default=0.0, ge=0.0, le=1.0)
+    dropout_length: Seconds = Field(default=0.1, gt=0.0)
     dropout: Literal["nan", "missing"] = "nan"
 
 
 class Control(Strict):
     """Gains of the controller; defaults are those of every published comparison."""
 
-    position_gain: float | None = Field(None, ge=0.0)
-    speed_gain: float | None = Field(None, ge=0.0)
-    damping: float | None = Field(None, ge=0.0)
-    damping_time: float | None = Field(None, gt=0.0)
-    lead: float = Field(0.0, ge=-0.1, le=0.5)
-    drive_lag: float | None = Field(None, gt=0.0)
+    position_gain: float | None = Field(default=None, ge=0.0)
+    speed_gain: float | None = Field(default=None, ge=0.0)
+    damping: float | None = Field(default=None, ge=0.0)
+    damping_time: float | None = Field(default=None, gt=0.0)
+    lead: float = Field(default=0.0, ge=-0.1, le=0.5)
+    drive_lag: float | None = Field(default=None, gt=0.0)
 
 
 class Scenario(Strict):
     """One run of the simulated winch; SI."""
 
-    schema_: str = Field(SCHEMA, alias="schema", pattern=r"^winch_friction\.scenario/1$")
+    schema_: str = Field(default=SCHEMA, alias="schema", pattern=r"^winch_friction\.scenario/1$")
     name: str
     description: str = ""
-    duration: quantity("s") = Field(gt=0.0, le=36000.0)
+    duration: Seconds = Field(gt=0.0, le=36000.0)
     mode: Literal["normal", "ahc"]
     drive: Literal["primary", "secondary"] = "primary"
-    load: quantity("kg") = Field(gt=0.0, le=400000.0)
-    displacement: quantity("m^3/rad") = Field(gt=0.0)
-    passive_displacement: quantity("m^3/rad") | None = None
-    wire_layer: int = Field(6, ge=1)
-    wire_out: quantity("m") = Field(50.0, gt=1.0)
-    sea: Still | Regular | Jonswap = Field(Still(), discriminator="kind")
-    sea_ramp: quantity("s") = Field(10.0, gt=0.0)
-    calm_at: quantity("s") | None = None
-    calm_time: quantity("s") = Field(30.0, gt=0.0)
+    load: Kilograms = Field(gt=0.0, le=400000.0)
+    displacement: Displacement = Field(gt=0.0)
+    passive_displacement: Displacement | None = None
+    wire_layer: int = Field(default=6, ge=1)
+    wire_out: Metres = Field(default=50.0, gt=1.0)
+    sea: Still | Regular | Jonswap = Field(default=Still(), discriminator="kind")
+    sea_ramp: Seconds = Field(default=10.0, gt=0.0)
+    calm_at: Seconds | None = None
+    calm_time: Seconds = Field(default=30.0, gt=0.0)
     profile: Profile = Profile()
     oil_temperature: OilTemperature = OilTemperature()
     viscosity_truth: bool = False
@@ -141,9 +152,9 @@ class Scenario(Strict):
     control: Control = Control()
     plant: str = "winch_150t"
     mismatch: dict[str, float] = Field(default_factory=dict)
-    smooth_sign: quantity("rad/s") = Field(0.0, ge=0.0)
-    control_period: quantity("s") = Field(0.01, ge=0.001, le=0.1)
-    step: quantity("s") = Field(0.001, gt=0.0, le=0.005)
+    smooth_sign: RadiansPerSecond = Field(default=0.0, ge=0.0)
+    control_period: Seconds = Field(default=0.01, ge=0.001, le=0.1)
+    step: Seconds = Field(default=0.001, gt=0.0, le=0.005)
     start_time: float = 0.0
     hidden: dict[str, float] = Field(default_factory=dict)
 
@@ -157,7 +168,7 @@ class Scenario(Strict):
         return self
 
     def override(self, changes: dict[str, Any]) -> "Scenario":
-        """The scenario with other values, by dotted key: {'load': 15e3, 'sea.significant_height': 2.0}; checked again."""
+        """The scenario with other values by dotted key, {'load': 15e3, 'sea.period': 8.0}, checked again."""
         content = self.model_dump(by_alias=True, exclude_unset=False)
         for key, value in changes.items():
             _set(content, key.split("."), value)

@@ -1,4 +1,4 @@
-"""The simulated crane: period by period for a closed loop with real nodes, or a whole run at once; the same computation."""
+"""The simulated crane: period by period for a closed loop, or a whole run at once; the same computation."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class SimulationResult:
 
 
 class Simulator:
-    """A crane in a scenario. `model` is the friction's truth; `hidden` adds effects as (name, size), 1 the typical size.
+    """A crane in a scenario. `model` is the friction's truth; `hidden` adds effects as (name, size), 1 = typical.
 
     `step` advances one control period. The sea, the sensors' noise and the controller's are drawn from `seed`.
     """
@@ -64,7 +64,7 @@ class Simulator:
 
     def _draw(self, seed: int) -> None:
         sensors, controller = (np.random.default_rng([seed, stream]) for stream in (1, 2))
-        time = np.arange(self.periods + 1) * self.period
+        time = np.arange(self.periods + 1, dtype=np.float64) * self.period
         self.motion = prescribed_motion(self.scenario, self.crane, time, seed)
         self._scans = draw_scans(self.scenario, self.channels, sensors)
         self._noise = controller.standard_normal((self.periods + 1, 2))
@@ -110,7 +110,7 @@ class Simulator:
     def step(self, friction_feedforward: float = 0.0) -> Sample:
         """One control period on with this friction torque fed forward (N m, total at the motor shaft).
 
-        Returns the PLC's latest row; `fresh` tells whether it is a new one (the sensors may be slower than the control).
+        Returns the PLC's latest row; `fresh` tells whether it is new (the sensors may be slower than the control).
         """
         if self.finished:
             raise InputError(f"scenario '{self.scenario.name}' is over after {self.scenario.duration:g} s")

@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import BAR, CM3_PER_REV
-from winch_friction.simulation.hidden.torque import HIDDEN
+from winch_friction.simulation.hidden.torque import HIDDEN, HIDDEN_FIELDS
 from winch_friction.simulation.plant.parameters import record
 from winch_friction.simulation.sensors.channels import Channels
 
@@ -70,7 +70,7 @@ def apply_effects(
         if name not in EFFECTS:
             raise InputError(f"hidden effect '{name}' is not known; known effects are {', '.join(sorted(EFFECTS))}")
         EFFECTS[name].apply(target, float(size))
-    torque["present"] = float(any(torque[0][name] != 0.0 for name in HIDDEN.names))
+    torque["present"] = float(any(torque[0][name] != 0.0 for name in HIDDEN_FIELDS))
     return torque
 
 

@@ -35,9 +35,10 @@ def regular_wave(amplitude: float, period: float) -> Waves:
 
 
 def jonswap_sea(significant_height: float, peak_period: float, gamma: float, seed: int, components: int = 80) -> Waves:
-    """An irregular sea of unidirectional waves (Hasselmann et al. 1973), frequencies drawn inside equal-energy-free bands.
+    """An irregular sea of long-crested waves (Hasselmann et al. 1973).
 
-    The amplitudes are scaled so that the significant height 4 sigma is met exactly. Random bands keep the sea from repeating.
+    One frequency is drawn in each of equally wide bands, so that the sea does not repeat; the amplitudes are scaled so
+    that the significant height 4 sigma is met exactly.
     """
     generator = np.random.default_rng(seed)
     peak = 2.0 * math.pi / peak_period

@@ -71,7 +71,7 @@ def _tuples(sizes: tuple[int, int, int]) -> str:
 
 def _define(source: str, name: str, kernel: Any) -> Any:
     scope = {"kernel": kernel}
-    exec(source, scope)  # noqa: S102  (the source is made of indices alone, a few lines above)
+    exec(source, scope)  # the source is made of indices alone
     return scope[name]
 
 
@@ -98,13 +98,15 @@ _three = _call_by_address(3)
 _four = _call_by_address(4)
 
 
-@intrinsic
-def friction_torque(typing_context: Any, address: Any, x: Any, theta: Any, z: Any) -> Any:
-    """Call the torque function at `address`."""
+def _torque(typing_context: Any, address: Any, x: Any, theta: Any, z: Any) -> Any:
+    """Call the torque function at `address` with (x, theta, z)."""
     return _three(typing_context, address, x, theta, z)
 
 
-@intrinsic
-def friction_state_rates(typing_context: Any, address: Any, x: Any, theta: Any, z: Any, out: Any) -> Any:
+def _rates(typing_context: Any, address: Any, x: Any, theta: Any, z: Any, out: Any) -> Any:
     """Call the state rate function at `address`; fills `out` with gain and decay of each state."""
     return _four(typing_context, address, x, theta, z, out)
+
+
+friction_torque: Any = intrinsic(_torque)
+friction_state_rates: Any = intrinsic(_rates)

@@ -1,4 +1,4 @@
-"""Plant and controller together, one control period after another: the inner loop of both `simulate` and `Simulator.step`."""
+"""Plant and controller together, period after period: the inner loop of both `simulate` and `Simulator.step`."""
 
 import math
 
@@ -70,8 +70,8 @@ def run_periods(
 ):  # fmt: skip
     """Advance `count` control periods from number `first`.
 
-    `motion` (periods + 1, 4): tip height, speed, acceleration, water surface; `reference` (periods + 1, 4): shaft angle,
-    speed, acceleration, load target in m; `history` (periods + 1, len(COLUMNS)) is filled from row `first + 1` on.
+    `motion` (periods + 1, 4): tip height, speed, acceleration, water surface; `reference` (periods + 1, 4): shaft
+    angle, speed, acceleration, load target in m; `history` (periods + 1, len(COLUMNS)): filled from row `first + 1`.
     """
     period = c.period
     for k in range(first, first + count):

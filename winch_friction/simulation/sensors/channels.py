@@ -1,6 +1,7 @@
 """The measured channels: where each comes from in the plant's history and how its sensor changes it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def _sources(scenario: Scenario) -> dict[str, str]:
     return sources | {"hook_load": "hook_load", "oil_temperature": "oil_temperature", "wire_out": "wire_out"}
 
 
-def _set_sensor(row: np.ndarray, name: str, sensors: Sensors) -> None:
+def _set_sensor(row: Any, name: str, sensors: Sensors) -> None:
     quantity = name.rpartition(".")[2]
     row["delay"] = sensors.skew.get(name, 0.0)
     if quantity in ("pressure_a", "pressure_b"):

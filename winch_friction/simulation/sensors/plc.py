@@ -1,7 +1,7 @@
 """The PLC: one scan per sensor period.
 
-The speed is the encoder's angle difference over the scan, so every channel is taken, and stamped, in the middle of the scan;
-the row is there at the scan's end, plus the transport delay.
+The speed is the encoder's angle difference over the scan, so every channel is taken, and stamped, in the middle of the
+scan; the row is there at the scan's end, plus the transport delay.
 """
 
 from dataclasses import dataclass

@@ -72,7 +72,7 @@ def ties(model: FrictionModel, data: Observations) -> list[Tie]:
 
 
 def identifiable(model: FrictionModel, gear_ratio: float, motors: int) -> dict[str, FloatArray]:
-    """What normal-mode tests do determine, as coefficients (n,) over the parameters: sums of tied ones, others alone."""
+    """What normal-mode tests do determine, as coefficients (n,) over the parameters: tied ones summed."""
     names = model.parameter_names
     sums = {
         "K1 + C5": {"K1": 1.0, "C5": 1.0},

@@ -1,0 +1,173 @@
+"""Does the model hold on what it has not seen? Friction per test (paper 2 Fig 16, 17) and pressures (Fig 18, 21, 23)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.signal import bilinear, lfilter, savgol_filter
+
+from winch_friction.identification.fit_data import modelled
+from winch_friction.identification.friction_curve import FrictionCurve, curve_data
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.units import GRAVITY, RPM
+from winch_friction.physics.winch import Crane, operating_point
+from winch_friction.physics.winch.operating_point import run_drum_torque
+
+LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
+_HOOK_ONLY = 0.1  # of the heaviest test's torque
+_SMOOTHING = 0.2  # s, window of the winch's acceleration
+_WIRE_DAMPING = 0.04  # of critical, load on the wire: engineering judgement
+STANDSTILL = 3.0  # rad/s; below it friction lies anywhere within the break-away level, for any model without presliding
+
+
+@dataclass(frozen=True)
+class TestError:
+    """Modelled minus measured T_ft of one test over `speed` (n,), N m per motor.
+
+    `nominal` is the test's load torque per motor, the heaviest test's where only the hook hung.
+    """
+
+    __test__ = False  # not a pytest class
+
+    test: str
+    speed: FloatArray
+    measured: FloatArray
+    modelled: FloatArray
+    nominal: float
+
+    @property
+    def error(self) -> FloatArray:
+        """N m per motor."""
+        return self.modelled - self.measured
+
+    @property
+    def percent(self) -> FloatArray:
+        """In % of nominal torque (paper 2 Fig 17)."""
+        return 100.0 * self.error / self.nominal
+
+    def worst(self, above: bool) -> float:
+        """Largest |error| in % of nominal torque above (or below) 250 rpm; NaN without a point there."""
+        chosen = np.abs(self.percent[(self.speed >= LOW_SPEED) == above])
+        return float(chosen.max()) if len(chosen) else float("nan")
+
+
+def test_errors(model: FrictionModel, curves: Sequence[FrictionCurve]) -> list[TestError]:
+    """The errors of a whole winch model per test."""
+    heaviest = max(curve.load_torque for curve in curves)
+    return [
+        TestError(
+            test=curve.test,
+            speed=curve.speed,
+            measured=curve.friction_torque,
+            modelled=modelled(model, curve_data([curve])),
+            nominal=curve.load_torque if curve.load_torque > _HOOK_ONLY * heaviest else heaviest,
+        )
+        for curve in curves
+    ]
+
+
+test_errors.__test__ = False  # type: ignore[attr-defined]
+
+
+@dataclass(frozen=True)
+class PressureCheck:
+    """Measured and predicted pressure drop of one group along a run, Pa over `time` s; `speed` rad/s."""
+
+    run: str
+    group: str
+    time: FloatArray
+    speed: FloatArray
+    measured: FloatArray
+    predicted: FloatArray
+
+    @property
+    def rms(self) -> float:
+        """Root mean square error over the whole run, Pa."""
+        return float(np.sqrt(np.mean((self.predicted - self.measured) ** 2)))
+
+    @property
+    def moving_rms(self) -> float:
+        """Root mean square error while the winch turns, Pa: at standstill friction is undetermined."""
+        moving = np.abs(self.speed) > STANDSTILL
+        return float(np.sqrt(np.mean((self.predicted - self.measured)[moving] ** 2)))
+
+    def mean_error(self, direction: int) -> float:
+        """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa."""
+        return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM]))
+
+
+def pressure_check(run: Run, crane: Crane, model: FrictionModel, width: float = 1.0) -> PressureCheck:
+    """Predict the pressure drop of the driving group from the torque balance, motion, load and the passive side.
+
+    `width` rad/s smooths the direction at reversal. The driving group is `active` where there is one: it carries all the
+    friction, the passive motors' too.
+    """
+    group = "active" if "active" in run.groups else run.groups[0]
+    drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}
+    drum_torque = run_drum_torque(run, crane)
+    inertia, acceleration = inertia_torque(run, crane)
+    held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
+    capacity = crane.motor_count(group) * run[f"{group}.displacement"]
+    predicted = held / capacity
+    for _ in range(4):  # the driving group's friction depends on its own pressure, weakly
+        points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration, width)
+        predicted = (held + np.asarray(model.torque(points))) / capacity
+    return PressureCheck(run.name, group, run.time, run["motor_speed"], drop[group], predicted)
+
+
+def _other_groups(run: Run, crane: Crane, group: str, drop: dict[str, FloatArray]) -> Any:
+    others = [name for name in run.groups if name != group]
+    return sum(crane.motor_count(name) * run[f"{name}.displacement"] * drop[name] for name in others)
+
+
+def _points(
+    run: Run, crane: Crane, drop: dict[str, FloatArray], drum_torque: FloatArray, acceleration: FloatArray, width: float
+) -> tuple[Any, ...]:
+    speed = _smooth(run, run["motor_speed"], 0)
+    groups = [
+        (np.full(len(run), float(crane.motor_count(name))), np.abs(p), np.abs(p), run[f"{name}.displacement"])
+        for name, p in drop.items()
+    ]
+    return operating_point(
+        direction=np.tanh(speed / width),
+        speed=speed,
+        drum_torque=drum_torque,
+        groups=groups,
+        motor_total=np.full(len(run), float(crane.motor_total(run.groups))),
+        acceleration=acceleration,
+    )
+
+
+def inertia_torque(run: Run, crane: Crane) -> tuple[FloatArray, FloatArray]:
+    """Torque in N m at the motor shaft that accelerates winch and load, and the shaft's acceleration in rad/s^2.
+
+    The load hangs on the wire as on a spring; a moving crane tip moves the wire too.
+    """
+    acceleration = _smooth(run, run["motor_speed"], 1)
+    load = run["hook_load"]
+    radius = run_drum_torque(run, crane) / (load * GRAVITY) / crane.gear_ratio  # m of wire per rad
+    wire_speed = radius * run["motor_speed"] + run.column("heave_velocity", 0.0)
+    return crane.inertia * acceleration + load * radius * _load_acceleration(run, crane, wire_speed), acceleration
+
+
+def _load_acceleration(run: Run, crane: Crane, wire_speed: FloatArray) -> FloatArray:
+    """Acceleration of the load when the wire's upper end moves at `wire_speed`: a lightly damped spring and mass."""
+    length = float(np.mean(run.column("wire_out")))
+    if not (np.isfinite(length) and np.isfinite(crane.wire_stiffness)):
+        return _smooth(run, wire_speed, 1)
+    natural = np.sqrt(crane.wire_stiffness / length / float(np.mean(run["hook_load"])))
+    rest = [2.0 * _WIRE_DAMPING * natural, natural**2]
+    numerator, denominator = bilinear([*rest, 0.0], [1.0, *rest], fs=1.0 / _step(run))
+    return np.asarray(lfilter(numerator, denominator, wire_speed))
+
+
+def _step(run: Run) -> float:
+    return float(np.median(np.diff(run.time)))
+
+
+def _smooth(run: Run, values: FloatArray, derivative: int) -> FloatArray:
+    step = _step(run)
+    window = max(int(_SMOOTHING / step) | 1, 5)
+    return np.asarray(savgol_filter(values, min(window, len(values) // 2 * 2 - 1), 2, deriv=derivative, delta=step))

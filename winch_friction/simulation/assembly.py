@@ -100,7 +100,7 @@ def plant_record(scenario: Scenario, crane: Crane, plant: PlantFile) -> np.ndarr
         "surface": water.surface if water else 0.0,
         "water_drag": 0.5 * WATER_DENSITY * water.drag_area if water else 0.0,
         "start_time": scenario.start_time,
-        "passive_calculated": 0.0,
+        "calculated_exponent": 0.0,
         "viscous_reference": 40.0,
         "viscosity_share": float(scenario.viscosity_truth),
     }
@@ -159,21 +159,22 @@ def control_record(scenario: Scenario, crane: Crane, plant: PlantFile, nominal: 
     )
 
 
-def prescribed_motion(scenario: Scenario, crane: Crane, time: FloatArray, seed: int) -> Motion:
-    """Sea, profile and oil temperature at the control ticks."""
+def prescribed_motion(scenario: Scenario, crane: Crane, time: FloatArray, seed: int, full_speed: float) -> Motion:
+    """Sea, profile and oil temperature at the control ticks; `full_speed` rad/s is what the pump's whole flow gives."""
     metres_per_radian = crane.drum.radius(scenario.wire_layer) / crane.gear_ratio
     tip, surface = _tip_motion(scenario, time, seed)
-    winch = profile_reference(_profile_points(scenario), time)
+    winch = profile_reference(_profile_points(scenario, full_speed), time)
     compensation = -tip / metres_per_radian if scenario.mode == "ahc" else np.zeros_like(tip)
     reference = np.column_stack([winch + compensation, winch[:, 0] * metres_per_radian])
     return Motion(np.column_stack([tip, surface]), reference, _oil(scenario, time))
 
 
-def _profile_points(scenario: Scenario) -> list[tuple[float, float]]:
+def _profile_points(scenario: Scenario, full_speed: float) -> list[tuple[float, float]]:
     profile = scenario.profile
     if profile.points:
         return list(profile.points)
-    return plateau_points(profile.plateaus, profile.hold, profile.ramp, profile.rest) if profile.plateaus else []
+    speeds = profile.plateaus or tuple(share * full_speed for share in profile.pump_shares)
+    return plateau_points(speeds, profile.hold, profile.ramp, profile.rest) if speeds else []
 
 
 def _waves(scenario: Scenario, seed: int) -> tuple[Waves | None, float]:

@@ -63,10 +63,13 @@ class Jonswap(Strict):
 
 
 class Profile(Strict):
-    """Shaft speed over time: corner points, or plateaus each hoisted and lowered (paper 2 Fig 6)."""
+    """Shaft speed over time: corner points, or plateaus each hoisted and lowered (paper 2 Fig 6), given
+    as speeds or as shares of the pump's flow.
+    """
 
     points: Annotated[tuple[tuple[float, float], ...], BeforeValidator(_corners)] = ()
     plateaus: Annotated[tuple[float, ...], BeforeValidator(_speeds)] = ()
+    pump_shares: tuple[Annotated[float, Field(gt=0.0, le=1.0)], ...] = ()
     hold: Seconds = Field(default=8.0, gt=0.0)
     ramp: Seconds = Field(default=2.0, gt=0.0)
     rest: Seconds = Field(default=2.0, ge=0.0)

@@ -65,9 +65,13 @@ class Simulator:
     def _draw(self, seed: int) -> None:
         sensors, controller = (np.random.default_rng([seed, stream]) for stream in (1, 2))
         time = np.arange(self.periods + 1, dtype=np.float64) * self.period
-        self.motion = prescribed_motion(self.scenario, self.crane, time, seed)
+        self.motion = prescribed_motion(self.scenario, self.crane, time, seed, self._full_speed())
         self._scans = draw_scans(self.scenario, self.channels, sensors)
         self._noise = controller.standard_normal((self.periods + 1, 2))
+
+    def _full_speed(self) -> float:
+        control = self._control[0]
+        return float(control["pump_flow"] / control["drive_displacement"])
 
     def _reset(self) -> None:
         settings = self.scenario.sensors
@@ -147,7 +151,7 @@ class Simulator:
                 setattr(groups.setdefault(group, GroupSample()), channel, value)
             else:
                 scalars[name] = value
-        return Sample(time=values[0], groups=groups, wire_layer=float(self.scenario.wire_layer), **scalars)
+        return Sample(time=self.scenario.start_time + values[0], groups=groups, wire_layer=float(self.scenario.wire_layer), **scalars)
 
     def run(self, feedforward: FloatArray | None = None) -> "SimulationResult":
         """The rest of the scenario at once; `feedforward` holds one friction torque per remaining control period."""

@@ -117,10 +117,10 @@ def _line(t: Target, size: float) -> None:
     "accumulator_thermal", "adiabatic gas with 20 s to the wall, starting 2 % warm; the PLC calculates polytropically"
 )
 def _thermal(t: Target, size: float) -> None:
+    t.plant["calculated_exponent"] = t.plant["gas_exponent"]
     t.plant["gas_exponent"] += (1.4 - t.plant["gas_exponent"]) * min(size, 1.0)
     t.plant["gas_time"] = 20.0
     t.plant["gas_start"] = 1.0 + 0.02 * size
-    t.plant["passive_calculated"] = 1.0
 
 
 @effect("inertia_error", "10 % more inertia at the shaft")

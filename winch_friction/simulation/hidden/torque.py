@@ -64,7 +64,7 @@ def shaft_loss(hidden, motors, w, drum_torque, gear_ratio, tension_torque, time)
     if hidden.stribeck_speed > 0.0:
         level = hidden.stribeck_share * drum_torque + hidden.stribeck_torque
         stribeck = motors * level * math.exp(-w / hidden.stribeck_speed)
-    wear = motors * hidden.wear_rate * (time - hidden.wear_epoch)
+    wear = motors * hidden.wear_rate * max(time - hidden.wear_epoch, 0.0)
     gear = hidden.gear_loss * drum_torque / gear_ratio + hidden.sheave_loss * tension_torque
     return stribeck + wear + gear + motors * hidden.brake
 

@@ -69,6 +69,15 @@ def gas_pressure(p, state):
 
 
 @numba.njit(cache=True)
+def reported_gas_pressure(p, state):
+    """What the PLC holds for the accumulator's pressure: measured, or calculated from the wire's motion, Pa."""
+    if p.calculated_exponent == 0.0:
+        return gas_pressure(p, state)
+    volume = p.gas_volume + p.passive_count * p.passive_displacement * state[ANGLE]
+    return p.gas_pressure * (p.gas_volume / volume) ** p.calculated_exponent
+
+
+@numba.njit(cache=True)
 def line_drop(p, flow):
     """Pressure lost between transducers and motors at a flow, Pa."""
     return p.line_resistance * flow * abs(flow)

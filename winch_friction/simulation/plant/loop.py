@@ -4,8 +4,9 @@ import math
 
 import numba
 
+from winch_friction.physics.units import GRAVITY
 from winch_friction.simulation.control.controller import control
-from winch_friction.simulation.plant.equations import gas_pressure, stored_energy
+from winch_friction.simulation.plant.equations import gas_pressure, reported_gas_pressure, stored_energy
 from winch_friction.simulation.plant.integrator import integrate_period
 from winch_friction.simulation.plant.state import (
     ANGLE,
@@ -51,7 +52,7 @@ def sense(p, sensing, state, measured, noise):
     measured[1] = (angle - measured[0]) / sensing[2] if step > 0.0 else state[SPEED]
     measured[0] = angle
     measured[2] = pressure_difference(p, state) + sensing[1] * noise[0]
-    measured[3] = gas_pressure(p, state) - p.passive_low + sensing[1] * noise[1] if p.passive_count > 0.0 else 0.0
+    measured[3] = reported_gas_pressure(p, state) - p.passive_low + sensing[1] * noise[1] if p.passive_count > 0.0 else 0.0
 
 
 @numba.njit(cache=True)
@@ -110,7 +111,8 @@ def record_row(p, row, state, memory, motion, reference, friction, tension, drum
     row[13] = motion[1]
     row[14] = reference[1]
     row[16] = drum
-    row[17] = drum / (9.81 * p.radius)
+    paid_out = -p.metres_per_radian * state[ANGLE]
+    row[17] = drum / (GRAVITY * p.radius) - (p.mass + p.wire_mass * paid_out - p.reported_mass)
     row[18] = p.wire_out - p.metres_per_radian * state[ANGLE]
     row[20] = tension
     row[21] = memory[DIRECTION]
@@ -119,3 +121,4 @@ def record_row(p, row, state, memory, motion, reference, friction, tension, drum
     row[25] = state[E_FRICTION]
     row[26] = state[E_LOST]
     row[27] = stored_energy(p, state)
+    row[28] = reported_gas_pressure(p, state) if p.passive_count > 0.0 else 0.0

@@ -53,4 +53,5 @@ COLUMNS = (
     "energy_friction",
     "energy_lost",
     "energy_stored",
+    "passive_reported",
 )

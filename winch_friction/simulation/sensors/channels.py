@@ -44,7 +44,11 @@ def _sources(scenario: Scenario) -> dict[str, str]:
     sources = {SPEED: "shaft_angle", "speed_reference": "speed_reference", "shaft_angle": "shaft_angle"}
     sources |= {f"{driven}.{channel}": column for channel, column in GROUP_SOURCES.items()}
     if scenario.mode == "ahc":
-        sources |= {f"passive.{channel}": f"passive_{column}" for channel, column in GROUP_SOURCES.items()}
+        sources |= {
+            "passive.pressure_a": "passive_reported",
+            "passive.pressure_b": "passive_pressure_b",
+            "passive.displacement": "passive_displacement",
+        }
         sources["heave_velocity"] = "heave_velocity"
     return sources | {"hook_load": "hook_load", "oil_temperature": "oil_temperature", "wire_out": "wire_out"}
 

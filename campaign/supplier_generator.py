@@ -16,9 +16,7 @@ TABLE_1 = {  # D_max cm^3/rev: K1 N m s, K2 N s^2/m^8, K3 -, K4 N m, K5 m^5/N
     215: (4.05e-3, 3.69e10, 0.0050, 14.0, 1.16e-14),
     170: (2.48e-3, 5.01e10, 0.0049, 11.0, 0.925e-14),
 }
-LOW_DISPLACEMENT_LOSS = (
-    1e-6  # m^3, factor of p (1 - D/D_max)^4, which MJ4 lacks: 3 % of T_N at 0.27 D_max, 0.2 % at 0.55
-)
+LOW_DISPLACEMENT_LOSS = 1.5e-7  # m^3, factor of p (1 - D/D_max)^4, which MJ4 lacks: 0.5 % of T_N at 0.27 D_max
 _SPEEDS = np.array([400, 600, 800, 1000, 1250, 1500, 1750, 2000, 2250, 2500])  # rpm
 _PRESSURES = np.array([50, 100, 150, 200, 250, 300, 350])  # bar
 _SETTINGS = np.array([1.0, 0.85, 0.7, 0.55, 0.4, 0.27])  # D / D_max

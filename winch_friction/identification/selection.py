@@ -66,12 +66,17 @@ def bic(result: FitResult) -> float:
 
 
 def choose(scores: Sequence[ModelScore]) -> ModelScore:
-    """The model with the fewest parameters whose held-out error lies within one standard error of the best."""
+    """The model with the fewest parameters whose held-out error is within one standard error of the best's."""
     if not scores:
         raise InputError("no model was scored: name at least one")
     best = scores[0]
     if not np.isfinite(best.held_out):
         return best
-    spread = np.std(best.held_out_by_group) / np.sqrt(len(best.held_out_by_group))
-    near = [score for score in scores if score.held_out <= best.held_out + spread]
+    near = [score for score in scores if _as_good(score, best)]
     return min(near, key=lambda score: (score.fitted.parameter_count, score.held_out))
+
+
+def _as_good(score: ModelScore, best: ModelScore) -> bool:
+    """Whether the held-out squared errors, displacement by displacement, are no worse than the best's by chance."""
+    excess = score.held_out_by_group**2 - best.held_out_by_group**2
+    return bool(excess.mean() <= excess.std(ddof=1) / np.sqrt(len(excess)))

@@ -1,0 +1,85 @@
+"""Step 1 of the practice: from the supplier's table to a motor model with honest uncertainty."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from winch_friction.identification.fit import FitResult, fit
+from winch_friction.identification.motor_models import initial_model, motor_model_named
+from winch_friction.identification.selection import ModelScore, choose, score_models
+from winch_friction.identification.supplier_table import FitRange, SupplierTable
+from winch_friction.physics.friction import FrictionModel
+
+Progress = Callable[[Any, str], Any]
+
+
+def silent(items: Any, description: str) -> Any:
+    """No progress bar."""
+    return items
+
+
+@dataclass(frozen=True)
+class MotorIdentification:
+    """`table` inside the range; `scores` best first; `by_complex` the complex method's fits by model name, beside them;
+    `recommended` by held-out displacement; `chosen` is the fit that becomes the seed.
+    """
+
+    table: SupplierTable
+    weighting: str
+    scores: tuple[ModelScore, ...]
+    by_complex: dict[str, FitResult]
+    recommended: str
+    chosen: ModelScore
+
+    def score(self, name: str) -> ModelScore:
+        """The score of one model."""
+        return next(each for each in self.scores if each.name == name)
+
+
+def identify_motor(
+    table: SupplierTable,
+    models: Sequence[str],
+    *,
+    chosen: str = "",
+    fit_range: FitRange | None = None,
+    weighting: str = "nominal",
+    with_complex: bool = True,
+    seed: int = 0,
+    progress: Progress = silent,
+    **options: int,
+) -> MotorIdentification:
+    """Fit every model both ways and score it; `chosen` overrides the recommended one; `options` go to the complex method."""
+    names = list(dict.fromkeys(motor_model_named(name).name for name in models))
+    if chosen and motor_model_named(chosen).name not in names:
+        names.append(motor_model_named(chosen).name)
+    inside = (fit_range or FitRange()).select(table)
+    scores = score_models(inside, names, weighting)
+    by_complex = {}
+    for name in progress(names if with_complex else [], "complex method"):
+        start = initial_model(motor_model_named(name), inside.max_displacement)
+        by_complex[name] = fit(start, inside.fit_data(weighting), "complex", seed=seed, **options)
+    recommended = choose(scores)
+    wanted = motor_model_named(chosen).name if chosen else recommended.name
+    return MotorIdentification(
+        table=inside,
+        weighting=weighting,
+        scores=tuple(scores),
+        by_complex=by_complex,
+        recommended=recommended.name,
+        chosen=next(each for each in scores if each.name == wanted),
+    )
+
+
+def motor_seed(found: MotorIdentification, name: str, provenance: dict[str, Any]) -> FrictionModel:
+    """The chosen fit as a seed model: values, covariance, where they come from."""
+    result = found.chosen.fitted
+    said = {
+        "method": f"bounded least squares, weighting '{found.weighting}'",
+        "paper1_model": found.chosen.name,
+        "cost": result.cost,
+        "rms": {"value": result.rms, "unit": "N*m"},
+        "observations": result.observations,
+        "condition": result.condition,
+        **provenance,
+    }
+    return replace(result.model, name=name, provenance=said)

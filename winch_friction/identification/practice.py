@@ -1,0 +1,150 @@
+"""The whole practice from one folder: supplier's table, logged tests, AHC tests; nothing is written here."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from winch_friction.identification.black_box import BlackBoxMap
+from winch_friction.identification.motor_identification import (
+    MotorIdentification,
+    Progress,
+    identify_motor,
+    motor_seed,
+    silent,
+)
+from winch_friction.identification.motor_models import MOTOR_MODELS
+from winch_friction.identification.prior import UnitSpread, load_unit_spread
+from winch_friction.identification.supplier_file import read_supplier_table
+from winch_friction.identification.supplier_table import SupplierTable
+from winch_friction.identification.system_identification import SystemIdentification, identify_system, winch_seed
+from winch_friction.identification.verification import PressureCheck, TestError, pressure_check, test_errors
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch import Crane
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.runs import read_run
+from winch_friction.records.strict_yaml import Section, read_yaml
+
+SCHEMA = "winch_friction.practice/1"
+
+
+@dataclass(frozen=True)
+class PracticeFolder:
+    """What `practice.yaml` names, read: `tests` are fitted, `held_out` only verified, `ahc` are heave-compensated runs."""
+
+    name: str
+    crane: Crane
+    table: SupplierTable
+    motor_model: str
+    tests: tuple[Run, ...]
+    held_out: tuple[Run, ...]
+    ahc: tuple[Run, ...]
+    hashes: Mapping[str, str]
+    note: str
+
+
+def read_practice(folder: Path) -> PracticeFolder:
+    """Read a practice folder; raises `InputError` for anything that is missing or cannot be read."""
+    folder = Path(folder)
+    path = folder / "practice.yaml"
+    if not path.is_file():
+        raise InputError(f"{folder}: 'practice.yaml' is missing; it names crane, supplier table and tests")
+    top = Section(read_yaml(path), str(path))
+    if top.text("schema") != SCHEMA:
+        raise InputError(f"{path}: schema '{top.text('schema')}' is not '{SCHEMA}'")
+    local = folder / f"{top.text('crane')}.yaml"
+    crane = load_crane(local if local.is_file() else top.text("crane"))
+    names = {key: _names(top, key) for key in ("tests", "held_out_tests", "ahc_tests")}
+    runs = {key: tuple(read_run(folder / name, crane) for name in names[key]) for key in names}
+    supplier = folder / top.text("supplier_table")
+    content = PracticeFolder(
+        name=top.text("name"),
+        crane=crane,
+        table=read_supplier_table(supplier, crane.max_displacement or None),
+        motor_model=top.text("motor_model", "mj4"),
+        tests=runs["tests"],
+        held_out=runs["held_out_tests"],
+        ahc=runs["ahc_tests"],
+        hashes={each.name: _hash(each) for each in (supplier, *(folder / n for group in names.values() for n in group))},
+        note=top.text("note", ""),
+    )
+    top.close()
+    return content
+
+
+def _names(top: Section, key: str) -> list[str]:
+    names = top.get(key) or []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{top.where}: {key} must be a list of file names")
+    if key == "tests" and not names:
+        raise InputError(f"{top.where}: tests must name at least one logged test")
+    return names
+
+
+def _hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Practice:
+    """The practice's results: motor, system, seeds, and the verification of three winch models.
+
+    `errors` by model name: on all tests, fitted first; `normal_mode` and `ahc` pressure checks by model name.
+    """
+
+    folder: PracticeFolder
+    motor: MotorIdentification
+    motor_seed: FrictionModel
+    system: SystemIdentification
+    seed: FrictionModel
+    map: BlackBoxMap
+    errors: dict[str, list[TestError]]
+    normal_mode: dict[str, PressureCheck]
+    ahc: dict[str, list[PressureCheck]]
+
+    @property
+    def models(self) -> dict[str, FrictionModel]:
+        """The winch models that are compared."""
+        return {
+            "first loop": self.system.first_loop,
+            "second loop": self.system.last_loop,
+            "joint fit": self.system.joint.model,
+        }
+
+
+def run_practice(
+    folder: PracticeFolder,
+    *,
+    spread: UnitSpread | None = None,
+    resamples: int = 40,
+    seed: int = 0,
+    progress: Progress = silent,
+    **options: int,
+) -> Practice:
+    """All four steps, the second loop, the joint fit and the verification."""
+    spread = spread or load_unit_spread()
+    provenance: dict[str, Any] = {"data_sha256": dict(folder.hashes)}
+    motor = identify_motor(
+        folder.table, list(MOTOR_MODELS), chosen=folder.motor_model, seed=seed, progress=progress, **options
+    )
+    fitted = motor_seed(motor, f"{folder.name}_motor", provenance)
+    system = identify_system(
+        folder.tests, folder.crane, fitted, spread, held_out=folder.held_out, resamples=resamples, seed=seed, **options
+    )
+    models = {"first loop": system.first_loop, "second loop": system.last_loop, "joint fit": system.joint.model}
+    curves = [test.curve for test in (*system.tests, *system.held_out)]
+    heaviest = max(system.tests, key=lambda test: (test.curve.load_torque * test.curve.displacement, test.run.name))
+    return Practice(
+        folder=folder,
+        motor=motor,
+        motor_seed=fitted,
+        system=system,
+        seed=winch_seed(system, folder.crane, folder.name, provenance),
+        map=BlackBoxMap(motor.table),
+        errors={name: test_errors(model, curves) for name, model in models.items()},
+        normal_mode={name: pressure_check(heaviest.run, folder.crane, model) for name, model in models.items()},
+        ahc={name: [pressure_check(run, folder.crane, model) for run in folder.ahc] for name, model in models.items()},
+    )

@@ -5,6 +5,8 @@ from functools import lru_cache
 from scipy.stats import chi2
 
 CONFIDENCE = 0.95
+OUTLIER = 9.0
+SMALLEST_FACTOR, LARGEST_FACTOR = 0.05, 100.0
 
 
 @lru_cache(maxsize=32)
@@ -12,6 +14,22 @@ def nis_band(samples: int) -> tuple[float, float]:
     """The 95 % band of the mean of `samples` independent NIS values of one measurement."""
     tail = 0.5 * (1.0 - CONFIDENCE)
     return chi2.ppf(tail, samples) / samples, chi2.ppf(1.0 - tail, samples) / samples
+
+
+class VarianceFactor:
+    """A common factor of all noise variances that follows what the innovations show (covariance matching, Mehra 1970).
+
+    Noise figures are known to a factor at best; their ratios matter for the gain, their size for the sigmas.
+    """
+
+    def __init__(self, time_constant: float) -> None:
+        self._time_constant = time_constant
+        self.value = 1.0
+
+    def step(self, nis: float, dt: float) -> None:
+        """Take one NIS, `dt` s after the last; a single outlier counts no more than 3 sigma."""
+        change = (min(nis, OUTLIER) - 1.0) * min(1.0, dt / self._time_constant)
+        self.value = min(max(self.value * (1.0 + change), SMALLEST_FACTOR), LARGEST_FACTOR)
 
 
 class Consistency:

@@ -10,7 +10,7 @@ import numpy as np
 from winch_friction.estimation import prediction
 from winch_friction.estimation.checkpoint import filter_state, restored_state
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.consistency import Consistency
+from winch_friction.estimation.consistency import Consistency, VarianceFactor
 from winch_friction.estimation.drive import saturated, torque_variance, usable
 from winch_friction.estimation.estimate import Estimate, ParameterEstimate
 from winch_friction.estimation.excitation import Excitation
@@ -18,33 +18,48 @@ from winch_friction.estimation.friction import FrictionFunctions, mean_direction
 from winch_friction.estimation.kalman import SpeedFilter
 from winch_friction.estimation.load import HangingLoad
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.prediction import DISTURBANCE, FIRST_PARAMETER, LOAD, SPEED, Step
+from winch_friction.estimation.prediction import (
+    DISTURBANCE,
+    ENCODER,
+    ENCODER_CHANGE,
+    FIRST_PARAMETER,
+    LOAD,
+    LOAD_SPEED,
+    SPEED,
+    STRETCH,
+    Step,
+)
 from winch_friction.estimation.status import ParameterStatus
+from winch_friction.estimation.wire import wire_step
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
 
+UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
+UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
 RESTART_AFTER = 10  # rejections in a row that mean the speed was lost, not the sensor
 NAN = math.nan
 
 
 @dataclass(frozen=True, slots=True)
 class _Accepted:
-    """What is kept of the last accepted sample: time s, drive torque N m, measured speed and heave speed rad/s."""
+    """What is kept of the last accepted sample: time s, drive torque N m, measured speed rad/s, heave velocity m/s."""
 
     time: float
     drive: float
     speed: float
-    heave_speed: float
+    heave: float
 
 
 class FrictionEstimator:
     """Learns the friction parameters from speed and drive torque, one sample at a time; its time is the samples' time.
 
-    An extended Kalman filter over [omega + heave share, load torque beyond the hook load, disturbance, scaled
-    parameters]; the drive torque of the measured pressures (or of an electric motor) is the input, the shaft speed
+    An extended Kalman filter over [omega, wire stretch, load speed, load torque beyond the hook load,
+    disturbance, encoder rounding (2), scaled parameters]; the drive torque of the measured pressures (or of an
+    electric motor) is the
+    input, the shaft speed
     the measurement. The direction of a step is the mean sign between its two speeds. The disturbance is a first-order
     Gauss-Markov torque:
     what no term explains is correlated in time (wire, sensor skew), and taken as white it would make the filter far
@@ -64,13 +79,14 @@ class FrictionEstimator:
 
     def reset(self) -> None:
         """Back to the seed."""
-        self._filter = SpeedFilter(FIRST_PARAMETER + self._parameters.size)
+        self._filter = SpeedFilter(prediction.measurement(FIRST_PARAMETER + self._parameters.size))
         self._filter.P = np.zeros_like(self._filter.P)
         self._filter.P[FIRST_PARAMETER:, FIRST_PARAMETER:] = self._parameters.prior
         self._friction = FrictionFunctions(self.seed)
         self._load = HangingLoad(self.crane, self.config.load_filter)
         self._excitation = Excitation(self.config.excitation_time)
         self.consistency = Consistency(self.config.nis_window)
+        self._factor = VarianceFactor(self.config.adaptation_time)
         self._statuses = [ParameterStatus(self.config) for _ in self.seed.values]
         self._previous: _Accepted | None = None
         self._begun = False
@@ -103,8 +119,7 @@ class FrictionEstimator:
         step, point = self._step_to(sample, dt)
         reason = self._resting(sample, step)
         self._predict(step, learning=not reason)
-        measured = sample.motor_speed + self._heave_speed(sample)
-        noise = self._speed_variance(sample)
+        measured, noise = sample.motor_speed, self._speed_variance
         innovation, variance = self._filter.innovation(measured, noise)
         if not abs(innovation) <= self.config.gate * math.sqrt(variance):
             self._filter.x, self._filter.P, self._load.mass = kept
@@ -115,6 +130,7 @@ class FrictionEstimator:
         nis = innovation * innovation / variance
         if not step.stick:
             self.consistency.step(nis)
+            self._factor.step(nis, dt)
         return self._estimate(sample, True, innovation, variance, step.friction.torque)
 
     def _step_to(self, sample: Sample, dt: float) -> tuple[Step, tuple[float, ...]]:
@@ -126,10 +142,13 @@ class FrictionEstimator:
         point = self._operating_point(sample, mean_speed, last.speed)
         friction = self._friction.at(point, self._theta(), len(sample.groups))
         drive = 0.5 * (last.drive + sample_drive_torque(sample, self.crane))
-        inertia = self._load.inertia(self._mass(layer), layer)
+        heave = 0.5 * (last.heave + _heave(sample))
         stick = min(abs(last.speed), abs(sample.motor_speed)) < self.config.stick_speed
         variance = torque_variance(sample, self.crane, self.config)
-        return Step(drive - self._load.shaft_torque(layer), variance, inertia, dt, friction, stick), point
+        length = sample.wire_out if math.isfinite(sample.wire_out) else self.config.wire_length
+        wire = wire_step(self.crane, self._mass(layer), layer, max(1.0, length), self.config.wire_damping, dt)
+        torque = drive - self._load.shaft_torque(layer)
+        return Step(torque, variance, heave, dt, wire, friction, stick), point
 
     def _operating_point(self, sample: Sample, speed: float, before: float) -> tuple[float, ...]:
         drum_torque = self.crane.gear_ratio * self._load.shaft_torque(sample.wire_layer)
@@ -141,7 +160,7 @@ class FrictionEstimator:
 
     def _predict(self, step: Step, learning: bool) -> None:
         x, covariance = self._filter.x, self._filter.P
-        noise = prediction.process_noise(len(x), step, self.config, self._load_is_known)
+        noise = prediction.process_noise(len(x), step, self.config, self._factor.value, self._load_is_known)
         if learning:
             forgotten = prediction.forgotten(covariance, step.duration, self.config, self._parameters.prior)
             noise[FIRST_PARAMETER:, FIRST_PARAMETER:] = forgotten
@@ -198,11 +217,10 @@ class FrictionEstimator:
     def _restart(self, sample: Sample) -> Estimate:
         """Take the speed as measured and keep everything else, after a gap, a jump of time or a run of rejections."""
         x, covariance = self._filter.x.copy(), self._filter.P.copy()
-        covariance[[SPEED, DISTURBANCE], :] = 0.0
-        covariance[:, [SPEED, DISTURBANCE]] = 0.0
-        covariance[SPEED, SPEED] = self._speed_variance(sample)
-        covariance[DISTURBANCE, DISTURBANCE] = self.config.disturbance_std**2
-        x[SPEED, 0], x[DISTURBANCE, 0] = sample.motor_speed + self._heave_speed(sample), 0.0
+        for state, value, variance in self._fresh_motion(sample):
+            covariance[state, :] = covariance[:, state] = 0.0
+            covariance[state, state] = variance
+            x[state, 0] = value
         self._filter.x, self._filter.P = x, covariance
         self._friction.memory = None
         self._previous = self._kept(sample)
@@ -210,6 +228,20 @@ class FrictionEstimator:
         self.counts["restarted"] += 1
         self._state = "restarted"
         return self._estimate(sample, True, NAN, NAN, NAN)
+
+    def _fresh_motion(self, sample: Sample) -> list[tuple[int, float, float]]:
+        """State, value and variance of everything that moves, with the load following the wire."""
+        r = self.crane.drum.radius(sample.wire_layer) / self.crane.gear_ratio
+        speed = sample.motor_speed
+        variance = self._speed_variance + 2.0 * prediction.rounding_variance(self.config)
+        return [
+            (SPEED, speed, variance),
+            (STRETCH, 0.0, UNKNOWN_STRETCH**2),
+            (LOAD_SPEED, _heave(sample) + r * speed, r * r * variance + UNKNOWN_LOAD_SPEED**2),
+            (DISTURBANCE, 0.0, self.config.disturbance_std**2),
+            (ENCODER, 0.0, prediction.rounding_variance(self.config)),
+            (ENCODER_CHANGE, 0.0, 0.0),
+        ]
 
     def _rejected(self, sample: Sample, innovation: float, variance: float) -> Estimate:
         self._rejected_in_a_row += math.isfinite(innovation)
@@ -219,7 +251,7 @@ class FrictionEstimator:
     def _kept(self, sample: Sample) -> _Accepted:
         self._layer = sample.wire_layer
         drive = sample_drive_torque(sample, self.crane)
-        return _Accepted(sample.time, drive, sample.motor_speed, self._heave_speed(sample))
+        return _Accepted(sample.time, drive, sample.motor_speed, _heave(sample))
 
     # -- small quantities
     @property
@@ -230,16 +262,9 @@ class FrictionEstimator:
     def _mass(self, layer: float) -> float:
         return self._load.mass_by(float(self._filter.x[LOAD, 0]), layer)
 
-    def _heave_speed(self, sample: Sample) -> float:
-        return self._load.heave_speed(self._mass(sample.wire_layer), sample)
-
-    def _speed_variance(self, sample: Sample) -> float:
-        config = self.config
-        variance = config.speed_noise**2 + config.speed_step**2 / 12.0
-        if math.isfinite(sample.heave_velocity):
-            share = self._load.heave_share(self._mass(sample.wire_layer), sample.wire_layer)
-            variance += (share * config.heave_noise) ** 2
-        return variance
+    @property
+    def _speed_variance(self) -> float:
+        return self._factor.value * self.config.speed_noise**2
 
     def _theta(self) -> list[float]:
         return self._parameters.values(self._filter.x[FIRST_PARAMETER:, 0]).tolist()
@@ -247,7 +272,6 @@ class FrictionEstimator:
     def _estimate(
         self, sample: Sample, accepted: bool, innovation: float, variance: float, friction: float
     ) -> Estimate:
-        heave = self._previous.heave_speed if self._previous else 0.0
         return Estimate(
             time=sample.time,
             accepted=accepted,
@@ -255,7 +279,7 @@ class FrictionEstimator:
             innovation=innovation,
             innovation_variance=variance,
             nis=innovation * innovation / variance if variance > 0.0 else NAN,
-            speed=float(self._filter.x[SPEED, 0]) - heave,
+            speed=float(self._filter.x[SPEED, 0]),
             drum_torque=self.drum_torque,
             friction_torque=friction,
         )
@@ -295,6 +319,7 @@ class FrictionEstimator:
             "state": self._state,
             "enabled": self._enabled,
             "drum_torque": self.drum_torque,
+            "noise_factor": math.sqrt(self._factor.value),
             "nis_mean": self.consistency.last_mean,
             "nis_windows": self.consistency.windows,
             "nis_share_inside": self.consistency.share_inside,
@@ -319,3 +344,8 @@ class FrictionEstimator:
         for status, level in zip(self._statuses, levels, strict=True):
             status.level = level
         self._begun = True
+
+
+def _heave(sample: Sample) -> float:
+    """Velocity of the crane tip, m/s; a crane that does not say stands still."""
+    return sample.heave_velocity if math.isfinite(sample.heave_velocity) else 0.0

@@ -1,4 +1,4 @@
-"""The hanging load as the estimator sees it: measured mass, its inertia, its share in the shaft's momentum."""
+"""The hanging load as the estimator sees it: the measured mass, or the one that the load torque means."""
 
 import math
 
@@ -40,23 +40,3 @@ class HangingLoad:
         if self.measured:
             return self.mass
         return max(0.0, shaft_torque * self._crane.gear_ratio / (GRAVITY * self._crane.drum.radius(layer)))
-
-    def inertia(self, mass: float, layer: float) -> float:
-        """Inertia of winch and hanging mass at the shaft, kg m^2."""
-        return self._crane.inertia + self._crane.load_inertia(mass, layer)
-
-    def heave_speed(self, mass: float, sample: Sample) -> float:
-        """What the tip's heave adds to the shaft speed in the momentum, rad/s.
-
-        The rope carries m (g + a) with a = dv_heave/dt + (R/i) domega/dt, so that J domega/dt + m (R/i) dv_heave/dt
-        balances the torques: the sum omega + m (R/i) v_heave / J integrates them without differentiating a noisy
-        velocity.
-        """
-        if not math.isfinite(sample.heave_velocity):
-            return 0.0
-        return self.heave_share(mass, sample.wire_layer) * sample.heave_velocity
-
-    def heave_share(self, mass: float, layer: float) -> float:
-        """Shaft speed per heave velocity in that sum, rad/m."""
-        lever = self._crane.drum.radius(layer) / self._crane.gear_ratio
-        return mass * lever / self.inertia(mass, layer)

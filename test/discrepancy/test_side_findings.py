@@ -1,0 +1,66 @@
+"""Effects that block means of the torque balance cannot show: ripple over the angle, lost speed, warm gas."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from campaign.rig import make_dataset
+from winch_friction.discrepancy.candidates.accumulator import accumulator_candidates
+from winch_friction.discrepancy.flow_balance import ORDINARY, lost_speed
+from winch_friction.discrepancy.prepare import prepare
+from winch_friction.discrepancy.ripple import angle_ripple
+from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+
+@cache
+def _prepared(flavour, *effects):
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    runs = [Run(f"run_{k}", columns) for k, columns in enumerate(make_dataset(17, flavour, effects))]
+    return runs, [prepare(run, crane, model) for run in runs], crane
+
+
+@pytest.mark.parametrize("flavour", ["paper", "rough"])
+def test_a_ripple_is_found_at_its_order_and_nothing_where_there_is_none(flavour):
+    found = angle_ripple(*_prepared(flavour, ("torque_ripple", 1.0)))
+    assert found.found
+    assert min(abs(found.order - order) for order in (1.0, 0.2, 2.0, 1 / 6)) < 0.02
+    assert not angle_ripple(*_prepared(flavour)).found
+
+
+def test_lost_speed_gives_the_leakage():
+    runs, prepared, _ = _prepared("slow_log", ("slip_leakage", 1.0))
+    found = lost_speed(runs, prepared)
+    truth = 50 * 2 * np.pi / 60 * 215e-6 / (2 * np.pi) / 150e5  # 50 rpm at 150 bar and 40 degC
+    assert found.found
+    assert found.leakage == pytest.approx(truth, rel=0.02)
+    assert found.gain > 0.9
+
+
+def test_no_speed_is_lost_where_the_controller_knows_its_leakage():
+    runs, prepared, _ = _prepared("rough")
+    found = lost_speed(runs, prepared)
+    assert abs(found.leakage) < 0.05 * ORDINARY
+    assert not found.found
+
+
+def test_without_a_command_there_is_nothing_to_compare():
+    runs, prepared, _ = _prepared("no_reference")
+    assert lost_speed(runs, prepared) is None
+
+
+def test_warm_gas_leaves_the_trace_that_its_candidate_expects():
+    _, null, _ = _prepared("si_files")
+    _, warm, _ = _prepared("si_files", ("accumulator_thermal", 1.0))
+    candidate = accumulator_candidates()[0]
+    k = 8
+    both = null[k].moving & warm[k].moving
+    trace = (warm[k].gap - null[k].gap)[both]
+    left = []
+    for variant in candidate.shapes(warm):
+        columns = candidate.columns(warm[k], variant.shape)[both]
+        beta, *_ = np.linalg.lstsq(columns, trace, rcond=None)
+        left.append(np.var(trace - columns @ beta) / np.mean(trace**2))
+    assert min(left) < 0.05

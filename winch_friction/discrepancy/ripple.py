@@ -1,0 +1,126 @@
+"""Torque that repeats with the shaft's angle: a spectrum over angle of the drive torque, at the full sampling rate.
+
+Block means average a ripple away, and in time it is smeared by every change of speed; over angle it is one line. Each
+run keeps its own phase, because an angle counted from the start of a record has no common zero.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter
+from scipy.stats import gamma
+
+from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.smoothing import smooth
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
+from winch_friction.physics.winch.torque_balance import run_drive_torque
+
+BINS_PER_REVOLUTION = 64
+LOWEST_ORDER, HIGHEST_ORDER = 0.1, 20.0  # periods per revolution of the motor shaft
+LONGEST_SPECTRUM = 1 << 18
+NEIGHBOURHOOD = 401  # lines whose median is the background
+WINDOW = 15  # samples; slower than this is friction, not ripple
+MOST_OF_ONE_RUN = 10.0  # of a line's power over its background
+SIGNIFICANT = 1e-8  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
+
+
+@dataclass(frozen=True)
+class Ripple:
+    """The strongest line: periods per revolution, amplitude as a share of T_d/i (at most
+    what the sampling lets through), family-wise p-value."""
+
+    order: float
+    amplitude: float
+    std: float
+    p_value: float
+    prominence: float  # of the line's power over its neighbours'
+
+    @property
+    def found(self) -> bool:
+        """A line that stands out surely and is large enough to matter."""
+        return self.p_value < SIGNIFICANT and self.amplitude > SMALLEST
+
+
+def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
+    """Search all runs for torque periodic in the shaft angle; None where no run moves or carries a load."""
+    # a fast ripple is swallowed by the inertia before it reaches the oil, a slow one drowns in the differentiated speed
+    found = [_search(runs, prepared, crane, with_inertia) for with_inertia in (False, True)]
+    lines = [line for line in found if line is not None]
+    return min(lines, key=lambda line: (line.p_value, -line.prominence)) if lines else None
+
+
+def _search(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, with_inertia: bool) -> Ripple | None:
+    tables = [_moving(run, p, crane, with_inertia) for run, p in zip(runs, prepared, strict=True)]
+    tables = [table for table in tables if len(table[0]) > 200 and np.any(table[2])]
+    if not tables:
+        return None
+    bins = max(float(np.ptp(angle)) for angle, _, _ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
+    size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
+    orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
+    use = (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
+    power = np.zeros(use.sum())
+    for angle, torque, static in tables:
+        line = _power(angle, torque * static, size)[use]
+        background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
+        # an encoder's steps beat with the sampling in one run at one speed: no single run may decide
+        power += np.minimum(line / background, MOST_OF_ONE_RUN)
+    return _strongest(orders[use], power, tables)
+
+
+def _moving(
+    run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Angle, fast part of the drive torque and T_d/i of the moving samples."""
+    good = np.isfinite(run["time"])
+    time = run.time[good]
+    torque = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good])
+    grid = prepared.time + prepared.start
+    moving = np.interp(time, grid, prepared.moving.astype(float)) > 0.99
+    angle = np.interp(time, grid, prepared.angle)
+    static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
+    if with_inertia:
+        inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
+        torque = torque - inertia * np.gradient(_speed(run, crane)[good], time)
+    fast = torque - smooth(torque, WINDOW)
+    return angle[moving], fast[moving], static[moving]
+
+
+def _speed(run: Run, crane: Crane) -> FloatArray:
+    speed = run["motor_speed"] if "motor_speed" in run else run["drum_speed"] * crane.gear_ratio
+    return np.nan_to_num(speed)
+
+
+def _power(angle: FloatArray, torque: FloatArray, size: int) -> FloatArray:
+    """|F|^2 over angle, shape (size // 2 + 1,)."""
+    cell = np.floor((angle - angle.min()) * BINS_PER_REVOLUTION / (2 * np.pi)).astype(int) % size
+    folded = np.bincount(cell, weights=torque, minlength=size)
+    return np.abs(np.fft.rfft(folded)) ** 2
+
+
+def _strongest(
+    orders: FloatArray, power: FloatArray, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]
+) -> Ripple:
+    best = int(np.argmax(power))
+    alone = gamma.sf(power[best], len(tables))
+    order = float(orders[best])
+    amplitude, std = _amplitude(order, tables)
+    prominence = float(power[best] / len(tables))
+    return Ripple(order, amplitude, std, float(min(1.0, 2 * alone * len(orders))), prominence)
+
+
+def _amplitude(order: float, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[float, float]:
+    """Amplitude as a share of T_d/i, the phase free in each run, weighted by the runs' certainty."""
+    values, weights = [], []
+    for angle, torque, static in tables:
+        wave = static[:, None] * np.column_stack([np.sin(order * angle), np.cos(order * angle)])
+        beta, *_ = np.linalg.lstsq(wave, torque, rcond=None)
+        noise = torque - wave @ beta
+        variance = noise.var() / max((wave**2).sum() / 2.0, 1e-300)
+        # the square of an amplitude is biased by its noise
+        values.append(max(float(beta @ beta) - 2.0 * variance, 0.0))
+        weights.append(1.0 / max(variance, 1e-300))
+    total = float(np.sum(weights))
+    return float(np.sqrt(np.dot(values, weights) / total)), float(np.sqrt(1.0 / total))

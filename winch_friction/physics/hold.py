@@ -14,6 +14,7 @@ from typing import Any
 
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, GroupSample, Run, Sample
 
+SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
 DEPTH = 64  # values kept per input: 0.3 s at 200 Hz, more than any skew between topics
 # inputs that change slowly by nature; every other one is bound by the general limit
 SLOW_INPUTS = {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0}
@@ -89,7 +90,7 @@ class InputHold:
 
     def _value(self, column: str, time: float) -> float:
         for stamp, value in reversed(self._held.get(column, ())):
-            if stamp <= time:
+            if stamp <= time + SIMULTANEOUS:
                 return value if time - stamp <= self._limit(column) else math.nan
         return math.nan
 

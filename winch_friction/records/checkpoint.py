@@ -12,7 +12,7 @@ SCHEMA = "winch_friction.checkpoint/1"
 
 
 def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
-    """Write an estimator's snapshot (plain types, keyed by crane and seed) so that a crash leaves the old or the new."""
+    """Write an estimator's snapshot (plain types, keyed by crane and seed): a crash leaves the old or the new."""
     content = {"schema": SCHEMA, "snapshot": dict(snapshot)}
     return write_text(Path(path), json.dumps(content, indent=1, allow_nan=False))
 

@@ -25,7 +25,7 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     if path.is_dir() or path.suffix in BAG_SUFFIXES:
         from winch_friction.records.bags import read_bag
 
-        return read_bag(path, crane, **bag_options)
+        return read_bag(path, crane, complete=complete, **bag_options)
     if path.suffix == ".csv":
         from winch_friction.records.csv_file import read_csv_run
 

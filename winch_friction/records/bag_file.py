@@ -1,0 +1,219 @@
+"""A rosbag2 recording opened for reading: its topics matched to the winch's, its messages in the order of arrival."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.topics import Input, TopicMap, crane_topics, stamp_time
+
+NANOSECOND = 1e-9
+_PEEKED = 20  # messages looked at to tell a displacement's unit
+_LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a fraction
+_CLOCKS_APART = 60.0  # s; header stamps and receipt times that differ by more are of different clocks
+
+
+@dataclass(frozen=True)
+class Message:
+    """One message of the winch: its contract topic, the message, and its receipt in s on the clock of the stamps."""
+
+    source: Input
+    message: Any
+    receipt: float
+
+
+@dataclass
+class Bag:
+    """An open recording.
+
+    `topics` is the map of the winch's inputs in it; `warnings` say what was passed over. Made by `open_bag`.
+    """
+
+    name: str
+    topics: TopicMap
+    actual: Mapping[str, str]  # contract topic -> topic in the bag
+    warnings: list[str]
+    _reader: Any
+    _typestore: Any
+    _offset: float = 0.0
+    _broken: dict[str, int] = field(default_factory=dict)
+
+    def inputs(self) -> Iterator[Message]:
+        """The winch's input messages, in the order of their receipt."""
+        sources = {actual: self.topics.inputs[contract] for contract, actual in self.actual.items()}
+        for topic, receipt, message in self.messages(*sources):
+            yield Message(sources[topic], message, receipt - self._offset)
+        self.warnings += [f"{self.name}: topic '{t}': {n} messages cannot be read" for t, n in self._broken.items()]
+
+    def messages(self, *topics: str) -> Iterator[tuple[str, float, Any]]:
+        """Topic, receipt in s and message of some of the bag's topics; unreadable messages are counted and left out."""
+        connections = [each for each in self._reader.connections if each.topic in topics]
+        if not connections:
+            return
+        for connection, receipt, raw in self._reader.messages(connections):
+            try:
+                message = self._typestore.deserialize_cdr(raw, connection.msgtype)
+            except Exception:  # whatever the bytes of a broken message lead to
+                self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
+                continue
+            yield connection.topic, receipt * NANOSECOND, message
+
+    def topics_ending(self, suffix: str) -> list[str]:
+        """Topics of the bag by the end of their name, e.g. `/friction_torque`."""
+        return sorted({each.topic for each in self._reader.connections if each.topic.endswith(suffix)})
+
+
+@contextmanager
+def open_bag(
+    path: Path,
+    crane: Crane | None = None,
+    *,
+    remap: Mapping[str, str] | None = None,
+    namespace: str = "",
+    **conventions: Any,
+) -> Iterator[Bag]:
+    """Open a bag folder, .mcap or .db3 file.
+
+    `remap` gives contract topics (`winch/joint_states`) their names in the bag; `namespace` chooses one of several
+    winches; `conventions` are those of `TopicMap`, except that without `displacement_unit` it is told from the numbers.
+    Raises `InputError` for what is not a bag, has no message or has no speed topic.
+    """
+    path = Path(path)
+    with _reader(path) as reader:
+        if reader.message_count == 0:
+            raise InputError(f"{path}: the bag holds no message; was the recorder started before the nodes?")
+        typestore = _typestore()
+        found = _matched(path, reader, namespace, dict(remap or {}))
+        groups = _groups(found)
+        topics = _topics(path, reader, typestore, crane, groups, found, conventions)
+        actual = {contract: topic for contract, topic in found.items() if contract in topics.inputs}
+        bag = Bag(path.name, topics, actual, [], reader, typestore)
+        _check_types(path, reader, bag)
+        bag.warnings += _passed_over(path.name, reader, typestore, set(actual.values()))
+        bag._offset = _clock_offset(bag)
+        yield bag
+
+
+@contextmanager
+def _reader(path: Path) -> Iterator[Any]:
+    from rosbags.rosbag2 import Reader
+
+    try:
+        reader = Reader(_storage(path))
+        reader.open()
+    except Exception as error:  # rosbags raises its own errors, sqlite's, struct's and assertions for broken files
+        said = (str(error) or type(error).__name__).splitlines()[0][:120]
+        raise InputError(f"{path}: not a readable rosbag2 recording ({said})") from error
+    try:
+        yield reader
+    finally:
+        reader.close()
+
+
+def _storage(path: Path) -> Path:
+    """The folder, or its only storage file when the recorder was killed before it wrote metadata.yaml."""
+    if not path.is_dir() or (path / "metadata.yaml").is_file():
+        return path
+    files = sorted(each for each in path.iterdir() if each.suffix in (".mcap", ".db3"))
+    if len(files) != 1:
+        raise InputError(f"{path}: not a rosbag2 folder: no metadata.yaml and {len(files)} storage files")
+    return files[0]
+
+
+def _typestore() -> Any:
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+def _matched(path: Path, reader: Any, namespace: str, remap: dict[str, str]) -> dict[str, str]:
+    """Contract topic -> topic in the bag, for all topics that end like one of the winch's."""
+    names = sorted({each.topic for each in reader.connections if each.msgcount})
+    speed = remap.get("winch/joint_states") or _speed_topic(path, names, namespace)
+    if speed not in names:
+        raise InputError(f"{path}: topic '{speed}' has no message; the bag has {', '.join(names)}")
+    prefix = speed.removesuffix("winch/joint_states")
+    own = {name[len(prefix) :]: name for name in names if prefix != speed and name.startswith(f"{prefix}winch/")}
+    return {**own, **remap, "winch/joint_states": speed}
+
+
+def _speed_topic(path: Path, names: list[str], namespace: str) -> str:
+    ending = f"/{namespace.strip('/')}/winch/joint_states".replace("//", "/")
+    found = [name for name in names if name.endswith(ending)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(f"{path}: several winches: {', '.join(found)}; choose one by its namespace")
+    raise InputError(
+        f"{path}: no message on a topic '...{ending}'; the bag has {', '.join(names)}; remap winch/joint_states to the "
+        "topic of the winch's speed"
+    )
+
+
+def _groups(found: Mapping[str, str]) -> tuple[str, ...]:
+    parts = [contract.split("/") for contract in found]
+    return tuple(dict.fromkeys(p[1] for p in parts if len(p) == 3 and p[2] in ("pressure_a", "pressure_b")))
+
+
+def _topics(
+    path: Path, reader: Any, typestore: Any, crane: Crane | None, groups: tuple[str, ...],
+    found: Mapping[str, str], conventions: dict[str, Any],
+) -> TopicMap:  # fmt: skip
+    if "displacement_unit" not in conventions:
+        plain = [found[f"winch/{g}/displacement"] for g in groups if f"winch/{g}/displacement" in found]
+        conventions["displacement_unit"] = _displacement_unit(reader, typestore, plain)
+    if crane is not None:
+        return crane_topics(crane, groups, **conventions)
+    if conventions["displacement_unit"] == "fraction" and groups:
+        raise InputError(f"{path}: displacements are fractions; give the crane, whose max_displacement they refer to")
+    return TopicMap(groups=groups, **conventions)
+
+
+def _displacement_unit(reader: Any, typestore: Any, topics: list[str]) -> str:
+    """Settings up to 1 and m^3/rad of about 1e-5 lie five decades apart: the numbers tell."""
+    connections = [c for c in reader.connections if c.topic in topics and c.msgtype.endswith("JointState")]
+    if not connections:
+        return "m3_per_rad"
+    for count, (connection, _, raw) in enumerate(reader.messages(connections)):
+        positions = typestore.deserialize_cdr(raw, connection.msgtype).position
+        if any(abs(value) > _LARGEST_DISPLACEMENT for value in positions):
+            return "fraction"
+        if count >= _PEEKED:
+            break
+    return "m3_per_rad"
+
+
+def _check_types(path: Path, reader: Any, bag: Bag) -> None:
+    types = {each.topic: each.msgtype for each in reader.connections}
+    for contract, actual in bag.actual.items():
+        expected = bag.topics.inputs[contract].type_name
+        if types[actual] != expected:
+            raise InputError(
+                f"{path}: topic '{actual}' is {types[actual]}, expected {expected}; std_msgs/msg/Float64 is accepted "
+                "for channels named in float64_channels"
+            )
+
+
+def _passed_over(name: str, reader: Any, typestore: Any, used: set[str]) -> list[str]:
+    rest = {each.topic: each.msgtype for each in reader.connections if each.msgcount and each.topic not in used}
+    unknown = {topic: kind for topic, kind in rest.items() if kind not in typestore.types}
+    said = [
+        f"{name}: topic '{topic}' is of a type that is not installed, {kind}: read past"
+        for topic, kind in unknown.items()
+    ]
+    known = [topic for topic in rest if topic not in unknown]
+    return said + ([f"{name}: topics that are not the winch's, read past: {', '.join(known)}"] if known else [])
+
+
+def _clock_offset(bag: Bag) -> float:
+    """Receipt minus stamp in s when the recorder's clock and the stamps' are different ones, else zero."""
+    speed = bag.topics.inputs[bag.topics.speed_topic]
+    if not speed.stamped:
+        return 0.0
+    for _, receipt, message in bag.messages(bag.actual[speed.topic]):
+        offset = receipt - stamp_time(message)
+        return offset if abs(offset) > _CLOCKS_APART else 0.0
+    return 0.0

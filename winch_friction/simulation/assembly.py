@@ -93,7 +93,7 @@ def plant_record(scenario: Scenario, crane: Crane, plant: PlantFile) -> np.ndarr
         "gas_start": 1.0,
         "passive_low": gas.low_pressure,
         "make_up": passive * plant.leakage * (gas.pressure - gas.low_pressure),
-        "presliding": plant.presliding,
+        "presliding": scenario.presliding or plant.presliding,
         "direction_width": scenario.smooth_sign,
         "buoyancy": water.volume * WATER_DENSITY * GRAVITY if water else 0.0,
         "body_height": water.height if water else 1.0,

@@ -69,8 +69,8 @@ def _cycle_content(name: str, displacement: float, load: float) -> dict[str, Any
 def gap_campaign(seed: int = 0) -> list[Scenario]:
     """Twelve runs of 175-240 s at 50 Hz over two months: 8 constant-speed cycles and 4 of heave compensation.
 
-    Loads, oil temperatures, wire lengths and plateaus are drawn around the plan from `seed`; simulate run k with a seed of
-    its own.
+    Loads, oil temperatures, wire lengths and plateaus are drawn around the plan from `seed`; simulate each run with a
+    seed of its own.
     """
     generator = np.random.default_rng([seed, 12])
     runs = [_drawn_cycle(k, plan, generator) for k, plan in enumerate(_CYCLES)]
@@ -100,7 +100,7 @@ def _circumstances(number: int, plan: _Cycle | _Compensation, generator: np.rand
     oil = plan.oil + generator.uniform(-2.0, 2.0)
     return {
         "wire_layer": plan.layer,
-        "wire_out": float(generator.uniform(30.0, 300.0)),
+        "wire_out": float(generator.uniform(40.0, 150.0)),
         "oil_temperature": {"start": oil, "end": oil + generator.uniform(4.0, 10.0), "time_constant": 200.0},
         "start_time": CAMPAIGN_START + 5.0 * DAY * number + generator.uniform(0.0, 0.3) * DAY,
     }

@@ -15,6 +15,7 @@ from winch_friction.simulation.quantities import (
     Metres,
     MetresPerSecond,
     Pascals,
+    Radians,
     RadiansPerSecond,
     Seconds,
     Strict,
@@ -155,6 +156,7 @@ class Scenario(Strict):
     control: Control = Control()
     plant: str = "winch_150t"
     mismatch: dict[str, float] = Field(default_factory=dict)
+    presliding: Radians | None = Field(default=None, gt=0.0)
     smooth_sign: RadiansPerSecond = Field(default=0.0, ge=0.0)
     control_period: Seconds = Field(default=0.01, ge=0.001, le=0.1)
     step: Seconds = Field(default=0.001, gt=0.0, le=0.005)

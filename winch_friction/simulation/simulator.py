@@ -151,7 +151,12 @@ class Simulator:
                 setattr(groups.setdefault(group, GroupSample()), channel, value)
             else:
                 scalars[name] = value
-        return Sample(time=self.scenario.start_time + values[0], groups=groups, wire_layer=float(self.scenario.wire_layer), **scalars)
+        return Sample(
+            time=self.scenario.start_time + values[0],
+            groups=groups,
+            wire_layer=float(self.scenario.wire_layer),
+            **scalars,
+        )
 
     def run(self, feedforward: FloatArray | None = None) -> "SimulationResult":
         """The rest of the scenario at once; `feedforward` holds one friction torque per remaining control period."""

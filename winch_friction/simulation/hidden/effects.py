@@ -114,12 +114,12 @@ def _line(t: Target, size: float) -> None:
 
 
 @effect(
-    "accumulator_thermal", "adiabatic gas with 20 s to the wall, starting 2 % warm; the PLC calculates polytropically"
+    "accumulator_thermal", "adiabatic gas with 60 s to the wall, starting 2 % warm; the PLC calculates polytropically"
 )
 def _thermal(t: Target, size: float) -> None:
     t.plant["calculated_exponent"] = t.plant["gas_exponent"]
     t.plant["gas_exponent"] += (1.4 - t.plant["gas_exponent"]) * min(size, 1.0)
-    t.plant["gas_time"] = 20.0
+    t.plant["gas_time"] = 60.0
     t.plant["gas_start"] = 1.0 + 0.02 * size
 
 

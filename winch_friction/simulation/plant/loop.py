@@ -52,7 +52,9 @@ def sense(p, sensing, state, measured, noise):
     measured[1] = (angle - measured[0]) / sensing[2] if step > 0.0 else state[SPEED]
     measured[0] = angle
     measured[2] = pressure_difference(p, state) + sensing[1] * noise[0]
-    measured[3] = reported_gas_pressure(p, state) - p.passive_low + sensing[1] * noise[1] if p.passive_count > 0.0 else 0.0
+    measured[3] = (
+        reported_gas_pressure(p, state) - p.passive_low + sensing[1] * noise[1] if p.passive_count > 0.0 else 0.0
+    )
 
 
 @numba.njit(cache=True)

@@ -51,7 +51,7 @@ PLANT_FIELDS = {
     "water_drag": "N s^2/m^2",
     "start_time": "s, Unix",
     "viscous_reference": "degC at which the model's viscous terms hold",
-    "calculated_exponent": "1, the PLC calculates the passive pressure from the wire with this exponent; 0: measures it",
+    "calculated_exponent": "1, the PLC calculates the passive pressure with this exponent; 0: measures it",
     "viscosity_share": "1, how much of Walther's change the viscous terms follow",
 }
 

@@ -1,0 +1,102 @@
+"""The plant against what can be worked out by hand."""
+
+import numpy as np
+import pytest
+from clean_sensors import CLEAN
+
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.units import BAR, GRAVITY
+from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.winch.torque_balance import run_drive_torque
+from winch_friction.simulation import Simulator, simulate
+from winch_friction.simulation.plant.friction_kernel import friction_kernel
+
+
+def position(scenario, crane, model, **changes):
+    return simulate(scenario.override({**CLEAN, **changes}), crane, model, seed=3).truth["position_error"]
+
+
+@pytest.mark.parametrize("drive", ["primary", "secondary"])
+def test_the_time_step_converges(drive, ahc, crane, model):
+    scenario = ahc.override({"drive": drive, "duration": 40.0})
+    exact = position(scenario, crane, model, step=1e-4)
+    errors = [np.abs(position(scenario, crane, model, step=s) - exact).max() for s in (2e-3, 1e-3, 5e-4)]
+    assert errors[1] < 1e-5  # m at the shipped step
+    assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2]
+
+
+def test_nothing_moves_at_rest(ahc, crane, model):
+    still = ahc.override({**CLEAN, "sea": {"kind": "still"}, "duration": 120.0})
+    truth = simulate(still, crane, model).truth
+    assert np.abs(truth["position_error"]).max() < 1e-4
+    assert np.abs(truth["motor_speed"][6000:]).max() < 1e-3
+
+
+def test_a_held_load_sticks(crane, model, cycle):
+    """The pump off, leakage lowers the load until friction carries what the falling pressure does not."""
+    held = cycle.override({**CLEAN, "profile": {}, "duration": 20.0})
+    truth = simulate(held, crane, model).truth
+    assert abs(truth["motor_speed"][-1]) < 3.0
+    assert -1.0 <= truth["direction"].min() <= truth["direction"].max() <= 1.0
+
+
+def test_the_pressures_carry_load_inertia_and_friction(cycle, crane, model):
+    """The torque balance of DOMAIN section 1 holds on the logged run at constant speed."""
+    run = simulate(cycle.override(CLEAN), crane, model).run
+    drum = run_drum_torque(run, crane)
+    friction = model.torque(run_operating_points(run, crane, drum_torque=drum))
+    steady = (np.abs(np.gradient(run["motor_speed"], run.time)) < 0.5) & (np.abs(run["motor_speed"]) > 3.0)
+    residual = run_drive_torque(run, crane) - drum / crane.gear_ratio - friction
+    assert steady.sum() > 300
+    assert abs(np.median(residual[steady])) < 0.01 * np.abs(friction[steady]).mean()
+
+
+def test_passive_motors_balance_55_t(ahc, crane, model):
+    simulator = Simulator(ahc.override({"passive_displacement": None}), crane, model)
+    truth = simulator.truth()
+    torque = 8 * truth["passive_displacement"] * 275 * BAR
+    assert torque == pytest.approx(55e3 * GRAVITY * 1.136 / 250, rel=1e-9)
+    assert truth["passive_displacement"] == pytest.approx(70e-6 / (2 * np.pi), rel=5e-3)
+
+
+def test_wire_stretches_by_the_tension(ahc, crane, model):
+    truth = simulate(ahc.override(CLEAN), crane, model).truth
+    stretch = truth["heave"] + truth["shaft_angle"] * 1.136 / 250 - truth["position_error"]
+    stiffness = crane.wire_stiffness / 50.0
+    static = 55e3 * GRAVITY
+    elastic = static + stiffness * stretch
+    assert np.corrcoef(elastic, truth["tension"])[0, 1] > 0.9
+    assert truth["tension"].mean() == pytest.approx(static, rel=1e-3)
+
+
+def test_kernel_is_the_model(cycle, crane, model):
+    """The address that the plant calls gives the model's own torque."""
+    import ctypes
+
+    kernel = friction_kernel(model)
+    double = ctypes.POINTER(ctypes.c_double)
+    function = ctypes.CFUNCTYPE(ctypes.c_double, double, double, double)(kernel.torque_address)
+    run = simulate(cycle, crane, model).run
+    x = run_operating_points(run, crane, drum_torque=run_drum_torque(run, crane))
+    expected = model.torque(x)
+    theta = np.array(model.values)
+    empty = np.zeros(1)
+    for row in (500, 1200, 2000):
+        point = np.array([np.broadcast_to(column, len(run))[row] for column in x] + [0.0, 0.0, 0.0, 3e-5])
+        value = function(*(array.ctypes.data_as(double) for array in (point, theta, empty)))
+        assert value == pytest.approx(expected[row], rel=1e-12)
+
+
+def test_memory_of_the_models_own_terms_is_carried(ahc, crane, model):
+    from winch_friction.physics.friction.registry import registered_terms
+
+    stateful = [term for term in registered_terms().values() if term.state is not None]
+    if not stateful:
+        pytest.skip("no term with memory is declared")
+    term = stateful[0]
+    values = (*model.values, *(p.typical for p in term.parameters if p.name not in model.parameter_names))
+    truth = FrictionModel("with_memory", (*model.terms, term), values, constants=model.constants)
+    result = simulate(ahc.override({"duration": 30.0}), crane, truth)
+    assert np.isfinite(result.truth["friction_torque"]).all()
+    plain = simulate(ahc.override({"duration": 30.0}), crane, model)
+    assert not np.array_equal(result.truth["friction_torque"], plain.truth["friction_torque"])

@@ -1,0 +1,121 @@
+"""`winch-friction simulate`: a scenario becomes run files."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.physics.errors import InputError
+
+
+def command(
+    scenario: Annotated[
+        str, typer.Argument(help="Scenario file, shipped name, or a set: [bold]gap_campaign[/bold], paper_tests.")
+    ] = "",
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "crane_150t",
+    model: Annotated[str, typer.Option(help="Model file or shipped name: the friction's truth.")] = "a6vm215_crane2",
+    out: Annotated[Path, typer.Option(help="Folder for the runs, or the file of a single run.")] = Path("runs"),
+    seed: Annotated[int, typer.Option(min=0, help="Seed of sea, sensors and campaign.")] = 0,
+    hide: Annotated[
+        list[str] | None, typer.Option(help="Effect to hide in the plant, EFFECT or EFFECT=SIZE (1 = typical).")
+    ] = None,
+    kind: Annotated[str, typer.Option("--format", help="csv, parquet, mcap or db3, for a folder of runs.")] = "csv",
+    truth: Annotated[bool, typer.Option(help="Write the plant's truth beside each run.")] = False,
+    force: Annotated[bool, typer.Option(help="Overwrite runs that exist.")] = False,
+    effects: Annotated[bool, typer.Option("--effects", help="List the effects that can be hidden, and end.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
+) -> None:
+    """Simulate a scenario, or a set of them, and write what the crane's PLC would have logged.
+
+    Examples:
+
+      winch-friction simulate ahc_55t_215 --out run.csv
+
+      winch-friction simulate gap_campaign --hide brake_drag --seed 7 --out runs/ --truth
+
+      winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
+    """
+    from winch_friction.cli.console import progress, show_json, show_table
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+
+    hidden = [_effect(text) for text in hide or []]
+    if effects:
+        _list_effects(as_json)
+        return
+    if not scenario:
+        raise InputError("which scenario? Give a file, a shipped name, gap_campaign or paper_tests")
+    plan = _plan(scenario, seed, out, kind)
+    _refuse_overwriting([path for _, _, path in plan], force)
+    winch, friction = load_crane(crane), load_model(model)
+    rows = []
+    for chosen, run_seed, path in progress(plan, "simulating", len(plan)):
+        rows.append(_simulate_to(path, chosen, winch, friction, run_seed, hidden, truth))
+    if as_json:
+        show_json({"runs": rows, "hidden": dict(hidden), "seed": seed})
+    else:
+        show_table("simulated", list(rows[0]), [list(row.values()) for row in rows])
+
+
+def _effect(text: str) -> tuple[str, float]:
+    from winch_friction.simulation.hidden.catalogue import effect_names
+
+    name, _, size = text.partition("=")
+    if name not in effect_names():
+        raise InputError(f"--hide {name}: not an effect; known effects are {', '.join(sorted(effect_names()))}")
+    try:
+        return name, float(size) if size else 1.0
+    except ValueError:
+        raise InputError(f"--hide {text}: '{size}' is not a number; write EFFECT=SIZE, 1 = typical") from None
+
+
+def _list_effects(as_json: bool) -> None:
+    from winch_friction.cli.console import show_json, show_table
+    from winch_friction.simulation.hidden.catalogue import EFFECTS
+
+    if as_json:
+        show_json({name: effect.typical for name, effect in EFFECTS.items()})
+    else:
+        show_table("effects to hide", ["effect", "size 1"], [[e.name, e.typical] for e in EFFECTS.values()])
+
+
+def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Path]]:
+    from winch_friction.simulation import load_scenario
+    from winch_friction.simulation.campaigns import CAMPAIGNS
+
+    if kind not in ("csv", "parquet", "mcap", "db3"):
+        raise InputError(f"--format {kind}: not a kind of run file; use csv, parquet, mcap or db3")
+    if name in CAMPAIGNS:
+        if out.suffix:
+            raise InputError(f"--out {out}: '{name}' is a set of runs and needs a folder")
+        return [(s, 1000 * seed + k, out / f"{s.name}.{kind}") for k, s in enumerate(CAMPAIGNS[name](seed), 1)]
+    scenario = load_scenario(name)
+    return [(scenario, seed, out if out.suffix else out / f"{scenario.name}.{kind}")]
+
+
+def _refuse_overwriting(paths: list[Path], force: bool) -> None:
+    for path in paths:
+        if path.exists() and not force:
+            raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
+
+
+def _simulate_to(
+    path: Path, scenario: Any, crane: Any, model: Any, seed: int, hidden: list[tuple[str, float]], truth: bool
+) -> dict[str, Any]:
+    from winch_friction.records.runs import write_run
+    from winch_friction.simulation import simulate
+
+    result = simulate(scenario, crane, model, seed, hidden)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_run(result.run, path)
+    if truth:
+        kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
+        write_run(result.truth, path.with_name(f"{path.stem}_truth{kind}"))
+    time, speed = result.run.time, result.truth["motor_speed"]
+    return {
+        "run": str(path),
+        "seconds": float(time[-1] - time[0]),
+        "rows": len(result.run),
+        "largest speed [rpm]": float(max(abs(speed)) * 30.0 / 3.141592653589793),
+        "position error [mm RMS]": float(1e3 * (result.truth["position_error"] ** 2).mean() ** 0.5),
+    }

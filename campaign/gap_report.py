@@ -1,5 +1,6 @@
 """The gap campaign's table: issue bars, then every effect, then what went wrong."""
 
+import json
 import subprocess
 from collections import Counter, defaultdict
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from typing import Any
 from campaign.gap_cases import Counts
 
 Row = dict[str, Any]
+COST = Path("out/campaign_gap/cost.json")  # written by campaign.gap_cost
 
 
 def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
@@ -19,6 +21,7 @@ def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
     parts = [
         _head(rows, failed, counts),
         _bars(good, failed),
+        _cost(),
         _effects(good),
         _outside(good),
         _pairs(good),
@@ -115,6 +118,29 @@ def _reduction(singles: Sequence[Row]) -> str:
 def _spread(rows: Sequence[Row], key: str, unit: str) -> str:
     values = [row[key] for row in rows]
     return f"{median(values):.0f} and {max(values):.0f} {unit}" if values else "–"
+
+
+def _cost() -> str:
+    """The figures of `campaign.gap_cost`, where it has run."""
+    if not COST.is_file():
+        return ""
+    found = json.loads(COST.read_text())
+    cold, rows = found["cold"], found["growth"]
+    return "\n".join(
+        [
+            "## Cost",
+            "",
+            f"`python -m campaign.gap_cost` on {found['cores']} cores:",
+            "",
+            "| what | bar | measured |",
+            "|---|---|---|",
+            f"| `winch-friction gap` on twelve CSV files, cold start | ≤ 60 s | {cold['seconds']:.0f} s |",
+            f"| its peak memory | < 1.5 GB | {cold['megabytes'] / 1024:.2f} GB |",
+            f"| exponent of time over {rows[-1][0] / rows[0][0]:.0f} × the samples | ≤ 1.1 | {found['exponent']:.2f} |",
+            "",
+            "Samples and seconds of the workflow: " + ", ".join(f"{n}: {t:.1f} s" for n, t in rows) + ".",
+        ]
+    )
 
 
 def _effects(good: Sequence[Row]) -> str:

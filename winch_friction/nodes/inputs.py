@@ -1,4 +1,4 @@
-"""The subscriptions of a node: every message is decoded, held, and at each speed handed on as one sample."""
+"""The subscriptions of a node: every message goes into the stream, at each speed a sample comes out."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -8,21 +8,18 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 
 from winch_friction.nodes.messages import message_type
+from winch_friction.nodes.polling import Polled, drain
 from winch_friction.nodes.qos import SENSOR, overridable
 from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Sample
-from winch_friction.records.topics import Input, TopicMap, stamp_time
+from winch_friction.records.sample_stream import SampleStream
+from winch_friction.records.topics import Input, TopicMap
 
 NANOSECOND = 1e-9
-BACKWARD_JUMP = 1.0  # s; stamps that fall behind by more are a new recording, not a late message
 
 
 class Inputs:
-    """Subscribes while open; the speed topic drives, all others are held.
-
-    `on_sample` gets the held sample at each finite speed. `on_jump` is called when the speed's stamps fall back by
-    more than `BACKWARD_JUMP`, before the sample is handed on.
-    """
+    """Subscribes while open; `on_sample` gets the sample at each speed, `on_jump` hears of stamps that fall back."""
 
     def __init__(
         self,
@@ -32,32 +29,49 @@ class Inputs:
         on_sample: Callable[[Sample], None],
         on_jump: Callable[[], None],
     ) -> None:
-        self._node, self._topics, self._hold = node, topics, hold
-        self._on_sample, self._on_jump = on_sample, on_jump
+        self._node, self._on_sample = node, on_sample
+        self._stream = SampleStream(topics, hold, on_jump)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._subscriptions: list[Any] = []
-        self.counts: Counter[str] = Counter()
-        self.rejected: Counter[str] = Counter()
-        self.last_stamp = float("-inf")
+        self._held: list[tuple[Input, Any]] = []
+        self._speed: Any = None
         self._last_seen = self.steady()
 
     def open(self) -> None:
-        """Subscribe, the speed last: the executor serves in this order, so a sample finds its own companions."""
+        """Subscribe to everything."""
         self._last_seen = self.steady()
-        speed = self._topics.speed_topic
-        for source in sorted(self._topics.inputs.values(), key=lambda each: each.topic == speed):
-            self._subscriptions.append(self._subscribe(source, self._speed if source.topic == speed else self._take))
+        topics = self._stream.topics
+        held = Polled()
+        for source in topics.inputs.values():
+            if source.topic != topics.speed_topic:
+                self._held.append((source, self._subscribe(source, None, held)))
+        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self._on_speed)
 
     def close(self) -> None:
         """Unsubscribe and forget what was held."""
-        while self._subscriptions:
-            self._node.destroy_subscription(self._subscriptions.pop())
+        for subscription in (self._speed, *(each for _, each in self._held)):
+            if subscription is not None:
+                self._node.destroy_subscription(subscription)
+        self._speed, self._held = None, []
         self.forget()
 
     def forget(self) -> None:
         """Drop what is held, after a jump of time."""
-        self._hold.reset()
-        self.last_stamp = float("-inf")
+        self._stream.forget()
+
+    @property
+    def last_stamp(self) -> float:
+        """Stamp of the last sample in s; -inf before the first."""
+        return self._stream.last_stamp
+
+    @property
+    def counts(self) -> Counter[str]:
+        """Messages by topic."""
+        return self._stream.counts
+
+    @property
+    def rejected(self) -> Counter[str]:
+        """Messages by topic that were not finite, late or of another joint."""
+        return self._stream.rejected
 
     def steady(self) -> float:
         """Steady time in s."""
@@ -69,34 +83,37 @@ class Inputs:
 
     def ages(self) -> dict[str, float]:
         """Age of every input at the last speed, s."""
-        return self._hold.ages(self.last_stamp)
+        return self._stream.hold.ages(self.last_stamp)
 
-    def _subscribe(self, source: Input, take: Callable[[Input, Any], Any]) -> Any:
+    def _subscribe(self, source: Input, callback: Callable[[Any], None] | None, group: Any = None) -> Any:
         return self._node.create_subscription(
             message_type(source.type_name),
             source.topic,
-            lambda message: take(source, message),
+            callback or _never,
             SENSOR,
+            callback_group=group,
             qos_overriding_options=overridable(),
         )
 
-    def _take(self, source: Input, message: Any) -> tuple[float, bool]:
-        """Hold what a message says; its stamp in s and whether its first channel was taken."""
-        stamp = stamp_time(message) if source.stamped else self._receipt()
-        readings = source.decode(message)
-        accepted = [self._hold.put(channel, stamp, value) for channel, value in readings.items()]
-        taken = bool(accepted) and accepted[0]
-        self.counts[source.topic] += 1
-        self.rejected[source.topic] += not taken
-        return stamp, taken
+    def _on_speed(self, message: Any) -> None:
+        """The others first: they were sent before the speed that belongs to them."""
+        self.take_held()
+        topics = self._stream.topics
+        sample = self._stream.take(topics.inputs[topics.speed_topic], message, self._receipt())
+        if sample is not None:
+            self._last_seen = self.steady()
+            self._on_sample(sample)
 
-    def _speed(self, source: Input, message: Any) -> None:
-        if (stamp_time(message) if source.stamped else self._receipt()) < self.last_stamp - BACKWARD_JUMP:
-            self._on_jump()
-        stamp, taken = self._take(source, message)
-        if taken:
-            self.last_stamp, self._last_seen = stamp, self.steady()
-            self._on_sample(self._hold.sample(stamp))
+    def take_held(self) -> None:
+        """Take in what has come on all topics but the speed's."""
+        receipt = self._receipt()
+        for source, subscription in self._held:
+            for message, _ in drain(subscription):
+                self._stream.take(source, message, receipt)
 
     def _receipt(self) -> float:
         return float(self._node.get_clock().now().nanoseconds * NANOSECOND)
+
+
+def _never(_: Any) -> None:
+    """What a polled subscription calls."""

@@ -14,6 +14,7 @@ from winch_friction.records.topics import split_time
 
 _TYPES = {
     "builtin_interfaces/msg/Time": Time,
+    "diagnostic_msgs/msg/DiagnosticArray": DiagnosticArray,
     "sensor_msgs/msg/FluidPressure": FluidPressure,
     "sensor_msgs/msg/JointState": JointState,
     "sensor_msgs/msg/Temperature": Temperature,

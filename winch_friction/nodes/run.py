@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
 from winch_friction.physics.errors import InputError
@@ -48,6 +49,9 @@ def _spin(node: Any) -> int:
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except RCLError:
+        if rclpy.ok():  # otherwise the signal came between two waits
+            raise
     finally:
         executor.remove_node(node)
     return 0

@@ -1,8 +1,9 @@
 """The simulator node: a crane in a sea that publishes every input and is fed by the compensator."""
 
+import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rosgraph_msgs.msg import Clock
@@ -23,6 +24,8 @@ from winch_friction.records.topics import stamp_header, stamp_time, whole_nanose
 from winch_friction.simulation.scenario import load_scenario
 
 LONGEST_PAUSE = 0.05  # s; how often an answer that does not come is looked for
+# scans between two messages of what changes slowly, as a PLC does it
+SLOW_CHANNELS = {"hook_load": 5, "wire_out": 25, "wire_layer": 25, "oil_temperature": 50}
 SETTLE = 0.3  # s between the last subscriber's discovery and the first sample: both ends must know each other
 
 
@@ -90,6 +93,7 @@ class SimulatorNode(WinchNode):
         origin = self.own.time_origin if self.own.publish_clock else self.ros_now()
         self.voyage.begin(origin)
         self.answers.clear()
+        self._said = 0.0
         self._running, self._ready_since = True, float("inf")
         self._started: float | None = None
         return f"scenario '{self.voyage.scenario.name}' from its start"
@@ -154,11 +158,17 @@ class SimulatorNode(WinchNode):
         if self._clock_out:
             self._clock_out.publish(clock_message(self.voyage.now))
         self._publish_truth()
-        for topic, message in self.topics.encode(sample, ROS):
+        for topic, message in self.topics.encode(self._due_channels(sample), ROS):
             if topic in self._inputs:
                 self._inputs[topic].publish(message)
         if sample.motor_speed == sample.motor_speed:
             self.answers.expect(whole_nanoseconds(sample.time), self._steady())
+
+    def _due_channels(self, sample: Sample) -> Sample:
+        """The sample without the slow channels between their own, slower scans."""
+        fresh = self.voyage.samples
+        rested = {name: math.nan for name, every in SLOW_CHANNELS.items() if fresh % every}
+        return replace(sample, **rested)  # type: ignore[arg-type]
 
     def _publish_truth(self) -> None:
         """Joint `winch_motor`: speed and friction torque; joint `load`: its position error and the heave's speed."""
@@ -172,7 +182,9 @@ class SimulatorNode(WinchNode):
                 effort=[truth["friction_torque"], truth["friction_feedforward"]],
             )
         )
-        self._progress.publish(Float64(data=min(self.voyage.progress, 0.999)))
+        if self.voyage.progress >= self._said + 0.01 or self.voyage.progress < self._said:
+            self._said = self.voyage.progress
+            self._progress.publish(Float64(data=min(self._said, 0.999)))
 
     def _steady(self) -> float:
         return float(self.steady_clock.now().nanoseconds * 1e-9)

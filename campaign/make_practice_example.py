@@ -1,7 +1,7 @@
-"""Write config/examples/practice_150t: generated supplier table, simulated test cycles of Tables 2 and 5, two AHC tests.
+"""Write config/examples/practice_150t: generated supplier table, simulated cycles of Tables 2 and 5, two AHC tests.
 
-The truth is the crane 2 of paper 2 (model a6vm215_crane2) on the simulator with its sensors, which carry small systematic
-errors (displacement +0.6 %, pressure scale +0.1 %, one zero error of 0.4 bar).
+The truth is crane 2 of paper 2 (model a6vm215_crane2) on the simulator with its sensors, which carry small
+systematic errors (displacement +0.6 %, pressure scale +0.1 %, one zero error of 0.4 bar).
 """
 
 import sys

@@ -30,7 +30,7 @@ _USED_FLOW = 0.93
 
 @dataclass(frozen=True)
 class SensorErrors:
-    """Systematic errors of one crane's sensors: relative displacement and pressure scale, pressure zero errors in Pa."""
+    """Systematic errors of one crane's sensors: displacement and pressure scale, pressure zero error in Pa."""
 
     displacement_scale: float = 1.0
     pressure_scale: float = 1.0
@@ -55,7 +55,7 @@ class SensorErrors:
         }
 
 
-def test_scenario(name: str, cm3: float, tonnes: float, errors: SensorErrors, rate: float = 20.0) -> Scenario:
+def cycle_scenario(name: str, cm3: float, tonnes: float, errors: SensorErrors, rate: float = 20.0) -> Scenario:
     """One test cycle: every speed that the pump can give, hoisted and lowered, 5 s each (paper 2 Fig 6)."""
     fastest = _USED_FLOW * _PUMP_FLOW / (11 * cm3 * CM3_PER_REV) / RPM
     speeds = [speed for speed in _SPEEDS if speed <= fastest]
@@ -72,9 +72,6 @@ def test_scenario(name: str, cm3: float, tonnes: float, errors: SensorErrors, ra
             "sensors": {"rate": rate, **errors.settings("main")},
         }
     )
-
-
-test_scenario.__test__ = False  # type: ignore[attr-defined]
 
 
 def ahc_scenario(name: str, cm3: float, errors: SensorErrors, rate: float = 50.0) -> Scenario:
@@ -110,7 +107,7 @@ def drive_tests(
     hidden = options.pop("hidden", ())
     results = {}
     for k, (name, (cm3, tonnes)) in enumerate(tests.items()):
-        result = simulate(test_scenario(name, cm3, tonnes, errors, **options), crane, model, seed * 100 + k, hidden)
+        result = simulate(cycle_scenario(name, cm3, tonnes, errors, **options), crane, model, seed * 100 + k, hidden)
         results[name] = replace(result, run=renamed(result.run, name))
     return results
 

@@ -1,6 +1,6 @@
 """Step 1 of the practice: from the supplier's table to a motor model with honest uncertainty."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,9 +46,12 @@ def identify_motor(
     with_complex: bool = True,
     seed: int = 0,
     progress: Progress = silent,
-    **options: int,
+    complex_options: Mapping[str, int] | None = None,
 ) -> MotorIdentification:
-    """Fit every model both ways and score it; `chosen` overrides the recommended one; `options` go to the complex method."""
+    """Fit every model both ways and score it.
+
+    `chosen` overrides the recommended model; `complex_options`: restarts, max_evaluations.
+    """
     names = list(dict.fromkeys(motor_model_named(name).name for name in models))
     if chosen and motor_model_named(chosen).name not in names:
         names.append(motor_model_named(chosen).name)
@@ -57,7 +60,7 @@ def identify_motor(
     by_complex = {}
     for name in progress(names if with_complex else [], "complex method"):
         start = initial_model(motor_model_named(name), inside.max_displacement)
-        by_complex[name] = fit(start, inside.fit_data(weighting), "complex", seed=seed, **options)
+        by_complex[name] = fit(start, inside.fit_data(weighting), "complex", seed=seed, **(complex_options or {}))
     recommended = choose(scores)
     wanted = motor_model_named(chosen).name if chosen else recommended.name
     return MotorIdentification(

@@ -33,7 +33,7 @@ SCHEMA = "winch_friction.practice/1"
 
 @dataclass(frozen=True)
 class PracticeFolder:
-    """What `practice.yaml` names, read: `tests` are fitted, `held_out` only verified, `ahc` are heave-compensated runs."""
+    """What `practice.yaml` names, read: `tests` are fitted, `held_out` only verified, `ahc` heave-compensated runs."""
 
     name: str
     crane: Crane
@@ -68,7 +68,9 @@ def read_practice(folder: Path) -> PracticeFolder:
         tests=runs["tests"],
         held_out=runs["held_out_tests"],
         ahc=runs["ahc_tests"],
-        hashes={each.name: _hash(each) for each in (supplier, *(folder / n for group in names.values() for n in group))},
+        hashes={
+            each.name: _hash(each) for each in (supplier, *(folder / n for group in names.values() for n in group))
+        },
         note=top.text("note", ""),
     )
     top.close()
@@ -122,17 +124,29 @@ def run_practice(
     resamples: int = 40,
     seed: int = 0,
     progress: Progress = silent,
-    **options: int,
+    complex_options: Mapping[str, int] | None = None,
 ) -> Practice:
     """All four steps, the second loop, the joint fit and the verification."""
     spread = spread or load_unit_spread()
     provenance: dict[str, Any] = {"data_sha256": dict(folder.hashes)}
     motor = identify_motor(
-        folder.table, list(MOTOR_MODELS), chosen=folder.motor_model, seed=seed, progress=progress, **options
+        folder.table,
+        list(MOTOR_MODELS),
+        chosen=folder.motor_model,
+        seed=seed,
+        progress=progress,
+        complex_options=complex_options,
     )
     fitted = motor_seed(motor, f"{folder.name}_motor", provenance)
     system = identify_system(
-        folder.tests, folder.crane, fitted, spread, held_out=folder.held_out, resamples=resamples, seed=seed, **options
+        folder.tests,
+        folder.crane,
+        fitted,
+        spread,
+        held_out=folder.held_out,
+        resamples=resamples,
+        seed=seed,
+        complex_options=complex_options,
     )
     models = {"first loop": system.first_loop, "second loop": system.last_loop, "joint fit": system.joint.model}
     curves = [test.curve for test in (*system.tests, *system.held_out)]

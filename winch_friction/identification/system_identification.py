@@ -1,6 +1,6 @@
 """Steps 2 to 4 of the practice, the second loop and the joint fit: from logged test cycles to a winch model."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -37,7 +37,8 @@ class SystemIdentification:
     """All that steps 2 to 4 give.
 
     `fits` by name: eq 8 and eq 10, each by least squares and by the complex method. `loops` are the papers' loops,
-    `held_out_costs` eq 9 on the held-out tests after each (empty without such tests); `joint` is the fit beyond the papers.
+    `held_out_costs` eq 9 on the held-out tests after each (empty without such tests); `joint` is the fit beyond the
+    papers.
     """
 
     tests: tuple[Test, ...]
@@ -85,9 +86,9 @@ def identify_system(
     resamples: int = 0,
     seed: int = 0,
     rule: PlateauRule | None = None,
-    **options: int,
+    complex_options: Mapping[str, int] | None = None,
 ) -> SystemIdentification:
-    """Everything from logged tests and a motor model (with covariance); `options` go to the complex method."""
+    """Everything from logged tests and a motor model (with covariance); `complex_options`: restarts, max_evaluations."""
     if not runs:
         raise InputError("identify system: no logged test was given")
     tests = tuple(read_test(run, crane, rule) for run in runs)
@@ -102,7 +103,7 @@ def identify_system(
         tests=tests,
         held_out=others,
         motor=motor,
-        fits=_fits(data, motor, seed, options),
+        fits=_fits(data, motor, seed, dict(complex_options or {})),
         loops=loops,
         held_out_costs=tuple(cost_of(loop.model, others) for loop in loops) if others else (),
         joint=joint,

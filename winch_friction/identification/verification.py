@@ -1,4 +1,4 @@
-"""Does the model hold on what it has not seen? Friction per test (paper 2 Fig 16, 17) and pressures (Fig 18, 21, 23)."""
+"""Does the model hold on what it has not seen? Friction per test (paper 2 Fig 16, 17), pressures (Fig 18, 21, 23)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -99,10 +99,10 @@ class PressureCheck:
 
 
 def pressure_check(run: Run, crane: Crane, model: FrictionModel, width: float = 1.0) -> PressureCheck:
-    """Predict the pressure drop of the driving group from the torque balance, motion, load and the passive side.
+    """Predict the driving group's pressure drop from the torque balance: load, motion, passive side.
 
-    `width` rad/s smooths the direction at reversal. The driving group is `active` where there is one: it carries all the
-    friction, the passive motors' too.
+    `width` rad/s smooths the direction at reversal. The driving group is `active` where there is one: it carries all
+    the friction, the passive motors' too.
     """
     group = "active" if "active" in run.groups else run.groups[0]
     drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}

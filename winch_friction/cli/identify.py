@@ -1,0 +1,237 @@
+"""`winch-friction identify motor | system | practice`: from supplier tables and logged tests to a friction model."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
+
+Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
+Seed = Annotated[int, typer.Option(help="Seed of the complex method and of the bootstrap.")]
+Restarts = Annotated[int, typer.Option(min=1, help="Restarts of the complex method.")]
+
+
+def _range(text: str, unit: float, name: str) -> tuple[float, float]:
+    from winch_friction.physics.errors import InputError
+
+    try:
+        lower, upper = (float(part) for part in text.split("-"))
+    except ValueError:
+        raise InputError(f"--{name} '{text}': give two numbers with a dash, e.g. 400-2500") from None
+    if not 0.0 <= lower < upper:
+        raise InputError(f"--{name} '{text}': the first number must be below the second")
+    return lower * unit, upper * unit
+
+
+@app.command()
+def motor(
+    table: Annotated[Path, typer.Argument(help="Supplier's table: CSV with units in the headers.")],
+    out: Annotated[Path, typer.Option(help="Model file to write.")],
+    model: Annotated[list[str] | None, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
+    use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best' by held-out displacement.")] = "mj4",
+    max_displacement: Annotated[float, typer.Option(help="D_max in cm^3/rev; 0: the table's largest.")] = 0.0,
+    speed: Annotated[str, typer.Option(help="Range in rpm.")] = "400-2500",
+    pressure: Annotated[str, typer.Option(help="Range in bar.")] = "50-350",
+    displacement: Annotated[str, typer.Option(help="Range in cm^3/rev.")] = "50-10000",
+    weighting: Annotated[str, typer.Option(help="nominal, equal or column.")] = "nominal",
+    use_complex: Annotated[bool, typer.Option("--complex/--no-complex", help="Box's method beside it.")] = True,
+    restarts: Restarts = 3,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Fit the motor-loss models of paper 1 to a supplier's table and write the seed model.
+
+    Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
+    """
+    from winch_friction.cli.console import progress
+    from winch_friction.identification.motor_identification import identify_motor, motor_seed
+    from winch_friction.identification.motor_models import MOTOR_MODELS
+    from winch_friction.identification.supplier_file import read_supplier_table
+    from winch_friction.identification.supplier_table import FitRange
+    from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+    from winch_friction.records.model_file import save_model
+    from winch_friction.records.paths import shipped
+
+    path = shipped("suppliers", table, ".csv")
+    data = read_supplier_table(path, max_displacement * CM3_PER_REV or None)
+    names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
+    found = identify_motor(
+        data,
+        names,
+        chosen="" if use == "best" else use,
+        fit_range=FitRange(
+            _range(speed, RPM, "speed"),
+            _range(pressure, BAR, "pressure"),
+            _range(displacement, CM3_PER_REV, "displacement"),
+        ),
+        weighting=weighting,
+        with_complex=use_complex,
+        seed=seed,
+        progress=progress,
+        complex_options={"restarts": restarts},
+    )
+    fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
+    save_model(fitted, out)
+    _show_motor(found, fitted, out, json)
+
+
+def _hash(path: Path) -> str:
+    import hashlib
+
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def _show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
+    from winch_friction.cli.console import show_json, show_table, stdout
+
+    rows = []
+    for score in found.scores:
+        other = found.by_complex.get(score.name)
+        rows.append(
+            [score.name, score.fitted.parameter_count, score.fitted.rms, score.held_out, score.bic, score.fitted.cost,
+             other.cost if other else float("nan"), score.fitted.evaluations, other.evaluations if other else 0]
+        )  # fmt: skip
+    if json:
+        keys = ("model", "parameters", "rms", "held_out", "bic", "cost", "cost_complex", "evaluations",
+                "evaluations_complex")  # fmt: skip
+        scores = [dict(zip(keys, row, strict=True)) for row in rows]
+        return show_json({"scores": scores, "recommended": found.recommended, "seed": _seed_json(fitted, out),
+                          "condition": found.chosen.fitted.condition})  # fmt: skip
+    columns = ("model", "parameters", "RMS N·m", "held-out RMS", "BIC", "cost LS", "cost complex", "evaluations LS",
+               "evaluations complex")  # fmt: skip
+    show_table(f"{found.table.name}: {len(found.table)} rows", columns, rows)
+    _show_parameters(fitted, f"{found.chosen.name}, condition {found.chosen.fitted.condition:.3g}")
+    stdout.print(f"recommended by held-out displacement: {found.recommended}; wrote {out}")
+    return None
+
+
+def _seed_json(model: Any, out: Path) -> dict[str, Any]:
+    values = zip(model.parameters, model.values, model.std, strict=True)
+    return {"file": str(out), "parameters": {p.name: {"value": v, "std": s, "unit": p.unit} for p, v, s in values}}
+
+
+def _show_parameters(model: Any, title: str) -> None:
+    from winch_friction.cli.console import show_table
+
+    rows = [
+        [p.name, f"{value:.5g}", f"{std:.2g}", p.unit, p.doc]
+        for p, value, std in zip(model.parameters, model.values, model.std, strict=True)
+    ]
+    show_table(title, ("parameter", "value", "std", "unit", "meaning"), rows)
+
+
+@app.command()
+def system(
+    runs: Annotated[list[Path], typer.Argument(help="Logged test cycles, one per test.")],
+    out: Annotated[Path, typer.Option(help="Model file to write.")],
+    motor: Annotated[str, typer.Option(help="Motor model: file or shipped name.")],
+    crane: Annotated[str, typer.Option(help="Crane: file or shipped name.")] = "crane_150t",
+    held_out: Annotated[list[Path] | None, typer.Option(help="Test kept out of the fit; repeat.")] = None,
+    resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
+    restarts: Restarts = 3,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Steps 2 to 4 of paper 2, its second loop and the joint fit: from logged tests to a winch model.
+
+    Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
+    """
+    from winch_friction.identification.prior import load_unit_spread
+    from winch_friction.identification.system_identification import identify_system, winch_seed
+    from winch_friction.identification.verification import test_errors
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model, save_model
+    from winch_friction.records.runs import read_runs
+
+    known = load_crane(crane)
+    found = identify_system(
+        read_runs(runs, known),
+        known,
+        load_model(motor).only("motor"),
+        load_unit_spread(),
+        held_out=read_runs(held_out or [], known),
+        resamples=resamples,
+        seed=seed,
+        complex_options={"restarts": restarts},
+    )
+    hashes = {path.name: _hash(path) for path in (*runs, *(held_out or ())) if path.is_file()}
+    model = winch_seed(found, known, out.stem, {"data_sha256": hashes, "motor": motor})
+    errors = test_errors(found.joint.model, [test.curve for test in (*found.tests, *found.held_out)])
+    save_model(model, out)
+    _show_system(found, model, errors, out, json)
+
+
+def _show_system(found: Any, model: Any, errors: Any, out: Path, json: bool) -> None:
+    from winch_friction.cli.console import show_json, show_table, stdout
+
+    unseen = [str(direction) for direction in found.unseen]
+    tied = [f"{tie.first} = {tie.second}" for tie in found.ties]
+    if json:
+        return show_json(
+            {
+                "seed": _seed_json(model, out),
+                "loops": [{"number": loop.number, "cost": loop.cost} for loop in found.loops],
+                "held_out_costs": found.held_out_costs,
+                "fits": {k: {"cost": r.cost, "evaluations": r.evaluations, **r.model.as_dict()}
+                         for k, r in found.fits.items()},
+                "tied": tied,
+                "not_determined": unseen,
+                "errors_percent_of_nominal": {
+                    e.test: {"above_250_rpm": e.worst(True), "below_250_rpm": e.worst(False)} for e in errors},
+            }
+        )  # fmt: skip
+    show_table("eq 7-10", ("fit", "E", "evaluations"), [[k, r.cost, r.evaluations] for k, r in found.fits.items()])
+    held = list(found.held_out_costs) or [float("nan")] * len(found.loops)
+    show_table(
+        "loops",
+        ("loop", "E", "E held out"),
+        [[x.number, x.cost, h] for x, h in zip(found.loops, held, strict=True)],
+    )
+    _show_parameters(model, "joint fit")
+    rows = [[e.test, e.worst(True), e.worst(False)] for e in errors]
+    show_table("error, % of nominal torque", ("test", "above 250 rpm", "below 250 rpm"), rows)
+    stdout.print(f"act alike: {'; '.join(tied) or 'none'}")
+    stdout.print(f"not determined by these tests: {'; '.join(unseen) or 'nothing'}; wrote {out}")
+    return None
+
+
+@app.command()
+def practice(
+    example: Annotated[Path, typer.Argument(help="Folder with practice.yaml, or a shipped example's name.")],
+    out: Annotated[Path, typer.Option(help="Folder for report.html, seed.yaml and motor.yaml.")],
+    resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
+    restarts: Restarts = 2,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """All four steps, the second loop, the joint fit and the verification of paper 2, from one folder into one report.
+
+    Example: winch-friction identify practice practice_150t --out practice/
+    """
+    from winch_friction.cli.console import progress, show_json, stdout
+    from winch_friction.identification.practice import read_practice, run_practice
+    from winch_friction.records.model_file import save_model
+    from winch_friction.report.practice import summary_lines, write_practice_report
+
+    folder = read_practice(_example(example))
+    done = run_practice(
+        folder, resamples=resamples, seed=seed, progress=progress, complex_options={"restarts": restarts}
+    )
+    write_practice_report(done, out / "report.html")
+    save_model(done.motor_seed, out / "motor.yaml")
+    save_model(done.seed, out / "seed.yaml")
+    if json:
+        return show_json({"summary": summary_lines(done), "seed": _seed_json(done.seed, out / "seed.yaml")})
+    _show_parameters(done.seed, "seed (joint fit)")
+    for line in summary_lines(done):
+        stdout.print(line)
+    stdout.print(f"wrote {out / 'report.html'}, {out / 'motor.yaml'}, {out / 'seed.yaml'}")
+    return None
+
+
+def _example(path: Path) -> Path:
+    from winch_friction.records.paths import config_directory
+
+    shipped = config_directory() / "examples" / path
+    return shipped if not path.exists() and shipped.is_dir() else path

@@ -1,0 +1,144 @@
+"""Report sections of the practice, step 1: the motor models against the supplier's table."""
+
+from typing import Any
+
+import numpy as np
+
+from winch_friction.identification.fit import FitResult
+from winch_friction.identification.motor_identification import MotorIdentification
+from winch_friction.identification.motor_models import motor_model_named
+from winch_friction.identification.practice import Practice
+from winch_friction.identification.supplier_table import motor_points
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.report.base import TextSection
+from winch_friction.report.figures import figure_html, new_figure
+from winch_friction.report.practice_look import below_legend, colour
+from winch_friction.report.tables import paragraph, table_html
+
+
+def motor_sections(practice: Practice) -> list[TextSection]:
+    """Ranking, parameters, map against parametric model, contributions."""
+    motor = practice.motor
+    return [
+        TextSection("Motor models on the supplier's table", ranking_html(motor)),
+        TextSection("Motor parameters", parameters_html(motor)),
+        TextSection(
+            "Motor model, map and contributions",
+            figure_html(map_figure(practice), "Torque loss at 200 bar: model (lines) and map (dots); paper 2 Fig 3.")
+            + figure_html(error_figure(motor), "Model error in % of D Δp; paper 1 Fig 8 and 9.")
+            + figure_html(
+                contributions_figure(motor.chosen.fitted.model),
+                "Contribution of each term at 200 bar and 88 % of D_max; paper 1 Fig 6 and 7.",
+            ),
+        ),
+    ]
+
+
+def ranking_html(motor: MotorIdentification) -> str:
+    """All models: both fitters, held-out displacement, parameters."""
+    rows = []
+    for score in motor.scores:
+        by_complex = motor.by_complex.get(score.name)
+        described = motor_model_named(score.name)
+        ratio = by_complex.evaluations / score.fitted.evaluations if by_complex else float("nan")
+        rows.append(
+            [
+                described.title, described.year, described.displacement, score.fitted.parameter_count,
+                score.fitted.rms, score.held_out, score.bic, score.fitted.cost,
+                by_complex.cost if by_complex else float("nan"), score.fitted.evaluations,
+                by_complex.evaluations if by_complex else None, ratio, described.note,
+            ]
+        )  # fmt: skip
+    columns = (
+        "model", "year", "displacement", "parameters", "RMS N·m", "held-out RMS N·m", "BIC", "cost, least squares",
+        "cost, complex", "evaluations, least squares", "evaluations, complex", "ratio", "note",
+    )  # fmt: skip
+    chosen, best = motor_model_named(motor.chosen.name).title, motor_model_named(motor.recommended).title
+    verdict = f"Used: {chosen}. Held-out displacements, with the parameters counted, recommend {best}."
+    return (
+        paragraph(verdict, "verdict")
+        + paragraph(
+            f"{len(motor.table)} rows of {motor.table.name}, weighting '{motor.weighting}'. Held out: one "
+            "displacement at a time. Cost is the weighted squared error; an evaluation is one torque over all rows, or "
+            "one column of a Jacobian."
+        )
+        + table_html(columns, rows)
+    )
+
+
+def parameters_html(motor: MotorIdentification) -> str:
+    """The used model's parameters by both fitters."""
+    fitted, by_complex = motor.chosen.fitted, motor.by_complex.get(motor.chosen.name)
+    bounds = f"; on a bound: {', '.join(fitted.at_bound)}" if fitted.at_bound else ""
+    return paragraph(f"Condition number {fitted.condition:.3g} (columns of unit length){bounds}.") + parameter_table(
+        fitted, by_complex
+    )
+
+
+def parameter_table(fitted: FitResult, by_complex: FitResult | None = None) -> str:
+    """Values with standard errors beside the complex method's values."""
+    model = fitted.model
+    rows: list[list[Any]] = [
+        [p.name, p.unit, value, std, 100.0 * std / abs(value) if value else float("nan"), p.doc]
+        for p, value, std in zip(model.parameters, model.values, model.std, strict=True)
+    ]
+    columns = ["parameter", "unit", "least squares", "standard error", "%", "meaning"]
+    if by_complex is not None:
+        columns.insert(5, "complex")
+        for row in rows:
+            row.insert(5, by_complex.model.value(row[0]))
+    return table_html(columns, rows)
+
+
+def map_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 3: model against linear interpolation of the table."""
+    figure, axes = new_figure(height=3.4)
+    table, model = practice.motor.table, practice.motor.chosen.fitted.model
+    speed = np.asarray(np.linspace(100, 2500, 97) * RPM, float)
+    for k, displacement in enumerate(np.unique(table.displacement.round(9))[::-1]):
+        pressure = np.full_like(speed, 200 * BAR)
+        setting = np.full_like(speed, displacement)
+        label = f"{displacement / CM3_PER_REV:.0f} cm³/rev"
+        axes.plot(speed / RPM, model.torque(motor_points(speed, pressure, setting)), color=colour(k), label=label)
+        every = speed[::4]
+        loss = practice.map.torque_loss(every, pressure[::4], setting[::4])
+        held = np.asarray(practice.map.outside(every, pressure[::4], setting[::4]), bool)
+        axes.plot(every[~held] / RPM, loss[~held], "o", ms=3, color=colour(k))
+        axes.plot(every[held] / RPM, loss[held], "x", ms=3, color=colour(k), alpha=0.6)
+    axes.set(xlabel="motor speed [rpm]", ylabel="torque loss [N·m]", title="dots: map; crosses: outside the table")
+    below_legend(axes, 6)
+    return figure
+
+
+def error_figure(motor: MotorIdentification) -> Any:
+    """Paper 1 Fig 8 and 9: error in % of nominal torque over displacement."""
+    figure, axes = new_figure(height=3.0)
+    table = motor.table
+    points = motor_points(table.speed, table.pressure, table.displacement)
+    error = 100.0 * (motor.chosen.fitted.model.torque(points) - table.torque_loss) / table.nominal_torque
+    shown = axes.scatter(table.displacement / CM3_PER_REV, error, c=table.speed / RPM, s=10, cmap="viridis")
+    axes.axhline(1.0, lw=0.8, ls="--", color="gray")
+    axes.axhline(-1.0, lw=0.8, ls="--", color="gray")
+    axes.set(xlabel="displacement [cm³/rev]", ylabel="error [% of D Δp]", title="dashed: paper 1's 1 %")
+    figure.colorbar(shown, label="motor speed [rpm]")
+    return figure
+
+
+def contributions_figure(model: FrictionModel) -> Any:
+    """Paper 1 Fig 6 and 7: share of each term over 300-2500 rpm, and the terms over speed."""
+    figure, (left, right) = new_figure(1, 2, height=3.2)
+    speed = np.asarray(np.arange(300, 2501, 10) * RPM, float)
+    setting = np.full_like(speed, 0.88 * model.constants["max_displacement"])
+    parts = model.contributions(motor_points(speed, np.full_like(speed, 200 * BAR), setting))
+    total = sum(part.sum() for part in parts.values())
+    names = list(parts)
+    left.barh(
+        names, [100.0 * parts[name].sum() / total for name in names], color=[colour(k) for k in range(len(names))]
+    )
+    left.invert_yaxis()
+    left.set(xlabel="share [%]")
+    for k, name in enumerate(names):
+        right.plot(speed / RPM, parts[name], color=colour(k))
+    right.set(xlabel="motor speed [rpm]", ylabel="torque [N·m]")
+    return figure

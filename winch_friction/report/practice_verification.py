@@ -1,0 +1,135 @@
+"""Report sections of the practice: verification as paper 2 section 4."""
+
+from typing import Any
+
+import numpy as np
+
+from winch_friction.identification.practice import Practice
+from winch_friction.identification.verification import STANDSTILL, PressureCheck
+from winch_friction.physics.units import BAR, RPM
+from winch_friction.report.base import TextSection
+from winch_friction.report.figures import figure_html, new_figure
+from winch_friction.report.practice_look import below_legend, colour
+from winch_friction.report.practice_system import name
+from winch_friction.report.tables import paragraph, table_html
+
+
+def verification_sections(practice: Practice) -> list[TextSection]:
+    """Friction per test, normal mode, heave compensation."""
+    sections = [
+        TextSection("Verification: friction per test", _friction_html(practice)),
+        TextSection("Verification: pressure in normal mode", _normal_html(practice)),
+    ]
+    if practice.folder.ahc:
+        sections.append(TextSection("Verification: heave compensation", _ahc_html(practice)))
+    return sections
+
+
+def _friction_html(practice: Practice) -> str:
+    names = list(practice.errors)
+    columns = ["test", "use", "nominal N·m"]
+    columns += [f"{model}, {where} 250 rpm" for model in names for where in ("above", "below")]
+    fitted = len(practice.system.tests)
+    rows: list[list[Any]] = []
+    for k, error in enumerate(practice.errors[names[0]]):
+        cells = [practice.errors[model][k].worst(above) for model in names for above in (True, False)]
+        rows.append([name(error.test), "fitted" if k < fitted else "held out", error.nominal, *cells])
+    return (
+        paragraph(
+            "Largest |modelled − measured| T_ft in % of nominal torque, the test's load torque per motor (the heaviest "
+            "test's where only the hook hung)."
+        )
+        + table_html(columns, rows, digits=3)
+        + figure_html(compared_figure(practice), "Measured (dots) and modelled friction; paper 2 Fig 16.")
+        + figure_html(percent_figure(practice), "Error in % of nominal torque; paper 2 Fig 17.")
+    )
+
+
+def compared_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 16: all motors' friction, measured and modelled (joint fit)."""
+    figure, axes = new_figure(height=3.8)
+    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    for k, (error, curve) in enumerate(zip(practice.errors["joint fit"], curves, strict=True)):
+        axes.plot(error.speed / RPM, error.modelled * curve.motors, color=colour(k), lw=1.0)
+        axes.plot(
+            error.speed[::2] / RPM,
+            error.measured[::2] * curve.motors,
+            "o",
+            ms=2.5,
+            color=colour(k),
+            label=name(error.test),
+        )
+    axes.set(xlabel="motor speed [rpm]", ylabel="T_ft, all motors [N·m]")
+    below_legend(axes, 6)
+    return figure
+
+
+def percent_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 17: error over speed for each winch model."""
+    names = list(practice.errors)
+    figure, axes = new_figure(1, len(names), height=3.2, sharey=True)
+    fitted = len(practice.system.tests)
+    for axis, model in zip(np.atleast_1d(axes), names, strict=True):
+        for k, error in enumerate(practice.errors[model]):
+            axis.plot(
+                error.speed / RPM, error.percent, lw=0.9, color=colour(1) if k >= fitted else colour(0), alpha=0.8
+            )
+        axis.axvline(250, lw=0.7, color="gray")
+        axis.set(xlabel="motor speed [rpm]", title=model)
+    np.atleast_1d(axes)[0].set(ylabel="error [% of nominal]")
+    figure.suptitle("blue: fitted tests; orange: held out", fontsize=9, x=0.01, ha="left")
+    return figure
+
+
+def _check_rows(checks: dict[str, list[PressureCheck]]) -> list[list[Any]]:
+    return [
+        [name(check.run), model, check.moving_rms / BAR, check.rms / BAR, check.mean_error(+1) / BAR,
+         check.mean_error(-1) / BAR]
+        for model, group in checks.items()
+        for check in group
+    ]  # fmt: skip
+
+
+_COLUMNS = ("run", "model", "RMS while turning, bar", "RMS, whole run, bar", "mean error hoisting, bar",
+            "mean error lowering, bar")  # fmt: skip
+
+
+def _normal_html(practice: Practice) -> str:
+    checks = {model: [check] for model, check in practice.normal_mode.items()}
+    return table_html(_COLUMNS, _check_rows(checks), digits=3) + figure_html(
+        pressure_figure(practice.normal_mode["joint fit"], practice.normal_mode["first loop"]),
+        "Speed, and measured and predicted pressure drop in normal mode; paper 2 Fig 18 and 19.",
+    )
+
+
+def _ahc_html(practice: Practice) -> str:
+    figures = "".join(
+        figure_html(
+            pressure_figure(joint, first),
+            f"{name(joint.run)}: speed, and measured and predicted active pressure drop with the supplier's motor "
+            "(first loop) and the joint fit; paper 2 Fig 15, 20-23.",
+        )
+        for joint, first in zip(practice.ahc["joint fit"], practice.ahc["first loop"], strict=True)
+    )
+    return (
+        paragraph(
+            "The active group's pressure drop from load, motion and the measured passive side; it carries the "
+            f"friction of all motors. Turning: |ω| above {STANDSTILL / RPM:.0f} rpm; at standstill friction lies "
+            "anywhere within the break-away level. Paper 2: within about 10 of 130 bar."
+        )
+        + table_html(_COLUMNS, _check_rows(practice.ahc), digits=3)
+        + figures
+    )
+
+
+def pressure_figure(check: PressureCheck, other: PressureCheck) -> Any:
+    """Speed above, measured and predicted pressure drop below."""
+    figure, (above, below) = new_figure(2, 1, height=2.3, sharex=True)
+    above.plot(check.time, check.speed / RPM, lw=0.8)
+    below.plot(check.time, check.measured / BAR, lw=1.2, color=colour(0), label="measured")
+    below.plot(other.time, other.predicted / BAR, lw=0.8, color=colour(2), label="first loop")
+    below.plot(check.time, check.predicted / BAR, lw=0.8, color=colour(1), label="joint fit")
+    above.set(ylabel="motor speed [rpm]", title=name(check.run))
+    below.set(ylabel="Δp [bar]", xlabel="time [s]")
+    below_legend(below, 3)
+    return figure

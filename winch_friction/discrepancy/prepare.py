@@ -13,6 +13,7 @@ import numpy as np
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR, GRAVITY
 from winch_friction.physics.winch import Crane, operating_point
@@ -23,6 +24,7 @@ GUARD_SAMPLES = 8  # kept away from a reversal on both sides, half a smoothing w
 MIN_SAMPLES = 100
 MIN_DISPLACEMENT_SHARE = 0.05
 FIXED_POINT_STEPS = 3
+DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class PreparedRun:
     groups: tuple[GroupSignals, ...]
     point: tuple[Any, ...]
     gap: FloatArray
+    load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     jacobian: FloatArray
     gear_ratio: float
@@ -75,9 +78,13 @@ class PreparedRun:
         return tuple(group.name for group in self.groups)
 
 
-def prepare(run: Run, crane: Crane, model: FrictionModel, load: float = float("nan")) -> PreparedRun:
+def prepare(
+    run: Run, crane: Crane, model: FrictionModel, load: float = float("nan"), missing_torque: FloatArray | float = 0.0
+) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
+    `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that the predicted
+    pressure comes close to the true one.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     columns, dt, valid = _uniform(run)
@@ -101,7 +108,18 @@ def prepare(run: Run, crane: Crane, model: FrictionModel, load: float = float("n
     direction = np.sign(state_speed)
     extra = _optional(columns, angle, run.time[0], size)
     measured, groups, point, predicted, jacobian, unit = _balance(
-        columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra, window
+        columns,
+        run,
+        crane,
+        model,
+        state_speed,
+        direction,
+        acceleration,
+        drum_torque,
+        static + inertial,
+        extra,
+        window,
+        missing_torque,
     )
     # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
     # remain in the pressures
@@ -110,10 +128,15 @@ def prepare(run: Run, crane: Crane, model: FrictionModel, load: float = float("n
     return PreparedRun(
         name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
-        drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted, predicted=predicted,
-        jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, turning=turning & valid, valid=valid,
+        drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
+        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, turning=turning & valid, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
+
+
+def _load_friction(model: FrictionModel, point: tuple[Any, ...]) -> FloatArray:
+    more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(point))
+    return (np.asarray(model.torque(more)) - np.asarray(model.torque(point))) / 0.01
 
 
 def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:
@@ -186,7 +209,9 @@ def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float
     return extra
 
 
-def _balance(columns, run, crane, model, speed, direction, acceleration, drum_torque, frictionless, extra, window):  # type: ignore[no-untyped-def]
+def _balance(
+    columns, run, crane, model, speed, direction, acceleration, drum_torque, frictionless, extra, window, missing
+):  # type: ignore[no-untyped-def]
     """Measured and predicted drive torque, groups with predicted pressures, operating point, Jacobian, N m per bar."""
     size = len(speed)
     names = run.groups
@@ -212,7 +237,7 @@ def _balance(columns, run, crane, model, speed, direction, acceleration, drum_to
                    for g in groups)  # fmt: skip
     predicted = frictionless
     for _ in range(FIXED_POINT_STEPS):
-        groups = _predicted_pressure(groups, predicted)
+        groups = _predicted_pressure(groups, predicted + missing)
         point = point_of(groups)
         predicted = frictionless + model.torque(point)
     own = next(g for g in groups if g.balances)
@@ -227,7 +252,9 @@ def _measured_groups(columns, run, crane, window) -> tuple[GroupSignals, ...]:  
     for name in names:
         for channel in ("pressure_a", "pressure_b", "displacement"):
             if f"{name}.{channel}" not in columns:
-                raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
+                raise InputError(
+                    f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it"
+                )
         a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
         displacement = smooth(columns[f"{name}.displacement"], 5 * window)
         steady = float(np.median(displacement))

@@ -1,7 +1,7 @@
 """The regression that every question is put to: the gap on base parameters, held to their prior, and candidate effects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -155,13 +155,26 @@ def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "mo
     tables: list[RunBlocks] = []
     for run in runs:
         mask = run.moving if regime == "moving" else run.turning
-        tables.append(run_blocks(run, layout.regressors(run), mask, size, length))
+        table = run_blocks(run, layout.regressors(run), mask, size, length)
+        tables.append(
+            table if "hook_load" in run.present or not run.groups else _weightless(table, layout.base.parameters)
+        )
     noise = {k: noise_of_run(t.y, t.contiguous) for k, t in enumerate(tables)}
     blocks = _joined(tables, noise)
     return Problem(
         layout.base, layout.slots, blocks, grams(blocks), layout.scales, layout.lower, layout.upper, noise,
         tuple(run.name for run in runs),
     )  # fmt: skip
+
+
+def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
+    """Where the load was never measured it is anything: what a constant weight could explain is taken out everywhere."""
+    weight = table.x[:, weight_column]
+    scale = float(weight @ weight)
+    if scale <= 0.0:
+        return table
+    x = table.x - np.outer(weight, weight @ table.x / scale)
+    return replace(table, y=table.y - weight * (weight @ table.y / scale), x=x)
 
 
 def _joined(tables: Sequence[RunBlocks], noise: dict[int, float]) -> Blocks:

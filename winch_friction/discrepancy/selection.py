@@ -11,6 +11,7 @@ from winch_friction.physics.signals import FloatArray
 
 SIGNIFICANCE = 0.01  # family-wise over all candidates
 LEAST_GAIN = 0.02  # of the held-out RMSE
+LEAST_SHARE = 2e-3  # of what is explained already
 MOST_EFFECTS = 4
 RIVAL_P = 0.05
 RIVAL_SHARE = 0.03  # a rival within this share of the effect's own gain does as well for any purpose
@@ -50,19 +51,21 @@ class Selection:
     considered: tuple[Considered, ...] = field(default_factory=tuple)
 
 
-def select(cross: CrossFit, rng: np.random.Generator) -> Selection:
+def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) -> Selection:
     """Add effects as long as one brings a significant and useful gain, then look for rivals of each."""
     base = cross.explain(())
     current, considered = base, []
     p_values: dict[str, float] = {}
-    for stage in range(MOST_EFFECTS):
+    for stage in range(most):
         trials = _trials(cross, current)
         if not trials:
             break
         gains = np.array([current.losses - each.losses for each in trials])
         p = flip_p_values(gains, rng)
         relative = np.array([1.0 - np.sqrt(each.loss / current.loss) for each in trials])
-        worthy = (p <= SIGNIFICANCE) & (relative >= LEAST_GAIN)
+        worth = np.array([current.loss - each.loss for each in trials])
+        least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
+        worthy = (p <= SIGNIFICANCE) & (relative >= LEAST_GAIN) & (worth >= least)
         order = np.argsort([each.loss for each in trials])
         considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k]) for k in order]
         if not worthy.any():
@@ -73,6 +76,17 @@ def select(cross: CrossFit, rng: np.random.Generator) -> Selection:
     current = _pruned(cross, current, rng)
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
     return Selection(base, current, found, tuple(considered))
+
+
+def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool) -> Considered:
+    own = trial.slots[-1]
+    if worthy:
+        verdict = "significant and useful"
+    elif p > SIGNIFICANCE:
+        verdict = f"not significant on held-out segments (p = {p:.2g})"
+    else:
+        verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
+    return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)
 
 
 def _trials(cross: CrossFit, current: Explanation) -> list[Explanation]:
@@ -123,7 +137,9 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
     return current
 
 
-def _found(cross: CrossFit, current: Explanation, k: int, p_values: dict[str, float], rng: np.random.Generator) -> Found:
+def _found(
+    cross: CrossFit, current: Explanation, k: int, p_values: dict[str, float], rng: np.random.Generator
+) -> Found:
     rest = current.slots[:k] + current.slots[k + 1 :]
     without = cross.explain(rest)
     own = current.slots[k]

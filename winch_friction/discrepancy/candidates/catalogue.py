@@ -16,8 +16,6 @@ from winch_friction.physics.friction.registry import load_file
 BLIND_SPOTS = (
     Untestable("slip_leakage", r"C\,p/\mu", "pump flow", "lost flow changes the speed that is measured, not the torque"),
     Untestable("entrained_air", r"K(p)", "pump flow", "a softer oil column changes the flow, not the torque"),
-    Untestable("accumulator_thermal", r"p V^n", "accumulator gas temperature or volume",
-               "the passive pressure is measured, whatever made it"),
 )  # fmt: skip
 
 

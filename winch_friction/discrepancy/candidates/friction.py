@@ -24,11 +24,9 @@ SHAPES: dict[str, tuple[float, ...]] = {
     "g_dw": (0.1, 0.5),
     "d_dw": (1.0, 5.0, 30.0),
 }
-# what of the catalogue is a term of another name; a base term is called by its own
-NAMES = {"mixed_lubrication": "high_pressure_mixed"}
 SHIPPED = (
     "viscosity_temperature", "stribeck", "dwell_stiction", "gear_asymmetry", "gear_load_loss", "sheave_bending", "wear_drift",
-    "low_displacement_loss", "port_turbulence", "notch_loss", "churning", "mixed_lubrication", "line_pressure_drop",
+    "low_displacement_loss", "port_turbulence", "notch_loss", "churning", "high_pressure_mixed", "line_pressure_drop",
     "case_pressure", "brake_drag", "coulomb", "viscous", "torque_offset", "direction_asymmetry",
 )  # fmt: skip
 TURNING = ("presliding",)
@@ -47,7 +45,7 @@ def friction_candidate(term: Term) -> Candidate:
     """A candidate from a declared term, a user's own included."""
     linear = tuple(p for p in term.parameters if not p.shape)
     return Candidate(
-        name=NAMES.get(term.name, term.name),
+        name=term.name,
         law=term.latex,
         linear=linear,
         columns=partial(term_columns, term),
@@ -75,8 +73,11 @@ def _shapes(term: Term, runs: Sequence[PreparedRun]) -> list[Variant]:
 
 def _observed_time(runs: Sequence[PreparedRun]) -> list[Variant]:
     begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
-    middle, half = 0.5 * (begin + end), max(0.5 * (end - begin), 1.0)
-    return [Variant("over the dates of the runs", {"t_w": middle, "tau_w": half})]
+    span = max(end - begin, 1.0)
+    return [
+        Variant("since the first run", {"t_w": begin, "tau_w": span}),
+        Variant("around the middle of the dates", {"t_w": begin + 0.5 * span, "tau_w": span}),
+    ]
 
 
 def term_columns(term: Term, run: PreparedRun, shape: Shape) -> FloatArray:

@@ -12,14 +12,22 @@ from winch_friction.physics.units import GRAVITY
 
 WIRE_LENGTH = 100.0  # m; a missing wire's weight is given per so much of it
 
-m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain (of 100 m of wire, for the wire)")
+m_h = Parameter(
+    "m_h",
+    "kg",
+    2000.0,
+    lower=-2e4,
+    upper=2e4,
+    doc="mass that the load signal does not contain (of 100 m of wire, for the wire)",
+)
 e_R = Parameter("e_R", "1", 0.06, lower=-0.5, upper=0.5, doc="relative error of the rope radius")
 dJ = Parameter("dJ", "kg*m^2", 0.2, lower=-5.0, upper=10.0, doc="missing inertia at the motor shaft")
 
 
 def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
-    """Torque at the motor shaft of a hanging mass, its inertia included, N m."""
-    return mass * run.radius / run.gear_ratio * (GRAVITY + run.load_acceleration)
+    """Torque at the motor shaft of a hanging mass with its inertia and the friction it causes, N m."""
+    share = np.divide(mass, run.load, out=np.zeros(len(run.time)), where=run.load > 0.0)
+    return mass * run.radius / run.gear_ratio * (GRAVITY + run.load_acceleration) + share * run.load_friction
 
 
 def tare_columns(run: PreparedRun, shape: Shape) -> FloatArray:
@@ -36,7 +44,9 @@ def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
 
 def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
     """The load's torque on the layers concerned."""
-    torque = _hanging(run, run.load)
+    # the radius acts twice on the load's inertia: on its lever and on its acceleration
+    turning = run.load * (run.radius / run.gear_ratio) ** 2 * run.acceleration
+    torque = _hanging(run, run.load) + turning
     layer = run.channels.get("wire_layer")
     if shape["layer"] == 0.0 or layer is None:
         return torque[:, None]
@@ -46,7 +56,14 @@ def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
 
 
 def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
-    layers = sorted({float(v) for run in runs if "wire_layer" in run.channels for v in np.unique(np.rint(run.channels["wire_layer"]))})
+    layers = sorted(
+        {
+            float(v)
+            for run in runs
+            if "wire_layer" in run.channels
+            for v in np.unique(np.rint(run.channels["wire_layer"]))
+        }
+    )
     shapes = [Variant("all layers", {"layer": 0.0})]
     if len(layers) > 1:
         shapes += [Variant(f"layer {layer:g}", {"layer": layer}) for layer in layers]
@@ -62,7 +79,23 @@ def inertia_columns(run: PreparedRun, _: Shape) -> FloatArray:
 def geometry_candidates() -> list[Candidate]:
     """Tare, rope radius, inertia."""
     return [
-        Candidate("tare_load", r"m_h\,(g+\ddot x)\,R/i", (m_h,), tare_columns, _tare_shapes, kind="geometry", needs=("hook_load",)),
-        Candidate("layer_radius", r"e_R\,m\,(g+\ddot x)\,R/i", (e_R,), radius_columns, _radius_shapes, kind="geometry", needs=("hook_load",)),
+        Candidate(
+            "tare_load",
+            r"m_h\,(g+\ddot x)\,R/i",
+            (m_h,),
+            tare_columns,
+            _tare_shapes,
+            kind="geometry",
+            needs=("hook_load",),
+        ),
+        Candidate(
+            "layer_radius",
+            r"e_R\,m\,(g+\ddot x)\,R/i",
+            (e_R,),
+            radius_columns,
+            _radius_shapes,
+            kind="geometry",
+            needs=("hook_load",),
+        ),
         Candidate("inertia_error", r"\Delta J\,\dot\omega", (dJ,), inertia_columns, single_shape, kind="inertia"),
     ]

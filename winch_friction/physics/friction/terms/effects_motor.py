@@ -18,7 +18,6 @@ n_t = Parameter("n_t", "1", 2.0, lower=1.0, upper=3.5, shape=True, doc="exponent
 T_ch = Parameter("T_ch", "N*m", 2.5, upper=100.0, doc="churning loss at 2000 rpm")
 n_ch = Parameter("n_ch", "1", 1.9, lower=1.5, upper=2.5, shape=True, doc="exponent of churning")
 c_nk = Parameter("c_nk", "m^2", 1.0e-6, upper=1e-3, doc="port plate notch loss at full displacement")
-c_hp = Parameter("c_hp", "m^5/N", 1.16e-14, lower=-1e-12, upper=1e-12, doc="mixed lubrication beyond the model's K5")
 c_case = Parameter("c_case", "m^3/rad", 5.0e-7, lower=-1e-4, upper=1e-4, doc="loss per sum of both port pressures")
 R_line = Parameter("R_line", "Pa*s^2/m^6", 3.0e8, upper=1e11, doc="turbulent resistance between transducer and motor")
 T_br = Parameter("T_br", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released")
@@ -50,9 +49,6 @@ notch_loss = register(
         "paper 1 eq 6 and 12 (C_k), regularised at standstill", "motor",
     )
 )  # fmt: skip
-mixed_lubrication = register(
-    Term("mixed_lubrication", c_hp.symbol * p**2, (c_hp,), Scope.MOTOR, "paper 1 eq 10 (C_m)", "motor")
-)
 case_pressure = register(
     Term("case_pressure", c_case.symbol * p_sum, (c_case,), Scope.MOTOR, f"{_DOMAIN}, c (p_A + p_B)", "motor")
 )

@@ -1,0 +1,64 @@
+"""Regression problems around the best explanation so far: base parameters and pressures no longer those of the seed alone."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.prepare import PreparedRun, prepare
+from winch_friction.discrepancy.problem import Layout, base_of, build_problem, layout_of
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Prepared runs and the layout of their regressors around one point."""
+
+    runs: tuple[PreparedRun, ...]
+    layout: Layout
+    model: FrictionModel  # the base model at the point of expansion
+
+    def cross(self, names: Sequence[str], regime: str = "moving") -> CrossFit:
+        """The regression over the runs of these names."""
+        return CrossFit(build_problem([run for run in self.runs if run.name in names], self.layout, regime))
+
+
+def expand_at_seed(
+    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: dict[str, float]
+) -> tuple[PreparedRun, ...]:
+    """Runs prepared around the seed model."""
+    return tuple(prepare(run, crane, model, loads.get(run.name, float("nan"))) for run in runs)
+
+
+def expand_around(
+    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], before: Expansion,
+    explanation: Explanation, candidates: Sequence[Candidate],
+) -> Expansion:  # fmt: skip
+    """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
+    base = before.layout.base
+    count = base.parameters
+    values = np.array(before.model.values) + explanation.beta[:count] * base.scale[:count]
+    bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
+    model = seed.with_values(list(np.clip(values, bounds[:, 0], bounds[:, 1])))
+    prepared = tuple(
+        prepare(run, crane, model, loads.get(run.name, float("nan")), missing_torque(old, before.layout, explanation))
+        for run, old in zip(runs, before.runs, strict=True)
+    )
+    return Expansion(prepared, layout_of(base_of(seed, model), candidates, prepared, seed), model)
+
+
+def missing_torque(run: PreparedRun, layout: Layout, explanation: Explanation) -> FloatArray:
+    """Torque in N m that the effects found add to what the motors carry; errors of signals add nothing."""
+    total = np.zeros(len(run.time))
+    at = len(layout.base.names)
+    for slot in explanation.slots:
+        width = len(slot.columns)
+        if slot.candidate.kind != "signal":
+            columns = slot.candidate.columns(run, slot.variant.shape) * layout.scales[list(slot.columns)]
+            total += columns @ explanation.beta[at : at + width]
+        at += width
+    return total

@@ -1,0 +1,84 @@
+"""Is anything left that no named effect explains, and on which signal does it depend?
+
+A flexible model (hat functions of one signal at a time, for each direction of motion) predicts the remainder of runs that it was
+not fitted to. It has no name to offer, so it only ever leads to 'unexplained'.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Blocks
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.physics.signals import FloatArray
+
+KNOTS = 7
+RIDGE = 30.0  # blocks; a hat needs more data than that before it moves
+SIGNIFICANCE = 0.01
+LEAST_SHARE = 0.05  # of the remainder's variance: below it the remainder is not worth a name
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """How much of the remainder one signal predicts on held-out runs."""
+
+    signal: str
+    share: float  # of the remainder's sum of squares
+    p_value: float
+
+
+def remainder(cross: CrossFit, explanation: Explanation) -> FloatArray:
+    """What an explanation leaves of the gap, block by block, in units of the noise."""
+    blocks = cross.problem.blocks
+    columns = list(cross.problem.columns(explanation.slots))
+    return (blocks.y - blocks.x[:, columns] @ explanation.beta) * blocks.weight
+
+
+def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> list[Dependence]:
+    """Every signal with what it predicts of the remainder on held-out runs, the best first; p-values are family-wise."""
+    blocks = cross.problem.blocks
+    names, gains = [], []
+    for name, values in blocks.features.items():
+        design = _design(values, blocks.direction)
+        if design is None:
+            continue
+        names.append(name)
+        gains.append(_segment_gains(design, left, blocks, cross.fold))
+    if not names:
+        return []
+    table = np.array(gains)
+    p = flip_p_values(table, rng)
+    total = float((left**2).sum())
+    found = [Dependence(n, float(row.sum() / total), float(q)) for n, row, q in zip(names, table, p, strict=True)]
+    return sorted(found, key=lambda each: -each.share)
+
+
+def _design(values: FloatArray, direction: FloatArray) -> FloatArray | None:
+    """Hats over the quantiles of a signal, hoisting and lowering apart; where the signal is absent, nothing."""
+    good = np.isfinite(values)
+    if good.sum() < 20 or np.ptp(values[good]) <= 1e-9 * (np.abs(values[good]).max() + 1e-12):
+        return None
+    knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, KNOTS)))
+    if len(knots) < 2:
+        return None
+    hats = np.column_stack([np.interp(np.where(good, values, knots[0]), knots, row) for row in np.eye(len(knots))])
+    hats[~good] = 0.0
+    return np.column_stack([hats * (direction > 0)[:, None], hats * (direction < 0)[:, None]])
+
+
+def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of_segment: np.ndarray) -> FloatArray:
+    """Reduction of each segment's sum of squares by a ridge fit to the other folds."""
+    weighted = design * blocks.weight[:, None]
+    scale = np.sqrt(np.mean(blocks.weight**2))
+    numbers, index = np.unique(blocks.segment, return_inverse=True)
+    fold = fold_of_segment[index]
+    ridge = RIDGE * scale**2 * np.eye(design.shape[1])
+    full_h, full_g = weighted.T @ weighted, weighted.T @ left
+    predicted = np.zeros(len(left))
+    for k in np.unique(fold):
+        own = fold == k
+        h = full_h - weighted[own].T @ weighted[own]
+        g = full_g - weighted[own].T @ left[own]
+        predicted[own] = weighted[own] @ np.linalg.solve(h + ridge, g)
+    gain = left**2 - (left - predicted) ** 2
+    return np.bincount(index, weights=gain, minlength=len(numbers))

@@ -1,0 +1,118 @@
+"""What the workflow found, as one object; `gap.json` is its content."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Blocks
+from winch_friction.discrepancy.candidates.candidate import Untestable
+from winch_friction.discrepancy.holdout import Size
+from winch_friction.discrepancy.omnibus import Dependence
+from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.regions import Region
+from winch_friction.discrepancy.repair import Estimate
+from winch_friction.discrepancy.selection import Considered, Found
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import FloatArray
+
+SCHEMA = "winch_friction.gap/1"
+
+
+@dataclass(frozen=True)
+class Side:
+    """Block residuals of the training or of the locked runs before and after the repair, with their blocks."""
+
+    runs: tuple[PreparedRun, ...]
+    blocks: Blocks
+    before: FloatArray  # of the model as given
+    after: FloatArray
+    size_before: Size
+    size_after: Size
+    noise_floor: float
+    relative: tuple[float, float]  # residual against drive torque, before and after
+
+
+@dataclass(frozen=True)
+class GapResult:
+    """Everything that is written and drawn."""
+
+    verdict: str
+    refused: str
+    found: tuple[Found, ...]
+    parameters: Mapping[str, Mapping[str, Estimate]]
+    regions: tuple[Region, ...]
+    unit: str
+    train: Side
+    holdout: Side
+    depends: tuple[Dependence, ...]
+    unexplained_share: float
+    considered: tuple[Considered, ...]
+    untestable: tuple[Untestable, ...]
+    model: FrictionModel
+    seed_model: FrictionModel
+    next_experiment: Mapping[str, Any] | None = None
+    notes: Sequence[str] = field(default_factory=tuple)
+
+    def content(self) -> dict[str, Any]:
+        """The JSON document of DESIGN section 5; further keys only add."""
+        return {
+            "schema": SCHEMA,
+            "verdict": self.verdict,
+            "effects": [self._effect(found) for found in self.found],
+            "regions": [
+                {"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual} for r in self.regions
+            ],
+            "gap": {
+                "unit": self.unit,
+                "train": {**_before_after(self.train)},
+                "holdout": {
+                    **_before_after(self.holdout),
+                    "noise_floor": self.holdout.noise_floor,
+                    "before_ci": list(self.holdout.size_before.interval),
+                    "after_ci": list(self.holdout.size_after.interval),
+                    "runs": [run.name for run in self.holdout.runs],
+                },
+            },
+            "unexplained": {
+                "depends_on": [each.signal for each in self.depends],
+                "share_of_gap": self.unexplained_share,
+                "reason": self.refused,
+            },
+            "next_experiment": dict(self.next_experiment) if self.next_experiment else None,
+            "untestable": [{"name": u.name, "needs": u.needs, "because": u.because} for u in self.untestable],
+            "considered": [
+                {"name": c.name, "variant": c.variant, "stage": c.stage, "cv_gain": c.gain, "p_value": c.p_value,
+                 "outcome": c.verdict} for c in self.considered
+            ],
+            "notes": list(self.notes),
+        }  # fmt: skip
+
+    def _effect(self, found: Found) -> dict[str, Any]:
+        name = found.slot.candidate.name
+        return {
+            "name": name,
+            "indistinguishable_from": [rival.candidate.name for rival in found.rivals],
+            "parameters": {
+                key: {"value": e.value, "std": e.std, "unit": e.unit} for key, e in self.parameters.get(name, {}).items()
+            },
+            "variant": found.slot.variant.label,
+            "evidence": {
+                "p_value": found.p_value, "cv_gain": found.gain, "selection_frequency": found.selection_frequency,
+            },
+        }  # fmt: skip
+
+
+def _before_after(side: Side) -> dict[str, Any]:
+    return {
+        "before": side.size_before.value,
+        "after": side.size_after.value,
+        "relative_before": side.relative[0],
+        "relative_after": side.relative[1],
+    }
+
+
+def relative_error(residual: FloatArray, blocks_torque: FloatArray) -> float:
+    """Norm of the residual over the norm of the measured torque."""
+    return float(np.sqrt((residual**2).sum() / max(float((blocks_torque**2).sum()), 1e-300)))

@@ -1,0 +1,66 @@
+"""From the selection and what it leaves to one of four verdicts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.crossfit import CrossFit
+from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence
+from winch_friction.discrepancy.selection import Found, Selection
+
+NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
+LEAST_UNEXPLAINED = 0.08  # share of the remainder that one signal must predict when no effect was found
+LEFT_OVER = 0.08  # share of the excess over the noise floor that a named effect may leave
+LEAST_EXCESS = 0.35  # of the noise variance: less than that above the floor is nobody's effect
+OBVIOUS_EXCESS = 1.5
+MOST_NAMED = 2  # besides base terms that the model simply lacks
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict, and in words why an explanation was refused."""
+
+    kind: str
+    refused: str = ""
+
+
+def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) -> Verdict:
+    """`left`: what signals predict of the final explanation's remainder."""
+    count = float(cross.problem.grams.count.sum())
+    excess = selection.final.loss / count - 1.0
+    before = max(selection.base.loss / count - 1.0, 1e-9)
+    depends = [d for d in left if d.p_value <= SIGNIFICANCE]
+    if not selection.found:
+        obvious = [d for d in depends if d.share >= LEAST_UNEXPLAINED]
+        return Verdict(UNEXPLAINED, "no named effect explains it") if obvious else Verdict(NOTHING)
+    implausible = [f.slot.candidate.name for f in selection.found if _at_bound(cross, selection, f)]
+    if implausible:
+        return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
+    if len([f for f in selection.found if not _base_term(f)]) > MOST_NAMED:
+        return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
+    remains = excess > LEAST_EXCESS and excess / before > LEFT_OVER
+    if remains and (excess > OBVIOUS_EXCESS or any(d.share >= 0.5 * LEAST_UNEXPLAINED for d in depends)):
+        names = ", ".join(f.slot.candidate.name for f in selection.found)
+        return Verdict(UNEXPLAINED, f"{names} leaves {100 * excess / before:.0f} % of the gap above the noise floor")
+    return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
+
+
+def _at_bound(cross: CrossFit, selection: Selection, found: Found) -> bool:
+    columns = list(cross.problem.columns(selection.final.slots))
+    for column in found.slot.columns:
+        value = selection.final.beta[columns.index(column)]
+        lower, upper = cross.problem.lower[column], cross.problem.upper[column]
+        if value >= 0.999 * upper or (lower < 0.0 and value <= 0.999 * lower):
+            return True
+    return False
+
+
+def _base_term(found: Found) -> bool:
+    """A plain term that the model lacked from the start."""
+    return found.slot.candidate.name in ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "stribeck")
+
+
+def rms_ratio(cross: CrossFit, losses: np.ndarray) -> float:
+    """Root mean square residual in units of the noise."""
+    return float(np.sqrt(losses.sum() / cross.problem.grams.count.sum()))

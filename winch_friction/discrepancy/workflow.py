@@ -1,0 +1,147 @@
+"""Locate, name, add, prove: the whole workflow on runs in memory."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Blocks
+from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.holdout import lock_holdout, rms_with_interval
+from winch_friction.discrepancy.linearise import Expansion, expand_around, expand_at_seed
+from winch_friction.discrepancy.loads import estimated_loads
+from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence, dependences, remainder
+from winch_friction.discrepancy.problem import Problem, base_of, build_problem, layout_of
+from winch_friction.discrepancy.regions import find_regions
+from winch_friction.discrepancy.repair import repair
+from winch_friction.discrepancy.result import GapResult, Side, relative_error
+from winch_friction.discrepancy.selection import Selection, select
+from winch_friction.discrepancy.verdict import NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
+
+MOST_SIGNALS = 3
+
+
+@dataclass(frozen=True)
+class GapOptions:
+    """`holdout` is the share of runs locked for the proof; `seed` drives every random choice."""
+
+    holdout: float = 0.25
+    seed: int = 0
+    effects_file: Path | None = None
+
+
+def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: GapOptions | None = None) -> GapResult:
+    """Where runs and model disagree, which effect is missing, and the proof on locked runs.
+
+    Raises `InputError` for runs that lack what the torque balance needs, for two runs of one name and for no run at all.
+    """
+    options = options or GapOptions()
+    _check(runs, options)
+    split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
+    rng = np.random.default_rng(options.seed + 1)
+    loads = estimated_loads(split.runs, crane, model)
+    prepared = expand_at_seed(split.runs, crane, model, loads)
+    usable, blind = testable(all_candidates(options.effects_file), prepared, model)
+    candidates = [each for each in usable if each.regime == "moving"]
+    at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
+    cross = at_seed.cross(split.train)
+    first = select(cross, rng, 1)
+    expansion = expand_around(split.runs, crane, model, loads, at_seed, first.final, candidates)
+    cross = expansion.cross(split.train)
+    selection = select(cross, rng)
+    left = dependences(cross, remainder(cross, selection.final), rng)
+    verdict = decide(cross, selection, left)
+    if verdict.kind == UNEXPLAINED:
+        left = dependences(cross, remainder(cross, selection.base), rng)
+    explanation = selection.final if verdict.kind not in (UNEXPLAINED, NOTHING) else selection.base
+    found = selection.found if explanation is selection.final else ()
+    repaired = repair(model, expansion, cross, explanation, _provenance(split.train, verdict, options))
+    train = _side(at_seed, expansion, split.train, explanation, rng)
+    holdout = _side(at_seed, expansion, split.holdout, explanation, rng)
+    return GapResult(
+        verdict=verdict.kind, refused=verdict.refused, found=found, parameters=repaired.parameters,
+        regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base))),
+        unit="N*m" if crane.electric else "bar", train=train, holdout=holdout,
+        depends=_named(left) if verdict.kind == UNEXPLAINED else (),
+        unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
+        untestable=tuple(blind), model=repaired.model, seed_model=model, notes=_notes(split.runs, loads),
+    )  # fmt: skip
+
+
+def _check(runs: Sequence[Run], options: GapOptions) -> None:
+    if not runs:
+        raise InputError("no run given; name at least one run file")
+    names = [run.name for run in runs]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InputError(f"two runs are called '{twice[0]}'; a run's identity is its file name")
+    if not 0.05 <= options.holdout <= 0.6:
+        raise InputError(f"--holdout {options.holdout:g} is outside 0.05 ... 0.6")
+
+
+def _provenance(train: Sequence[str], verdict: Verdict, options: GapOptions) -> Mapping[str, Any]:
+    return {
+        "repaired_by": "winch-friction gap", "verdict": verdict.kind, "trained_on": list(train), "seed": options.seed,
+    }  # fmt: skip
+
+
+def _unweighted(cross: CrossFit, explanation: Explanation) -> FloatArray:
+    return np.asarray(remainder(cross, explanation) / cross.problem.blocks.weight)
+
+
+def _side(
+    at_seed: Expansion, expansion: Expansion, names: Sequence[str], explanation: Explanation, rng: np.random.Generator
+) -> Side:
+    given = _problem(at_seed, names)
+    around = _problem(expansion, names)
+    after = around.blocks.y - around.blocks.x[:, list(around.columns(explanation.slots))] @ explanation.beta
+    before = given.blocks.y
+    torque = _measured(at_seed, given.blocks, names)
+    floor = np.sqrt(np.mean([around.noise[k] ** 2 for k in around.blocks.run]))
+    return Side(
+        runs=tuple(run for run in expansion.runs if run.name in names), blocks=around.blocks, before=before, after=after,
+        size_before=rms_with_interval(before, given.blocks.segment, rng),
+        size_after=rms_with_interval(after, around.blocks.segment, rng), noise_floor=float(floor),
+        relative=(relative_error(before, torque), relative_error(after, torque)),
+    )  # fmt: skip
+
+
+def _problem(expansion: Expansion, names: Sequence[str]) -> Problem:
+    return build_problem([run for run in expansion.runs if run.name in names], expansion.layout)
+
+
+def _measured(expansion: Expansion, blocks: Blocks, names: Sequence[str]) -> FloatArray:
+    """RMS-true stand-in for the measured torque of the blocks: each run's own RMS while moving, in the gap's unit."""
+    chosen = [run for run in expansion.runs if run.name in names]
+    own = [np.sqrt(np.mean(((r.gap + r.predicted)[r.moving] / r.unit_torque) ** 2)) for r in chosen]
+    return np.array(own)[blocks.run]
+
+
+def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
+    significant = [each for each in left if each.p_value <= SIGNIFICANCE and each.share > 0.0]
+    return tuple((significant or [d for d in left if d.share > 0.0])[:MOST_SIGNALS])
+
+
+def _unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:
+    """Share of the gap above the noise floor that no named effect explains."""
+    count = float(cross.problem.grams.count.sum())
+    before = max(selection.base.loss / count - 1.0, 1e-9)
+    after = max(selection.final.loss / count - 1.0, 0.0)
+    if verdict.kind == NOTHING:
+        return 0.0
+    return float(min(after / before, 1.0)) if selection.found else 1.0
+
+
+def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
+    notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
+    bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
+    if bare:
+        notes.append(f"no wire_layer in {len(bare)} runs: the outer layer is assumed")
+    return tuple(notes)

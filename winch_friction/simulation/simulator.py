@@ -184,7 +184,7 @@ class Simulator:
         columns = {"time": rows[:, 0].copy()}
         columns |= {name: rows[:, k + 1].copy() for k, name in enumerate(self.channels.names)}
         columns["time"] += self.scenario.start_time
-        columns["wire_layer"] = np.full(len(rows), float(self.scenario.wire_layer))
+        columns["wire_layer"] = np.where(np.isnan(rows[:, 1]), np.nan, float(self.scenario.wire_layer))
         history = self.history[: self.tick + 1]
         truth = {name: history[:, k].copy() for k, name in enumerate(COLUMNS)}
         name = f"{self.scenario.name}_seed{self.seed}"

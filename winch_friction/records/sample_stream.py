@@ -15,7 +15,8 @@ class SampleStream:
     """Holds every message's readings and makes one sample at each speed.
 
     `on_jump` is called when the speed's stamps fall back by more than `BACKWARD_JUMP`, before the sample is made;
-    what is held is dropped first.
+    what is held is dropped first. A message without a stamp counts as measured at the next speed sent after it:
+    clocks of different processes would place it differently, the order of sending does not.
     """
 
     def __init__(self, topics: TopicMap, hold: InputHold, on_jump: Callable[[], None] = lambda: None) -> None:
@@ -24,23 +25,42 @@ class SampleStream:
         self.counts: Counter[str] = Counter()
         self.rejected: Counter[str] = Counter()
         self.last_stamp = float("-inf")
+        self._unstamped: list[tuple[float, Input, Any]] = []
 
-    def take(self, source: Input, message: Any, receipt: float) -> Sample | None:
-        """Hold what a message says (`receipt` s stamps it when it has no header); the sample, if it was a speed."""
-        stamp = stamp_time(message) if source.stamped else receipt
-        speed = source.topic == self.topics.speed_topic
-        if speed and stamp < self.last_stamp - BACKWARD_JUMP:
+    def take(self, source: Input, message: Any, receipt: float, sent: float | None = None) -> Sample | None:
+        """Hold what a message says; the sample, if it was a speed.
+
+        `receipt` s stamps a speed without a header; `sent` orders messages of all topics (default: `receipt`).
+        """
+        sent = receipt if sent is None else sent
+        if source.topic == self.topics.speed_topic:
+            return self._speed(source, message, stamp_time(message) if source.stamped else receipt, sent)
+        if source.stamped:
+            self._put(source, stamp_time(message), message)
+        else:
+            self._unstamped.append((sent, source, message))
+        return None
+
+    def _speed(self, source: Input, message: Any, stamp: float, sent: float) -> Sample | None:
+        if stamp < self.last_stamp - BACKWARD_JUMP:
             self.forget()
             self._on_jump()
-        taken = self._put(source, stamp, message)
-        if not (speed and taken):
+        if not self._put(source, stamp, message):
             return None
+        self._date_unstamped(stamp, sent)
         self.last_stamp = stamp
         return self.hold.sample(stamp)
+
+    def _date_unstamped(self, stamp: float, sent: float) -> None:
+        for each in self._unstamped:
+            if each[0] <= sent:
+                self._put(each[1], stamp, each[2])
+        self._unstamped = [each for each in self._unstamped if each[0] > sent]
 
     def forget(self) -> None:
         """Drop what is held, after a jump of time."""
         self.hold.reset()
+        self._unstamped = []
         self.last_stamp = float("-inf")
 
     def _put(self, source: Input, stamp: float, message: Any) -> bool:

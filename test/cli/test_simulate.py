@@ -1,0 +1,71 @@
+"""`winch-friction simulate`."""
+
+import json
+
+import numpy as np
+import pytest
+
+from winch_friction.cli.main import run
+from winch_friction.records.runs import read_run
+
+
+@pytest.fixture
+def short(tmp_path):
+    path = tmp_path / "short.yaml"
+    path.write_text(
+        "schema: winch_friction.scenario/1\nname: short\nduration: 8\nmode: ahc\nload: {value: 55, unit: t}\n"
+        "displacement: {value: 215, unit: cm^3/rev}\nsea: {kind: regular, amplitude: 1.0, period: 8}\n"
+    )
+    return str(path)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mcap"])
+def test_a_scenario_becomes_a_run_that_reads_back(short, tmp_path, suffix, capsys):
+    out = tmp_path / f"run{suffix}"
+    assert run(["simulate", short, "--out", str(out), "--seed", "3", "--json"]) == 0
+    written = json.loads(capsys.readouterr().out)["runs"][0]
+    read = read_run(out)
+    assert len(read) == written["rows"] == 401
+    assert read.groups == ("active", "passive")
+    assert np.isfinite(read["motor_speed"]).all()
+
+
+def test_hidden_effects_and_truth(short, tmp_path):
+    for name, extra in (("a", []), ("b", ["--hide", "brake_drag=2"])):
+        assert run(["simulate", short, "--out", str(tmp_path / f"{name}.csv"), "--truth", *extra]) == 0
+    plain, hidden = (read_run(tmp_path / f"{name}_truth.csv", complete=False) for name in "ab")
+    assert np.abs(hidden.aside["friction_torque"]).max() > 50.0 + np.abs(plain.aside["friction_torque"]).max()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["no_such_scenario"], "neither a file nor a shipped name"),
+        (["{short}", "--hide", "rust"], "--hide rust: not an effect"),
+        (["{short}", "--hide", "brake_drag=much"], "'much' is not a number"),
+        (["gap_campaign", "--out", "one.csv"], "needs a folder"),
+        (["{short}", "--format", "xlsx"], "not a kind of run file"),
+        (["{short}", "--crane", "emps"], "electric"),
+        ([], "which scenario?"),
+    ],
+)
+def test_bad_input_is_one_line(arguments, message, short, tmp_path, capsys):
+    arguments = [argument.format(short=short) for argument in arguments]
+    out = [] if "--out" in arguments else ["--out", str(tmp_path / "x.csv")]
+    assert run(["simulate", *arguments, *out]) == 2
+    error = capsys.readouterr().err.strip()
+    assert message in error
+    assert "\n" not in error
+
+
+def test_runs_are_not_overwritten(short, tmp_path, capsys):
+    out = tmp_path / "run.csv"
+    out.write_text("precious")
+    assert run(["simulate", short, "--out", str(out)]) == 2
+    assert out.read_text() == "precious"
+    assert run(["simulate", short, "--out", str(out), "--force"]) == 0
+
+
+def test_effects_are_listed(capsys):
+    assert run(["simulate", "--effects", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)) == 27

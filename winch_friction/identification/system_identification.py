@@ -88,7 +88,7 @@ def identify_system(
     rule: PlateauRule | None = None,
     complex_options: Mapping[str, int] | None = None,
 ) -> SystemIdentification:
-    """Everything from logged tests and a motor model (with covariance); `complex_options`: restarts, max_evaluations."""
+    """Everything from logged tests and a motor model with covariance; `complex_options`: restarts, max_evaluations."""
     if not runs:
         raise InputError("identify system: no logged test was given")
     tests = tuple(read_test(run, crane, rule) for run in runs)

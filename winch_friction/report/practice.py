@@ -7,7 +7,7 @@ import numpy as np
 from winch_friction.identification.practice import Practice
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.practice_motor import motor_sections
-from winch_friction.report.practice_system import label, system_sections
+from winch_friction.report.practice_system import system_sections
 from winch_friction.report.practice_verification import verification_sections
 from winch_friction.report.tables import paragraph, table_html
 
@@ -31,11 +31,11 @@ def practice_sections(practice: Practice) -> list[Section]:
 def summary_html(practice: Practice) -> str:
     """What came out, in a few lines, and the seed."""
     rows = [
-        [label(p.name), value, std]
+        [p.name, p.unit, value, std]
         for p, value, std in zip(practice.seed.parameters, practice.seed.values, practice.seed.std, strict=True)
     ]
     return "".join(paragraph(line, "verdict") for line in summary_lines(practice)) + table_html(
-        ("parameter", "seed", "σ"), rows, "The seed for the online nodes (joint fit)"
+        ("parameter", "unit", "seed", "σ"), rows, "The seed for the online nodes (joint fit)"
     )
 
 

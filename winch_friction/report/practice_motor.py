@@ -36,35 +36,40 @@ def motor_sections(practice: Practice) -> list[TextSection]:
 
 
 def ranking_html(motor: MotorIdentification) -> str:
-    """All models: both fitters, held-out displacement, parameters."""
-    rows = []
-    for score in motor.scores:
-        by_complex = motor.by_complex.get(score.name)
-        described = motor_model_named(score.name)
-        ratio = by_complex.evaluations / score.fitted.evaluations if by_complex else float("nan")
-        rows.append(
-            [
-                described.title, described.year, described.displacement, score.fitted.parameter_count,
-                score.fitted.rms, score.held_out, score.bic, score.fitted.cost,
-                by_complex.cost if by_complex else float("nan"), score.fitted.evaluations,
-                by_complex.evaluations if by_complex else None, ratio, described.note,
-            ]
-        )  # fmt: skip
-    columns = (
-        "model", "year", "displacement", "parameters", "RMS N·m", "held-out RMS N·m", "BIC", "cost, least squares",
-        "cost, complex", "evaluations, least squares", "evaluations, complex", "ratio", "note",
-    )  # fmt: skip
-    chosen, best = motor_model_named(motor.chosen.name).title, motor_model_named(motor.recommended).title
-    verdict = f"Used: {chosen}. Held-out displacements, with the parameters counted, recommend {best}."
-    return (
-        paragraph(verdict, "verdict")
-        + paragraph(
-            f"{len(motor.table)} rows of {motor.table.name}, weighting '{motor.weighting}'. Held out: one "
-            "displacement at a time. Cost is the weighted squared error; an evaluation is one torque over all rows, or "
-            "one column of a Jacobian."
-        )
-        + table_html(columns, rows)
+    """All models: held-out displacement with the parameters counted, then both fitters beside each other."""
+    described = {score.name: motor_model_named(score.name) for score in motor.scores}
+    rows = [
+        [described[score.name].title, described[score.name].year, described[score.name].displacement,
+         score.fitted.parameter_count, score.fitted.rms, score.held_out, score.bic]
+        for score in motor.scores
+    ]  # fmt: skip
+    columns = ("model", "year", "displacement", "parameters", "RMS N·m", "held-out RMS N·m", "BIC")
+    notes = "; ".join(f"{each.title}: {each.note}" for each in described.values() if each.note)
+    verdict = (
+        f"Used: {described[motor.chosen.name].title}. Held-out displacements, with the parameters counted, recommend "
+        f"{described[motor.recommended].title}."
     )
+    said = (
+        f"{len(motor.table)} rows of {motor.table.name}, weighting '{motor.weighting}'. Held out: one displacement at "
+        f"a time. {notes}."
+    )
+    return paragraph(verdict, "verdict") + paragraph(said) + table_html(columns, rows) + _fitters_html(motor)
+
+
+def _fitters_html(motor: MotorIdentification) -> str:
+    """Cost and model evaluations of least squares and of the complex method."""
+    if not motor.by_complex:
+        return ""
+    rows: list[list[Any]] = []
+    for score in motor.scores:
+        other = motor.by_complex[score.name]
+        rows.append(
+            [motor_model_named(score.name).title, score.fitted.cost, other.cost, score.fitted.evaluations,
+             other.evaluations, other.evaluations / score.fitted.evaluations]
+        )  # fmt: skip
+    columns = ("model", "cost, LS", "cost, complex", "evaluations, LS", "evaluations, complex", "ratio")
+    said = "Cost: weighted squared error. An evaluation is one torque over all rows, or one column of a Jacobian."
+    return table_html(columns, rows, "Least squares (LS) and the complex method of paper 2") + paragraph(said, "faint")
 
 
 def parameters_html(motor: MotorIdentification) -> str:

@@ -44,8 +44,7 @@ def _tests_html(practice: Practice) -> str:
         ]
         for test in (*practice.system.tests, *practice.system.held_out)
     ]  # fmt: skip
-    columns = ("name", "motor displacement (total/single) cm³/rev", "winch load t", "plateaus", "from rpm", "to rpm",
-               "use")  # fmt: skip
+    columns = ("name", "displacement cm³/rev", "load t", "plateaus", "from rpm", "to rpm", "use")  # fmt: skip
     return table_html(columns, rows, "Evaluated test scenarios (paper 2 Tables 2 and 5)") + figure_html(
         plateau_figure(practice), "A test cycle; marked: the plateaus whose means are used; paper 2 Fig 6."
     )
@@ -90,7 +89,7 @@ def _system_html(practice: Practice) -> str:
     fits = practice.system.fits
     first = next(iter(fits))
     columns = ["model", *fits]
-    rows = [[label(p), *(each.model.as_dict().get(p, 0.0) for each in fits.values())] for p in _SYSTEM]
+    rows = [[label(p), *(shown(each.model, p) for each in fits.values())] for p in _SYSTEM]
     rows.append(["E", *(each.cost for each in fits.values())])
     rows.append(["model evaluations", *(each.evaluations for each in fits.values())])
     said = f"Eq 7 with the supplier's motor model, cost of eq 9; condition number {fits[first].condition:.3g} for eq 8."
@@ -107,8 +106,14 @@ def _system_html(practice: Practice) -> str:
 def label(parameter: str) -> str:
     """A parameter with its unit, C4 in rpm as the paper prints it."""
     units = {"K1": "N·m·s", "K2": "N·s²/m⁸", "K3": "–", "K4": "N·m", "K5": "m⁵/N", "C1": "–", "C2": "N·m", "C3": "N·m",
-             "C4": "rad/s", "C5": "N·m·s", "C6": "–"}  # fmt: skip
+             "C4": "rev/min", "C5": "N·m·s", "C6": "–"}  # fmt: skip
     return f"{parameter} [{units.get(parameter, '')}]"
+
+
+def shown(model: FrictionModel, parameter: str) -> float:
+    """A parameter's value in the unit of `label`; a parameter that the model lacks is 0."""
+    value = model.as_dict().get(parameter, 0.0)
+    return value / RPM if parameter == "C4" else value
 
 
 def breakdown_figure(practice: Practice) -> Any:
@@ -150,7 +155,7 @@ def _loop_html(practice: Practice) -> str:
     loops = system.loops
     columns = ["model", *(f"loop {loop.number}" for loop in loops)]
     rows: list[list[Any]] = [
-        [label(p), *(loop.model.as_dict().get(p, 0.0) for loop in loops)]
+        [label(p), *(shown(loop.model, p) for loop in loops)]
         for p in (*_MOTOR, *_SYSTEM)
         if p in loops[0].model.as_dict() or p in _SYSTEM
     ]
@@ -254,12 +259,11 @@ def _joint_html(practice: Practice) -> str:
     boot = dict(zip(system.bootstrap.names, system.bootstrap.std, strict=True)) if system.bootstrap else {}
     rows = [
         [p.name, p.unit, joint.prior.value(p.name), prior_std or float("nan"), value, std,
-         boot.get(p.name, float("nan")), p.doc]
+         boot.get(p.name, float("nan"))]
         for p, prior_std, value, std in zip(
             joint.model.parameters, joint.prior.std, joint.model.values, joint.model.std, strict=True)
     ]  # fmt: skip
-    columns = ("parameter", "unit", "before", "its σ", "joint fit", "σ, linearised", "σ, bootstrap over tests",
-               "meaning")  # fmt: skip
+    columns = ("parameter", "unit", "before", "its σ", "joint fit", "σ", "σ, bootstrap")
     tied = "; ".join(f"{tie.first} and {tie.second} (cosine {tie.cosine:.5f})" for tie in system.ties) or "none"
     unseen = "; ".join(f"{direction} (seen {direction.seen:.2g})" for direction in system.unseen) or "none"
     sensors = [[key.replace("_", " "), *pair] for key, pair in joint.sensor_errors.items()]

@@ -28,15 +28,17 @@ def verification_sections(practice: Practice) -> list[TextSection]:
 def _friction_html(practice: Practice) -> str:
     names = list(practice.errors)
     columns = ["test", "use", "nominal N·m"]
-    columns += [f"{model}, {where} 250 rpm" for model in names for where in ("above", "below")]
+    columns += [f"{model.split()[0]} {where}250" for model in names for where in ("≥", "<")]
     fitted = len(practice.system.tests)
     rows: list[list[Any]] = []
     for k, error in enumerate(practice.errors[names[0]]):
         cells = [practice.errors[model][k].worst(above) for model in names for above in (True, False)]
-        rows.append([name(error.test), "fitted" if k < fitted else "held out", error.nominal, *cells])
+        rows.append([name(error.test), "fit" if k < fitted else "kept", error.nominal, *cells])
     return (
         paragraph(
-            "Largest |modelled − measured| T_ft in % of nominal torque, the test's load torque per motor (the heaviest "
+            "Largest |modelled − measured| T_ft in % of nominal torque, at 250 rpm and above, and below, by first loop, "
+            "second loop and joint fit; kept: held-out tests. Nominal: "
+            "the test's load torque per motor (the heaviest "
             "test's where only the hook hung)."
         )
         + table_html(columns, rows, digits=3)
@@ -90,8 +92,7 @@ def _check_rows(checks: dict[str, list[PressureCheck]]) -> list[list[Any]]:
     ]  # fmt: skip
 
 
-_COLUMNS = ("run", "model", "RMS while turning, bar", "RMS, whole run, bar", "mean error hoisting, bar",
-            "mean error lowering, bar")  # fmt: skip
+_COLUMNS = ("run", "model", "RMS turning, bar", "RMS all, bar", "mean hoisting, bar", "mean lowering, bar")  # fmt: skip
 
 
 def _normal_html(practice: Practice) -> str:

@@ -18,12 +18,17 @@ class PlateauRule:
     """What counts as constant speed; s, rad/s, rad/s^2.
 
     The slope of the speed, averaged over `window`, stays below `slope` plus `relative_slope` times the speed. The
-    first `settle` seconds are dropped, what remains lasts `duration` at least and is faster than `standstill`.
+    first `settle` seconds are dropped, and what lies outside `band` around the final speed. What remains lasts
+    `duration` at least, is faster than `standstill`, and drifts less than `drift`.
     """
 
     window: float = 0.6
     slope: float = 12.0 * RPM
     relative_slope: float = 0.02
+    drift: float = 3.0 * RPM
+    relative_drift: float = 0.002
+    band: float = 8.0 * RPM
+    relative_band: float = 0.02
     settle: float = 1.0
     duration: float = 1.5
     standstill: float = 4.0 * RPM
@@ -78,9 +83,19 @@ def _steady_pieces(run: Run, rule: PlateauRule, group: str) -> Iterator[slice]:
     steady = (np.abs(slope) < rule.slope + rule.relative_slope * np.abs(mean)) & (np.abs(mean) > rule.standstill)
     steady &= ~_changes(run[f"{group}.displacement"], half) & ~_steps(run.column("wire_layer"))
     for start, stop in _stretches(steady):
-        first = int(np.searchsorted(time, time[start] + rule.settle))
+        first = max(int(np.searchsorted(time, time[start] + rule.settle)), _level_from(mean, start, stop, rule))
         if first < stop and time[stop - 1] - time[first] >= rule.duration:
-            yield slice(first, stop)
+            piece = slice(first, stop)
+            drift = np.polyfit(time[piece] - time[first], speed[piece], 1)[0]
+            if abs(drift) < rule.drift + rule.relative_drift * abs(mean[stop - 1]):
+                yield piece
+
+
+def _level_from(mean: FloatArray, start: int, stop: int, rule: PlateauRule) -> int:
+    """Where the speed comes within the band around its final value and stays there."""
+    final = mean[stop - 1]
+    outside = np.flatnonzero(np.abs(mean[start:stop] - final) > rule.band + rule.relative_band * abs(final))
+    return start + int(outside[-1]) + 1 if len(outside) else start
 
 
 def _moving_mean(values: FloatArray, half: int) -> FloatArray:

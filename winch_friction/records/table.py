@@ -48,9 +48,8 @@ class Table:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise InputError(
-                f"{self.path} row {row}: column '{column}' holds {text or 'nothing'!r}, not a finite number"
-            )
+            said = repr(text) if text else "nothing"
+            raise InputError(f"{self.path} row {row}: column '{column}' holds {said}, not a finite number")
         return value
 
     def refuse(self, column: str, bad: Any, reason: str) -> None:

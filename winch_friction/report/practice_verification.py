@@ -36,8 +36,8 @@ def _friction_html(practice: Practice) -> str:
         rows.append([name(error.test), "fit" if k < fitted else "kept", error.nominal, *cells])
     return (
         paragraph(
-            "Largest |modelled − measured| T_ft in % of nominal torque, at 250 rpm and above, and below, by first loop, "
-            "second loop and joint fit; kept: held-out tests. Nominal: "
+            "Largest |modelled − measured| T_ft in % of nominal torque, at 250 rpm and above, and below; by first "
+            "loop, second loop and joint fit; kept: held-out tests. Nominal: "
             "the test's load torque per motor (the heaviest "
             "test's where only the hook hung)."
         )

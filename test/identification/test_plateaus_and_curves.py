@@ -1,0 +1,131 @@
+"""Steps 2 and 3 on logged cycles of known truth, and every way in which a log can be unusable."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cycles import SPEEDS, TABLE_2, cycle, cycles
+
+from winch_friction.identification.fit_data import modelled
+from winch_friction.identification.friction_curve import curve_data, friction_curve
+from winch_friction.identification.plateaus import find_plateaus
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+
+
+def test_every_plateau_is_found_once(truth, crane):
+    plateaus = find_plateaus(cycle(truth, crane, "a", 215, 79), crane)
+    found = sorted(round(each.speed / RPM) for each in plateaus)
+    assert found == sorted([*SPEEDS, *(-speed for speed in SPEEDS)])
+    for each in plateaus:
+        assert each.end - each.start < 5.0  # transients are cut off
+        assert each.speed_std < 1.6 * RPM
+        assert each.displacement == pytest.approx(215 * CM3_PER_REV)
+        assert each.drum_torque == pytest.approx(crane.drum_torque(79e3))
+        assert 0.0 < each.pressure_error < 0.1 * BAR
+
+
+def test_means_are_the_truth(truth, crane):
+    from cycles import drive_pressure
+
+    plateaus = find_plateaus(cycle(truth, crane, "a", 164, 109, seed=3), crane)
+    for each in plateaus:
+        expected = drive_pressure(truth, crane, np.array([each.speed]), 164 * CM3_PER_REV, 109e3)[0]
+        assert abs(each.pressure_drop - expected) < 6 * max(each.pressure_error, 0.02 * BAR)
+
+
+def test_ramps_and_standstill_are_no_plateaus(truth, crane):
+    run = cycle(truth, crane, "a", 215, 79, noise=0.0)
+    time = run.time
+    ramp = replace(run, columns={**run.columns, "motor_speed": 0.5 * time})
+    still = replace(run, columns={**run.columns, "motor_speed": np.zeros_like(time)})
+    assert find_plateaus(ramp, crane) == []  # 5 rpm/s: slow enough for the slope alone
+    assert find_plateaus(still, crane) == []
+
+
+def test_a_change_of_displacement_ends_a_plateau(truth, crane):
+    run = cycle(truth, crane, "a", 215, 79, speeds=(500,))
+    moved = run["main.displacement"] * np.where(run.time < 3.0, 1.0, 0.8)
+    plateaus = find_plateaus(replace(run, columns={**run.columns, "main.displacement": moved}), crane)
+    for each in plateaus:
+        assert not each.start < 3.0 < each.end
+
+
+def test_curve_recovers_total_friction(truth, crane):
+    curves = [friction_curve(find_plateaus(run, crane), crane) for run in cycles(truth, crane, TABLE_2, noise=0.0)]
+    data = curve_data(curves)
+    error = np.abs(data.torque - modelled(truth, data))
+    # what remains is the straight line between plateaus on a curved characteristic
+    assert error.max() < 0.6
+    assert np.median(error) < 0.15
+    steps = np.diff(curves[0].speed) / RPM
+    np.testing.assert_allclose(steps, 25.0)
+    assert curves[2].load_torque == pytest.approx(crane.drum_torque(109e3) / 250 / 11)
+
+
+def test_equal_speed_although_leakage_shifts_the_directions(truth, crane):
+    up = cycle(truth, crane, "up", 215, 79, speeds=(53, 106, 212, 424, 848), directions=(1,), noise=0.0)
+    down = cycle(truth, crane, "up", 215, 79, speeds=(47, 94, 188, 376, 752), directions=(-1,), noise=0.0)
+    curve = friction_curve([*find_plateaus(up, crane), *find_plateaus(down, crane)], crane)
+    assert curve.speed[0] / RPM == pytest.approx(75.0)
+    assert curve.speed[-1] / RPM == pytest.approx(750.0)
+    data = curve_data([curve])
+    assert np.abs(data.torque - modelled(truth, data)).max() < 1.5  # few plateaus: chords of a curve
+
+
+def test_another_wire_layer_on_the_way_down_is_not_taken_for_friction(truth, crane):
+    up = cycle(truth, crane, "a", 215, 79, directions=(1,), noise=0.0)
+    down = cycle(truth, crane, "a", 215, 79, directions=(-1,), noise=0.0)
+    plateaus = [*find_plateaus(up, crane), *find_plateaus(down, crane)]
+    lower = [
+        replace(each, drum_torque=0.94 * each.drum_torque,
+                pressure_drop=each.pressure_drop - 0.06 * each.drum_torque / (250 * 11 * each.displacement))
+        if each.speed < 0 else each
+        for each in plateaus
+    ]  # fmt: skip
+    same, other = friction_curve(plateaus, crane), friction_curve(lower, crane)
+    np.testing.assert_allclose(other.friction_torque, same.friction_torque, rtol=1e-6)
+
+
+def test_one_direction_only(truth, crane):
+    plateaus = find_plateaus(cycle(truth, crane, "test_9.csv", 215, 79, directions=(1,)), crane)
+    with pytest.raises(InputError, match=r"^test_9.csv: no lowering at constant speed was found"):
+        friction_curve(plateaus, crane)
+
+
+def test_too_few_plateaus(truth, crane):
+    plateaus = find_plateaus(cycle(truth, crane, "test_9.csv", 215, 79, speeds=(500,)), crane)
+    with pytest.raises(InputError, match=r"^test_9.csv: hoisting has one constant speed only"):
+        friction_curve(plateaus, crane)
+
+
+def test_no_overlap(truth, crane):
+    fast = find_plateaus(cycle(truth, crane, "t.csv", 215, 79, speeds=(500, 900), directions=(1,)), crane)
+    slow = find_plateaus(cycle(truth, crane, "t.csv", 215, 79, speeds=(100, 200), directions=(-1,)), crane)
+    with pytest.raises(
+        InputError, match=r"^t.csv: the speeds of hoisting and lowering do not overlap \(500-900 rpm and"
+    ):
+        friction_curve([*fast, *slow], crane)
+
+
+def test_nan_is_named_by_row_and_column(truth, crane):
+    run = cycle(truth, crane, "t.csv", 215, 79)
+    values = run["main.pressure_a"].copy()
+    values[41] = np.nan
+    with pytest.raises(InputError, match=r"^t.csv row 43: column 'main.pressure_a' is not a finite number"):
+        find_plateaus(replace(run, columns={**run.columns, "main.pressure_a": values}), crane)
+
+
+@pytest.mark.parametrize("column", ["main.pressure_b", "hook_load"])
+def test_missing_column(truth, crane, column):
+    run = cycle(truth, crane, "t.csv", 215, 79)
+    columns = {name: values for name, values in run.columns.items() if name != column}
+    with pytest.raises(InputError, match=rf"t.csv: column '{column}' is missing"):
+        find_plateaus(replace(run, columns=columns), crane)
+
+
+def test_too_short(truth, crane):
+    run = cycle(truth, crane, "t.csv", 215, 79)
+    short = replace(run, columns={name: values[:10] for name, values in run.columns.items()})
+    with pytest.raises(InputError, match="t.csv: 10 samples are too few"):
+        find_plateaus(short, crane)

@@ -1,0 +1,113 @@
+"""Reading a supplier's table: units, efficiency and torque, ranges, and every defect in one line."""
+
+import numpy as np
+import pytest
+
+from winch_friction.identification.black_box import BlackBoxMap
+from winch_friction.identification.supplier_file import read_supplier_table
+from winch_friction.identification.supplier_table import FitRange
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+
+HEADER = "speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]"
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(*lines):
+        path = tmp_path / "table.csv"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return path
+
+    return to_file
+
+
+def test_efficiency_becomes_torque_loss(write):
+    table = read_supplier_table(write("# a comment", HEADER, "1000,200,215,94.0", "2000,100,107.5,90"))
+    np.testing.assert_allclose(table.speed, [1000 * RPM, 2000 * RPM])
+    nominal = np.array([200 * BAR * 215, 100 * BAR * 107.5]) * CM3_PER_REV
+    np.testing.assert_allclose(table.torque_loss, nominal * [0.06, 0.10])
+    assert table.max_displacement == pytest.approx(215 * CM3_PER_REV)
+
+
+def test_other_units_and_torque(write):
+    path = write("speed [rad/s],pressure [MPa],displacement [m^3/rad],torque [kN*m]", "100,20,3.0e-5,0.56")
+    assert read_supplier_table(path).torque_loss == pytest.approx([40.0])
+
+
+def test_loss_in_si_without_brackets_and_weights(write):
+    table = read_supplier_table(write("speed,pressure,displacement,torque_loss,weight", "100,2e7,3e-5,17,2.5"))
+    assert table.torque_loss == pytest.approx([17.0])
+    np.testing.assert_allclose(table.fit_data("column").weight, [2.5])
+
+
+BAD = {
+    "missing column": (["speed [rpm],pressure [bar],efficiency [%]", "1000,200,90"],
+                       r"column 'displacement' is missing"),
+    "unknown unit": (["speed [furlongs],pressure [bar],displacement [cm^3/rev],efficiency [%]", "1,2,3,90"],
+                     r"column 'speed': unit 'furlongs'"),
+    "a volume without its angle": (["speed [rpm],pressure [bar],displacement [cm^3],efficiency [%]", "1,2,3,90"],
+                                   r"column 'displacement': unit 'cm\^3' cannot be read as m\^3/rad"),
+    "efficiency above 1": ([HEADER, "1000,200,215,94", "1000,200,215,102"],
+                           r"row 3: column 'efficiency' = 102 is above 1"),
+    "NaN": ([HEADER, "1000,nan,215,94"], r"row 2: column 'pressure' holds 'nan', not a finite number"),
+    "text": ([HEADER, "1000,200,215,n/a"], r"row 2: column 'efficiency' holds 'n/a'"),
+    "empty cell": ([HEADER, "1000,,215,94"], r"row 2: column 'pressure' holds nothing"),
+    "cells": ([HEADER, "1000,200,215"], r"row 2: 3 cells, the header has 4 columns"),
+    "negative": ([HEADER, "-1000,200,215,94"], r"row 2: column 'speed' = -1000 must be above 0"),
+    "no loss": (["speed [rpm],pressure [bar],displacement [cm^3/rev]", "1,2,3"], r"exactly one of the columns"),
+    "two losses": (["speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%],torque [N*m]", "1,2,3,90,1"],
+                   r"found efficiency and torque"),
+    "torque above nominal": (["speed [rpm],pressure [bar],displacement [cm^3/rev],torque [N*m]", "1000,100,215,400"],
+                             r"row 2: column 'torque' = 400 is above D dp"),
+    "header only": ([HEADER], r"a header and at least one row"),
+    "column twice": (["speed [rpm],speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]", "1,1,2,3,90"],
+                     r"column 'speed' appears twice"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_one_line_with_the_file(write, case):
+    lines, message = BAD[case]
+    with pytest.raises(InputError, match=message) as caught:
+        read_supplier_table(write(*lines))
+    assert "table.csv" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_range_is_inclusive_and_refuses_to_leave_nothing(write):
+    table = read_supplier_table(write(HEADER, "400,50,50,70", "2500,350,215,90", "2501,200,215,90", "300,200,215,90"))
+    assert len(FitRange().select(table)) == 2
+    with pytest.raises(InputError, match="no row lies inside the range"):
+        FitRange(speed=(1.0, 2.0)).select(table)
+
+
+def test_nominal_weights_make_efficiency_errors_alike(write):
+    data = read_supplier_table(write(HEADER, "1000,50,50,80", "1000,350,215,95")).fit_data("nominal")
+    ratio = (350 * 215) ** 2 / (50 * 50) ** 2
+    assert data.weight[0] / data.weight[1] == pytest.approx(ratio)
+    with pytest.raises(InputError, match="weighting 'twice' is not known"):
+        read_supplier_table(write(HEADER, "1000,50,50,80")).fit_data("twice")
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_map_returns_the_table_and_interpolates_linearly(write, complete):
+    rows = [
+        f"{n},{p},{d},{5 + 0.01 * n + 0.02 * p + 0.03 * d}"
+        for n in (500, 1000, 2000)
+        for p in (100, 200, 300)
+        for d in (50, 100, 200)
+        if complete or (n, p, d) != (2000, 300, 200)
+    ]
+    table = read_supplier_table(write(HEADER.replace("efficiency [%]", "torque_loss [N*m]"), *rows))
+    black_box = BlackBoxMap(table)
+    np.testing.assert_allclose(
+        black_box.torque_loss(table.speed, table.pressure, table.displacement), table.torque_loss, rtol=1e-9
+    )
+    between = black_box.torque_loss(
+        np.array([750 * RPM]), np.array([150 * BAR]), np.array([75 * CM3_PER_REV])
+    )  # the loss is a plane in the three axes
+    assert between == pytest.approx([5 + 7.5 + 3.0 + 2.25])
+    outside = np.array([2500 * RPM]), np.array([150 * BAR]), np.array([75 * CM3_PER_REV])
+    assert black_box.outside(*outside).all()
+    assert np.isfinite(black_box.torque_loss(*outside)).all()

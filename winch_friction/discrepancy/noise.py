@@ -5,11 +5,13 @@ candidates takes part, because a rich fit that lacks the true law would whiten t
 """
 
 import numpy as np
+from scipy.special import gammaincinv
 
 from winch_friction.physics.signals import FloatArray
 
 WINDOW = 12  # blocks
 ORDER = 2
+QUIET = 0.25  # the quieter windows speak for the noise; in the others an oscillation may ring down
 FLOOR = 1e-3  # bar (N m): below it a record is as good as noise-free
 
 
@@ -22,8 +24,8 @@ def noise_of_run(values: FloatArray, position: np.ndarray) -> float:
     projector = np.eye(WINDOW) - grid @ np.linalg.pinv(grid)
     variances = ((windows @ projector) ** 2).sum(axis=1) / (WINDOW - ORDER - 1)
     freedom = WINDOW - ORDER - 1
-    median_of_chi2 = (1.0 - 2.0 / (9.0 * freedom)) ** 3
-    return max(float(np.sqrt(np.median(variances) / median_of_chi2)), FLOOR)
+    expected = 2.0 * gammaincinv(0.5 * freedom, QUIET) / freedom  # that quantile of chi-squared, per degree of freedom
+    return max(float(np.sqrt(np.quantile(variances, QUIET) / expected)), FLOOR)
 
 
 def _windows(values: FloatArray, position: np.ndarray) -> FloatArray:

@@ -28,6 +28,8 @@ PRIOR_BOUND = 2.0  # sigma; a base parameter beyond it is itself a finding
 PRIOR_WEIGHT = 10.0  # correlated block noise makes the data count for less than their number
 DEFAULT_RELATIVE_STD = 0.2  # for a model without covariance
 TINY = 1e-9
+UNBOUNDED = 1e9
+PLAIN_TERMS = ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "stribeck")
 # what every measurement is off by without being wrong: (name, one sigma); bounded like the parameters
 TOLERANCES = (
     ("weight", 5e-4),  # relative: local gravity alone varies by 0.25 %, a calibrated load cell by less
@@ -137,13 +139,15 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
     lower, upper = list(base.lower), list(base.upper)
     for candidate in candidates:
         present = candidate.term is not None and candidate.term.name in model.term_names
+        # a plain term that the model lacks may be of any size: nothing is known about it yet
+        most = UNBOUNDED if candidate.name in PLAIN_TERMS and not present else candidate.plausible
         for variant in candidate.shapes(runs):
             columns = []
             for parameter in candidate.linear:
                 columns.append(len(scales))
                 scales.append(parameter.typical)
-                lower.append(-candidate.plausible if parameter.lower < 0.0 or present else 0.0)
-                upper.append(candidate.plausible)
+                lower.append(-most if parameter.lower < 0.0 or present else 0.0)
+                upper.append(most)
             slots.append(Slot(candidate, variant, tuple(columns)))
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
 

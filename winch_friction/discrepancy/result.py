@@ -53,6 +53,7 @@ class GapResult:
     model: FrictionModel
     seed_model: FrictionModel
     next_experiment: Mapping[str, Any] | None = None
+    next_scenario: str = ""  # its file's text
     notes: Sequence[str] = field(default_factory=tuple)
 
     def content(self) -> dict[str, Any]:

@@ -73,7 +73,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         best = next(int(k) for k in order if worthy[k])
         p_values[trials[best].slots[-1].candidate.name] = float(p[best])
         current = _exchanged(cross, trials[best])
-    current = _pruned(cross, current, rng)
+    current = _with_company(cross, _pruned(cross, current, rng))
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
     return Selection(base, current, found, tuple(considered))
 
@@ -137,14 +137,29 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
     return current
 
 
+def _with_company(cross: CrossFit, current: Explanation) -> Explanation:
+    """The set with the lower-order effects that its members bring along."""
+    slots = list(current.slots)
+    for slot in current.slots:
+        for name in slot.candidate.brings:
+            own = [each for each in cross.problem.slots if each.candidate.name == name]
+            if own and name not in [each.candidate.name for each in slots]:
+                slots.insert(slots.index(slot), own[0])
+    return cross.explain(slots) if len(slots) > len(current.slots) else current
+
+
 def _found(
     cross: CrossFit, current: Explanation, k: int, p_values: dict[str, float], rng: np.random.Generator
 ) -> Found:
+    own = current.slots[k]
+    bringers = [each for each in current.slots if own.candidate.name in each.candidate.brings]
+    if bringers:  # its own worth shows only before the higher order takes it over
+        lower = tuple(each for each in current.slots if each not in bringers)
+        current, k = cross.explain(lower), lower.index(own)
     rest = current.slots[:k] + current.slots[k + 1 :]
     without = cross.explain(rest)
-    own = current.slots[k]
     gain_losses = without.losses - current.losses
-    rivals, frequency = _rivals(cross, current, without, k, rng)
+    rivals, frequency = ((), 1.0) if bringers else _rivals(cross, current, without, k, rng)
     name = own.candidate.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
     return Found(own, rivals, p, float(1.0 - np.sqrt(current.loss / without.loss)), frequency)

@@ -7,6 +7,7 @@ import numpy as np
 
 from winch_friction.discrepancy.crossfit import CrossFit
 from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence
+from winch_friction.discrepancy.problem import UNBOUNDED
 from winch_friction.discrepancy.selection import Found, Selection
 
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
@@ -37,7 +38,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) ->
     implausible = [f.slot.candidate.name for f in selection.found if _at_bound(cross, selection, f)]
     if implausible:
         return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
-    if len([f for f in selection.found if not _base_term(f)]) > MOST_NAMED:
+    if len([f for f in selection.found if not _plain_term(cross, f)]) > MOST_NAMED:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
     remains = excess > LEAST_EXCESS and excess / before > LEFT_OVER
     if remains and (excess > OBVIOUS_EXCESS or any(d.share >= 0.5 * LEAST_UNEXPLAINED for d in depends)):
@@ -56,9 +57,9 @@ def _at_bound(cross: CrossFit, selection: Selection, found: Found) -> bool:
     return False
 
 
-def _base_term(found: Found) -> bool:
-    """A plain term that the model lacked from the start."""
-    return found.slot.candidate.name in ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "stribeck")
+def _plain_term(cross: CrossFit, found: Found) -> bool:
+    """A plain term that the model lacked from the start: several of them may be missing without being an imitation."""
+    return all(cross.problem.upper[column] >= UNBOUNDED for column in found.slot.columns)
 
 
 def rms_ratio(cross: CrossFit, losses: np.ndarray) -> float:

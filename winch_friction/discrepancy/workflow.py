@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.blocks import Blocks
+from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.holdout import lock_holdout, rms_with_interval
@@ -35,6 +36,7 @@ class GapOptions:
     holdout: float = 0.25
     seed: int = 0
     effects_file: Path | None = None
+    candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given
 
 
 def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: GapOptions | None = None) -> GapResult:
@@ -48,7 +50,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     rng = np.random.default_rng(options.seed + 1)
     loads = estimated_loads(split.runs, crane, model)
     prepared = expand_at_seed(split.runs, crane, model, loads)
-    usable, blind = testable(all_candidates(options.effects_file), prepared, model)
+    usable, blind = testable(options.candidates or all_candidates(options.effects_file), prepared, model)
     candidates = [each for each in usable if each.regime == "moving"]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
     cross = at_seed.cross(split.train)

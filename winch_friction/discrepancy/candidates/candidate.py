@@ -27,7 +27,7 @@ class Candidate:
     predicted, shape (samples, parameters). `linear` declares those parameters with typical size and bounds; `plausible` times the
     typical size is the largest amplitude that is believed. `needs` names run columns; `presumes` names terms of which
     the model must have one; `term` is the friction term to put into the repaired model, None for what is corrected in a signal.
-    `regime`: 'moving' samples, or 'turning' for what shows only around reversals.
+    `brings` names lower-order effects that belong to it. `regime`: 'moving' samples, or 'turning' for what shows only around reversals.
     """
 
     name: str
@@ -42,6 +42,7 @@ class Candidate:
     regime: str = "moving"
     plausible: float = 6.0
     hydraulic: bool = False
+    brings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from winch_friction.physics.signals import FloatArray
 
 # shape parameters are profiled over these values; what is not named takes the typical value times 0.5, 1, 2
 SHAPES: dict[str, tuple[float, ...]] = {
-    "C4": (10.0, 16.0, 24.0, 36.0),
     "n_t": (1.5, 2.0, 2.5),
     "n_ch": (1.9,),
     "b_g": (0.0,),
@@ -24,6 +23,7 @@ SHAPES: dict[str, tuple[float, ...]] = {
     "g_dw": (0.1, 0.5),
     "d_dw": (1.0, 5.0, 30.0),
 }
+STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 SHIPPED = (
     "viscosity_temperature", "stribeck", "dwell_stiction", "gear_asymmetry", "gear_load_loss", "sheave_bending", "wear_drift",
     "low_displacement_loss", "port_turbulence", "notch_loss", "churning", "high_pressure_mixed", "line_pressure_drop",
@@ -33,7 +33,8 @@ TURNING = ("presliding",)
 NEEDS = {"viscosity_temperature": ("oil_temperature",)}
 COULOMB = ("coulomb", "motor_coulomb")
 PRESUMES = {"brake_drag": COULOMB, "sheave_bending": ("gear_load_loss",), "wear_drift": COULOMB}
-BOTH_SIGNS = ("coulomb", "viscous", "gear_load_loss", "stribeck")  # a base parameter may also be too large
+# marginality: the slope of what depends on direction is never taken without its intercept
+BRINGS = {"direction_asymmetry": ("torque_offset",)}
 
 
 def shipped_friction() -> list[Candidate]:
@@ -54,6 +55,7 @@ def friction_candidate(term: Term) -> Candidate:
         presumes=PRESUMES.get(term.name, ()),
         term=term,
         regime="turning" if term.name in TURNING else "moving",
+        brings=BRINGS.get(term.name, ()),
         hydraulic=any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     )
 
@@ -62,7 +64,8 @@ def _shapes(term: Term, runs: Sequence[PreparedRun]) -> list[Variant]:
     if term.name == "wear_drift":
         return _observed_time(runs)
     shape = [p for p in term.parameters if p.shape]
-    values = [SHAPES.get(p.name, tuple(p.typical * f for f in (0.5, 1.0, 2.0) if p.lower <= p.typical * f <= p.upper))
+    top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
+    values = [tuple(top * share for share in STRIBECK_SHARES) if p.name == "C4" else SHAPES.get(p.name, tuple(p.typical * f for f in (0.5, 1.0, 2.0) if p.lower <= p.typical * f <= p.upper))
               for p in shape]  # fmt: skip
     return [
         Variant(", ".join(f"{p.name} = {v:g}" for p, v in zip(shape, point, strict=True)),

@@ -1,0 +1,115 @@
+"""`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.physics.errors import InputError
+
+HELP = """Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink.
+
+Writes [bold]gap.json[/bold], [bold]model.yaml[/bold] and [bold]report.html[/bold] into --out. Runs are CSV, Parquet or
+rosbag2, in any mixture; some of them are locked away before anything else and used for the proof alone.
+
+Examples:
+
+  [cyan]winch-friction gap runs/*.csv --crane crane_150t --model a6vm215_crane2 --out gap/[/cyan]
+
+  [cyan]winch-friction gap emps.csv --crane emps --model emps_viscous --out gap/[/cyan]
+
+  [cyan]winch-friction gap runs/*.mcap --crane my_crane.yaml --model my_model.yaml --out gap/ --effects mine.py[/cyan]
+"""
+
+app = typer.Typer(add_completion=False, rich_markup_mode="rich")
+
+
+@app.command("gap", help=HELP)
+def command(
+    runs: Annotated[list[Path] | None, typer.Argument(help="Run files: .csv, .parquet, rosbag2.")] = None,
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "crane_150t",
+    model: Annotated[str, typer.Option(help="Model file or shipped name.")] = "a6vm215_crane2",
+    out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
+    holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
+    seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,
+    effects: Annotated[Path | None, typer.Option(help="Python file that registers candidate terms of your own.")] = None,
+    report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
+    as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
+    blind: Annotated[int, typer.Option(help="No runs: hide an effect N times, search for it, then open the seal.")] = 0,
+) -> None:
+    """Search runs for what the model lacks."""
+    if blind:
+        from winch_friction.cli.gap_blind import blind_trials
+
+        blind_trials(blind, crane, model, out, seed, as_json)
+        return
+    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report)
+    if as_json:
+        show_json(content)
+    else:
+        show_result(content, out)
+
+
+def run_gap(
+    paths: list[Path], crane: str, model: str, out: Path, holdout: float, seed: int, effects: Path | None, report: bool
+) -> dict[str, Any]:
+    """The workflow from files to files; returns the content of gap.json."""
+    from winch_friction.discrepancy.workflow import GapOptions, find_gap
+    from winch_friction.records.atomic import write_text
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model, save_model
+    from winch_friction.records.runs import read_run
+
+    if not paths:
+        raise InputError("no run given; name at least one run file, or use --blind N")
+    loaded_crane = load_crane(crane)
+    options = GapOptions(holdout, seed, effects)
+    if effects is not None:
+        from winch_friction.discrepancy.candidates.catalogue import all_candidates
+
+        options = GapOptions(holdout, seed, None, tuple(all_candidates(effects)))
+    seed_model = load_model(model)
+    read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
+    for run in read:
+        show_warnings(run.warnings)
+    steps = progress(["searching"], "comparing with the model")
+    for _ in steps:
+        result = find_gap(read, loaded_crane, seed_model, options)
+    content = result.content()
+    save_model(result.model, out / "model.yaml")
+    if content["next_experiment"] and result.next_scenario:
+        write_text(out / content["next_experiment"]["scenario"], result.next_scenario)
+    write_text(out / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
+    if report:
+        from winch_friction.report.gap import write_gap_report
+
+        write_gap_report(out / "report.html", result)
+    return content
+
+
+def show_result(content: dict[str, Any], out: Path) -> None:
+    """The verdict for a person."""
+    gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
+    rows = [
+        [
+            effect["name"],
+            ", ".join(effect["indistinguishable_from"]) or "-",
+            ", ".join(f"{k} = {p['value']:.3g} {p['unit']}" for k, p in effect["parameters"].items()),
+            f"{100 * effect['evidence']['cv_gain']:.0f} %",
+        ]
+        for effect in content["effects"]
+    ]
+    print(f"verdict: {content['verdict']}")
+    if rows:
+        show_table("missing effects", ["effect", "or", "parameters", "gain"], rows)
+    if content["verdict"] == "unexplained":
+        print(f"it depends on: {', '.join(content['unexplained']['depends_on'])} ({content['unexplained']['reason']})")
+    print(
+        f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
+        f"noise floor {gap['noise_floor']:.3g} {unit}"
+    )
+    if content["next_experiment"]:
+        print(f"next experiment: {content['next_experiment']['scenario']}")
+    print(f"written: {out / 'gap.json'}, {out / 'model.yaml'}, {out / 'report.html'}")

@@ -24,6 +24,20 @@ class Message:
     message: Any
     receipt: float
 
+    @property
+    def stamp(self) -> float:
+        """When it was measured, s; when it was received where it does not say."""
+        return stamp_time(self.message) if self.source.stamped else self.receipt
+
+
+@dataclass(frozen=True)
+class Other:
+    """One message of the bag that is no input of the winch: its topic in the bag, the message, its receipt in s."""
+
+    topic: str
+    message: Any
+    receipt: float
+
 
 @dataclass
 class Bag:
@@ -43,10 +57,16 @@ class Bag:
 
     def inputs(self) -> Iterator[Message]:
         """The winch's input messages, in the order of their receipt."""
+        return (each for each in self.events() if isinstance(each, Message))
+
+    def events(self, *others: str) -> Iterator[Message | Other]:
+        """The winch's input messages and those on other topics of the bag, in the order of their receipt."""
         sources = {actual: self.topics.inputs[contract] for contract, actual in self.actual.items()}
-        for topic, receipt, message in self.messages(*sources):
-            yield Message(sources[topic], message, receipt - self._offset)
+        for topic, receipt, message in self.messages(*sources, *others):
+            time = receipt - self._offset
+            yield Message(sources[topic], message, time) if topic in sources else Other(topic, message, time)
         self.warnings += [f"{self.name}: topic '{t}': {n} messages cannot be read" for t, n in self._broken.items()]
+        self._broken.clear()
 
     def messages(self, *topics: str) -> Iterator[tuple[str, float, Any]]:
         """Topic, receipt in s and message of some of the bag's topics; unreadable messages are counted and left out."""

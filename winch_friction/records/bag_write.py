@@ -63,14 +63,17 @@ MESSAGES = RosbagsMessages()
 
 
 class BagWriter:
-    """Writes a recording beside its place and moves it there when complete: a reader never sees half of it."""
+    """Writes a recording beside its place and moves it there when complete: a reader never sees half of it.
+
+    `metadata` (plain types) may be filled until the end; it travels in the folder's metadata.yaml.
+    """
 
     def __init__(self, path: Path | str, storage: str = "", metadata: dict[str, Any] | None = None) -> None:
         self.path = Path(path)
         if self.path.exists():
             raise InputError(f"{self.path}: exists already; remove it or choose another name")
         self._storage = _storage(self.path, storage)
-        self._metadata = metadata or {}
+        self.metadata = metadata if metadata is not None else {}
         self._connections: dict[str, Any] = {}
 
     def __enter__(self) -> "BagWriter":
@@ -80,8 +83,6 @@ class BagWriter:
         self._folder = Path(tempfile.mkdtemp(dir=self.path.parent, prefix=f".{self.path.name}."))
         plugin = StoragePlugin.MCAP if self._storage == "mcap" else StoragePlugin.SQLITE3
         self._writer = Writer(self._folder / self.path.stem, version=9, storage_plugin=plugin)
-        if self._metadata:
-            self._writer.set_custom_data(METADATA_KEY, json.dumps(self._metadata, default=str))
         self._writer.open()
         return self
 
@@ -99,6 +100,8 @@ class BagWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if self.metadata:
+            self._writer.set_custom_data(METADATA_KEY, json.dumps(self.metadata, default=str))
         self._writer.__exit__(kind, error, trace)
         try:
             if kind is None:

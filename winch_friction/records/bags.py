@@ -43,7 +43,7 @@ def read_bag(
     place: Place = lambda row: f"sample {row + 1} of '{speed}'"
     columns = _columns(samples, groups)
     return checked_run(
-        path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings, metadata=_metadata(path)
+        path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings, metadata=bag_metadata(path)
     )
 
 
@@ -65,7 +65,8 @@ def _columns(samples: Sequence[Sample], groups: Sequence[str]) -> dict[str, Floa
     return {name: values for name, values in columns.items() if name == "motor_speed" or not np.isnan(values).all()}
 
 
-def _metadata(path: Path) -> dict[str, Any]:
+def bag_metadata(path: Path) -> dict[str, Any]:
+    """What this package wrote about a recording beside its messages; empty for a recording of another origin."""
     file = path / "metadata.yaml"
     if not file.is_file():
         return {}

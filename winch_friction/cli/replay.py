@@ -1,0 +1,90 @@
+"""`winch-friction replay`: a recording through the nodes' own step."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
+
+
+def command(
+    recording: Annotated[Path, typer.Argument(help="Bag folder, .mcap, .db3, or a run file (.csv, .parquet).")],
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
+    model: Annotated[str, typer.Option(help="Seed model: file or shipped name.")],
+    out: Annotated[Path | None, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
+    params_file: Annotated[Path | None, typer.Option(help="ROS parameter file of the nodes.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Picture of friction, speed, parameters: .png, .svg.")] = None,
+    learn: Annotated[bool, typer.Option(help="Let the compensator take over what the estimator learns.")] = True,
+    remap: Annotated[list[str] | None, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
+    joint: Annotated[str, typer.Option(help="Joint of the speed.")] = "winch_motor",
+    pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "gauge",
+    namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Summary as JSON.")] = False,
+) -> None:
+    """Run compensator and estimator over a recording.
+
+    The same step as in the nodes, so the outputs equal the live ones; where the recording holds those, they are
+    compared.
+
+    Examples:
+
+      winch-friction replay bag/ --crane crane_150t --model a6vm215_crane2 --out replay.csv --picture replay.png
+
+      winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
+    """
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+    from winch_friction.replay.recording import replay_recording
+    from winch_friction.replay.settings import settings_from_file
+    from winch_friction.replay.summary import summary
+
+    options = bag_options(remap or [], joint, pressure_reference, namespace)
+    settings = settings_from_file(params_file) if params_file else None
+    seed = load_model(model)
+    with stderr.status("replaying"):
+        result = replay_recording(recording, load_crane(crane), seed, settings, learn=learn, **options)
+    show_warnings(result.warnings)
+    if out is not None:
+        from winch_friction.replay.outputs import write_outputs
+
+        write_outputs(out, result.compensator, result.estimator, result.model)
+    if picture is not None:
+        from winch_friction.report.figures import save_figure
+        from winch_friction.report.replay_picture import replay_figure
+
+        save_figure(replay_figure(result.compensator, result.estimator, seed), picture)
+    content = summary(result)
+    if as_json:
+        show_json(content)
+        return
+    _show(content)
+
+
+def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace: str) -> dict[str, Any]:
+    """Options of `open_bag` from those of the command line."""
+    from winch_friction.physics.errors import InputError
+
+    pairs = dict(each.split("=", 1) for each in remap if "=" in each)
+    if len(pairs) != len(remap):
+        raise InputError("--remap: write TOPIC=NAME_IN_THE_BAG, e.g. winch/joint_states=/joint_states")
+    options: dict[str, Any] = {"speed_joint": joint, "pressure_reference": pressure_reference}
+    if joint not in ("winch_motor", "winch_drum"):
+        options["motor_joint"] = joint
+    return {**options, **({"remap": pairs} if pairs else {}), **({"namespace": namespace} if namespace else {})}
+
+
+def _show(content: dict[str, Any]) -> None:
+    rows = [(name, _text(value)) for name, value in content.items() if not isinstance(value, list)]
+    show_table("Replay", ("", ""), rows)
+    _list("Learned", ("parameter", "unit", "seed", "learned", "sigma", "status"), content["parameters"])
+    if content["live"]:
+        _list("Live against replay, relative", ("node", "compared", "missing", "largest", "equal"), content["live"])
+
+
+def _list(title: str, columns: tuple[str, ...], entries: list[dict[str, Any]]) -> None:
+    show_table(title, columns, [[each[column] for column in columns] for each in entries])
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

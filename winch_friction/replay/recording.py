@@ -1,0 +1,117 @@
+"""A recording through both objects as the nodes took it: live equals replay."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from winch_friction.estimation import ParameterEstimate
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bag_file import Other, open_bag
+from winch_friction.records.bags import bag_metadata
+from winch_friction.records.model_file import model_from_text
+from winch_friction.records.runs import BAG_SUFFIXES, read_run
+from winch_friction.records.topics import TopicMap
+from winch_friction.replay.compensator import feedforward_run
+from winch_friction.replay.live import Comparison, compare_live
+from winch_friction.replay.players import CompensatorPlayer, EstimatorPlayer, held_samples
+from winch_friction.replay.settings import ReplaySettings, settings_from_metadata
+
+MODEL_TOPIC = "/friction_model"
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """The outputs along a recording, as from `replay_compensator` and `replay_estimator`, and what was learned."""
+
+    compensator: Run
+    estimator: Run
+    model: FrictionModel
+    parameters: tuple[ParameterEstimate, ...]
+    status: Mapping[str, Any]
+    warnings: tuple[str, ...] = ()
+    live: tuple[Comparison, ...] = field(default=())
+
+
+def replay_recording(
+    path: Path | str,
+    crane: Crane,
+    seed: FrictionModel,
+    settings: ReplaySettings | None = None,
+    *,
+    learn: bool = True,
+    **bag_options: Any,
+) -> Replayed:
+    """Replay a bag or a run file through compensator and estimator.
+
+    The compensator takes over the models recorded on `friction_model`; without any, and with `learn`, those that the
+    estimator learns here, at the times at which the node would have published them. `settings` default to what the
+    recording says of itself, else to the nodes' defaults. `bag_options` go to `open_bag`. Raises `InputError`.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"{path}: no such file or folder")
+    if path.is_dir() or path.suffix in BAG_SUFFIXES:
+        return _replay_bag(path, crane, seed, settings, learn, bag_options)
+    return replay_run(read_run(path, crane), crane, seed, settings or ReplaySettings(), learn=learn)
+
+
+def replay_run(
+    run: Run, crane: Crane, seed: FrictionModel, settings: ReplaySettings, *, learn: bool = True
+) -> Replayed:
+    """Replay a run; NaN entries are bridged up to the maximum ages, as in the nodes."""
+    topics = TopicMap(groups=run.groups)
+    compensator = CompensatorPlayer(crane, seed, topics, settings)
+    estimator = EstimatorPlayer(crane, seed, topics, settings)
+    for given, learnt_from in held_samples(run, compensator, estimator):
+        compensator.step(given)
+        learned = estimator.step(learnt_from)
+        if learned is not None and learn:
+            compensator.offer(learned)
+    return _replayed(run.name, compensator, estimator, run.warnings, ())
+
+
+def _replay_bag(
+    path: Path, crane: Crane, seed: FrictionModel, settings: ReplaySettings | None, learn: bool, options: dict[str, Any]
+) -> Replayed:
+    settings = settings or settings_from_metadata(bag_metadata(path), str(path)) or ReplaySettings()
+    with open_bag(path, crane, **options) as bag:
+        compensator = CompensatorPlayer(crane, seed, bag.topics, settings)
+        estimator = EstimatorPlayer(crane, seed, bag.topics, settings)
+        recorded = bag.topics_ending(MODEL_TOPIC)
+        for each in bag.events(*recorded):
+            if isinstance(each, Other):
+                compensator.offer(model_from_text(each.message.data, each.topic))
+                continue
+            compensator.take(each)
+            learned = estimator.take(each)
+            if learned is not None and learn and not recorded:
+                compensator.offer(learned)
+        warnings = tuple(bag.warnings)
+    if not compensator.steps:
+        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
+    runs = {"compensator": feedforward_run("", compensator.steps), "estimator": estimator.record.run("")}
+    live = compare_live(path, runs, crane=crane, **options)
+    return _replayed(path.name, compensator, estimator, warnings, tuple(live))
+
+
+def _replayed(
+    name: str,
+    compensator: CompensatorPlayer,
+    estimator: EstimatorPlayer,
+    warnings: tuple[str, ...],
+    live: tuple[Comparison, ...],
+) -> Replayed:
+    refused = tuple(dict.fromkeys(f"{name}: model refused: {each}" for each in compensator.refused))
+    return Replayed(
+        compensator=feedforward_run(name, compensator.steps),
+        estimator=estimator.record.run(name),
+        model=estimator.law.model(),
+        parameters=tuple(estimator.law.parameters()),
+        status=estimator.law.status(),
+        warnings=(*warnings, *refused),
+        live=live,
+    )

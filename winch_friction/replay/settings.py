@@ -1,0 +1,84 @@
+"""With which settings a recording is replayed: from a ROS parameter file, or from what the recording itself says."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.estimation import EstimatorConfig
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.options import from_mapping
+from winch_friction.records.strict_yaml import read_yaml
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A part of a recording in which the compensator ran unchanged: from the sample at `start` s, begun afresh."""
+
+    start: float = float("-inf")
+    config: CompensatorConfig = field(default_factory=CompensatorConfig)
+    enabled: bool = True
+    follow_models: bool = True
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class ReplaySettings:
+    """The settings of both objects; `model_delay`, `model_period` and `estimator_max_age` s are the nodes' own."""
+
+    phases: tuple[Phase, ...] = (Phase(),)
+    estimator: EstimatorConfig = field(default_factory=EstimatorConfig)
+    model_delay: float = 0.5
+    model_period: float = 5.0
+    estimator_max_age: float = 0.1
+
+
+def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySettings | None:
+    """What a recording says of itself under `phases`, each with name, start, compensator, enabled, follow_models."""
+    if "phases" not in metadata:
+        return None
+    phases = tuple(
+        Phase(
+            start=float(each["start"]),
+            config=from_mapping(CompensatorConfig, each.get("compensator", {}), f"{where}: phases: compensator"),
+            enabled=bool(each.get("enabled", True)),
+            follow_models=bool(each.get("follow_models", True)),
+            name=str(each.get("name", "")),
+        )
+        for each in metadata["phases"]
+    )
+    estimator = from_mapping(EstimatorConfig, metadata.get("estimator", {}), f"{where}: estimator")
+    own = {key: float(metadata[key]) for key in ("model_delay", "model_period", "estimator_max_age") if key in metadata}
+    return ReplaySettings(tuple(sorted(phases, key=lambda each: each.start)), estimator, **own)
+
+
+def settings_from_file(path: Path) -> ReplaySettings:
+    """The nodes' ROS parameter file (config/nodes/*.yaml); what belongs to the nodes alone is passed over."""
+    content = read_yaml(path)
+    if not isinstance(content, Mapping):
+        raise InputError(f"{path}: not a ROS parameter file: expected node names with ros__parameters")
+    compensator, estimator = _parameters(content, "compensator", path), _parameters(content, "estimator", path)
+    own = {key: float(value) for key, value in estimator.items() if key == "model_period"}
+    own |= {key: float(value) for key, value in compensator.items() if key == "model_delay"}
+    if "max_age" in estimator:
+        own["estimator_max_age"] = float(estimator["max_age"])
+    config = from_mapping(CompensatorConfig, _of(CompensatorConfig, compensator), f"{path}: compensator")
+    phase = Phase(config=config, follow_models=bool(compensator.get("follow_model_topic", True)))
+    return ReplaySettings((phase,), from_mapping(EstimatorConfig, _of(EstimatorConfig, estimator), str(path)), **own)
+
+
+def _parameters(content: Mapping[str, Any], node: str, path: Path) -> dict[str, Any]:
+    """Parameters of a node: those of every node (`/**`) and its own."""
+    merged: dict[str, Any] = {}
+    for name, section in content.items():
+        if str(name).rsplit("/", 1)[-1] in ("**", node):
+            if not isinstance(section, Mapping) or "ros__parameters" not in section:
+                raise InputError(f"{path}: {name} has no ros__parameters; is this a ROS parameter file?")
+            merged |= section["ros__parameters"] or {}
+    return merged
+
+
+def _of(kind: type, parameters: Mapping[str, Any]) -> dict[str, Any]:
+    names = {each.name for each in fields(kind)}
+    return {key: value for key, value in parameters.items() if key in names}

@@ -15,6 +15,7 @@ from winch_friction.simulation.control.settings import CONTROL_STATES
 from winch_friction.simulation.hidden.catalogue import apply_effects
 from winch_friction.simulation.plant.friction_kernel import friction_kernel
 from winch_friction.simulation.plant.loop import run_periods
+from winch_friction.simulation.plant.point import POINT_LENGTH
 from winch_friction.simulation.plant.start import equilibrium, first_row
 from winch_friction.simulation.plant.state import COLUMNS, STATES
 from winch_friction.simulation.plant_file import PlantFile, load_plant
@@ -80,7 +81,7 @@ class Simulator:
         terms = np.array(kernel.initial_states, float)
         step = 2.0 * np.pi / settings.encoder_counts if settings.encoder_counts and settings.quantisation else 0.0
         self._kernel = kernel
-        self._x = np.zeros(19)
+        self._x = np.zeros(POINT_LENGTH)
         self._state, self._memory = equilibrium(self._plant, self._control)
         self.feedforward = np.zeros(self.periods + 1)
         self.history = np.zeros((self.periods + 1, len(COLUMNS)))

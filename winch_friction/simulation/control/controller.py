@@ -6,8 +6,7 @@ dp_e the expected pressure (load, inertia and friction feedforward). Torque-comm
 
 import math
 
-import numba
-
+from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.control.settings import (
     ACCELERATION,
     DRIVE_MODEL,
@@ -20,7 +19,7 @@ from winch_friction.simulation.control.settings import (
 )
 
 
-@numba.njit(cache=True)
+@compiled
 def spread_feedforward(c, memory, friction):
     """Mean of the last feedforwards: a staircase becomes a ramp, so that its slope is a flow the pump can give."""
     ticks = min(max(int(c.feedforward_ticks), 1), HISTORY_LENGTH)
@@ -31,7 +30,7 @@ def spread_feedforward(c, memory, friction):
     return memory[HISTORY : HISTORY + ticks].mean()
 
 
-@numba.njit(cache=True)
+@compiled
 def extrapolate(c, memory, acceleration):
     """Filtered jerk of the reference; rad/s^3."""
     if memory[TICKS] == 0.0:
@@ -42,7 +41,7 @@ def extrapolate(c, memory, acceleration):
     return memory[JERK]
 
 
-@numba.njit(cache=True)
+@compiled
 def invert_lag(c, memory, wanted, limit):
     """The command that brings a first-order drive to `wanted` one period on, from where its model stands."""
     keep = math.exp(-c.period / c.drive_lag)
@@ -52,7 +51,7 @@ def invert_lag(c, memory, wanted, limit):
     return command
 
 
-@numba.njit(cache=True)
+@compiled
 def pump_command(c, memory, speed_ahead, angle_error, expected, pressure):
     """Flow command of the pump-controlled drive, m^3/s."""
     if memory[TICKS] == 0.0:
@@ -68,7 +67,7 @@ def pump_command(c, memory, speed_ahead, angle_error, expected, pressure):
     return invert_lag(c, memory, flow + c.leakage * expected + compression - damping, c.pump_flow)
 
 
-@numba.njit(cache=True)
+@compiled
 def torque_command(c, memory, expected_torque, speed_error, angle_error):
     """Torque command of the torque-commanded drive, N m at the shaft."""
     loop = c.speed_gain * (speed_error + c.position_gain * angle_error)
@@ -76,7 +75,7 @@ def torque_command(c, memory, expected_torque, speed_error, angle_error):
     return min(max(wanted, -c.torque_limit), c.torque_limit)
 
 
-@numba.njit(cache=True)
+@compiled
 def control(c, memory, reference, measured, friction):
     """One period: reference (angle, speed, acceleration), measured (angle, speed, dp, passive dp), feedforward N m."""
     if c.mode == 0.0:

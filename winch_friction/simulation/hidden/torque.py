@@ -2,8 +2,9 @@
 
 import math
 
-import numba
 import numpy as np
+
+from winch_friction.simulation.compiling import compiled
 
 _DENSITY = 870.0  # kg/m^3
 _NOTCH_SPEED = 42.0  # rad/s, edge of the suppliers' data (400 rpm)
@@ -39,7 +40,7 @@ HIDDEN_FIELDS = {
 HIDDEN = np.dtype([(name, np.float64) for name in HIDDEN_FIELDS])
 
 
-@numba.njit(cache=True)
+@compiled
 def group_loss(hidden, count, pressure, pressure_sum, displacement, max_displacement, w):
     """Losses of one motor group against its motion, N m."""
     per_motor = hidden.low_displacement * pressure * (1.0 - displacement / max_displacement)
@@ -57,7 +58,7 @@ def group_loss(hidden, count, pressure, pressure_sum, displacement, max_displace
     return count * per_motor
 
 
-@numba.njit(cache=True)
+@compiled
 def shaft_loss(hidden, motors, w, drum_torque, gear_ratio, tension_torque, time):
     """Losses of the shaft, gear and rope against the motion, N m."""
     stribeck = 0.0
@@ -69,7 +70,7 @@ def shaft_loss(hidden, motors, w, drum_torque, gear_ratio, tension_torque, time)
     return stribeck + wear + gear + motors * hidden.brake
 
 
-@numba.njit(cache=True)
+@compiled
 def fixed_torque(hidden, direction, angle, drum_torque, gear_ratio):
     """Torque that does not simply oppose the motion, N m against hoisting."""
     half = 0.5 * hidden.gear_asymmetry * direction * direction

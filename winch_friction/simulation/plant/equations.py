@@ -5,11 +5,28 @@ One function per part; each reads the plant's record, none knows the controller.
 
 import math
 
-import numba
-
 from winch_friction.physics.units import GRAVITY
+from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.hidden.torque import fixed_torque, group_loss, shaft_loss
 from winch_friction.simulation.plant.friction_kernel import friction_torque
+from winch_friction.simulation.plant.point import (
+    GROUPS,
+    STRIDE,
+    X_ANGLE,
+    X_COUNT,
+    X_DIRECTION,
+    X_DISPLACEMENT,
+    X_DRUM,
+    X_LAYER,
+    X_MAGNITUDE,
+    X_MOTORS,
+    X_OIL,
+    X_PRESSURE,
+    X_PRESSURE_SUM,
+    X_SPEED,
+    X_TIME,
+    X_WIRE,
+)
 from winch_friction.simulation.plant.state import (
     ANGLE,
     DIRECTION,
@@ -34,7 +51,7 @@ _ATMOSPHERE = 1.0e5  # Pa
 _AIR_EXPONENT = 1.4
 
 
-@numba.njit(cache=True)
+@compiled
 def compressibility(p, pressure):
     """dV/dp of one line, m^3/Pa: oil of constant bulk modulus and free air, compressed adiabatically."""
     oil = 1.0 / p.bulk_modulus
@@ -44,7 +61,7 @@ def compressibility(p, pressure):
     return p.line_volume * (oil + p.air / _AIR_EXPONENT * (_ATMOSPHERE / q) ** (1.0 / _AIR_EXPONENT) / q)
 
 
-@numba.njit(cache=True)
+@compiled
 def compression_energy(p, pressure):
     """Energy in one line, J: the integral of p dV."""
     energy = 0.5 * pressure * pressure / p.bulk_modulus
@@ -54,7 +71,7 @@ def compression_energy(p, pressure):
     return p.line_volume * energy
 
 
-@numba.njit(cache=True)
+@compiled
 def submerged_share(p, load, surface):
     """Share of the body under the water, 0 ... 1."""
     if p.buoyancy == 0.0:
@@ -62,13 +79,13 @@ def submerged_share(p, load, surface):
     return min(max((p.surface + surface - load) / p.body_height, 0.0), 1.0)
 
 
-@numba.njit(cache=True)
+@compiled
 def gas_pressure(p, state):
     """Pressure of the passive side's accumulator, Pa."""
     return p.gas_pressure * p.gas_volume / state[GAS_V] * state[GAS_T]
 
 
-@numba.njit(cache=True)
+@compiled
 def reported_gas_pressure(p, state):
     """What the PLC holds for the accumulator's pressure: measured, or calculated from the wire's motion, Pa."""
     if p.calculated_exponent == 0.0:
@@ -77,13 +94,13 @@ def reported_gas_pressure(p, state):
     return p.gas_pressure * (p.gas_volume / volume) ** p.calculated_exponent
 
 
-@numba.njit(cache=True)
+@compiled
 def line_drop(p, flow):
     """Pressure lost between transducers and motors at a flow, Pa."""
     return p.line_resistance * flow * abs(flow)
 
 
-@numba.njit(cache=True)
+@compiled
 def wire_tension(p, state, heave_rate):
     """Tension of the elastic wire, N; none when it is slack."""
     stretch = p.mass * GRAVITY / p.wire_stiffness + state[TIP] + p.metres_per_radian * state[ANGLE] - state[LOAD]
@@ -94,59 +111,63 @@ def wire_tension(p, state, heave_rate):
     return elastic + p.wire_damping * rate, elastic, rate
 
 
-@numba.njit(cache=True)
+@compiled
 def drum_torque(p, state, share):
     """Static torque at the drum, m g R less buoyancy, N m; the wire that hangs out counts where it has a mass."""
     paid_out = -p.metres_per_radian * state[ANGLE]
     return ((p.mass + p.wire_mass * paid_out) * GRAVITY - share * p.buoyancy) * p.radius
 
 
-@numba.njit(cache=True)
+@compiled
 def fill_operating_point(p, state, x, direction, time, drum, layer, oil_temperature, dp, dp_passive, passive_sum):
     """The operating point of the friction functions (the order of `physics.friction.symbols.layout`)."""
     speed = state[SPEED]
-    x[0] = direction
-    x[1] = abs(speed)
-    x[2] = speed
-    x[3] = drum
-    x[5] = oil_temperature
-    x[6] = p.start_time + time
-    x[7] = state[ANGLE]
-    x[8] = layer
-    x[9] = p.wire_out - p.metres_per_radian * state[ANGLE]
-    x[10] = p.count + p.passive_count
-    x[11] = p.count
-    x[12] = abs(dp)
-    x[13] = state[P_A] + state[P_B]
-    x[14] = p.displacement
-    x[15] = p.passive_count
-    x[16] = abs(dp_passive)
-    x[17] = passive_sum
-    x[18] = p.passive_displacement
+    x[X_DIRECTION] = direction
+    x[X_MAGNITUDE] = abs(speed)
+    x[X_SPEED] = speed
+    x[X_DRUM] = drum
+    x[X_OIL] = oil_temperature
+    x[X_TIME] = p.start_time + time
+    x[X_ANGLE] = state[ANGLE]
+    x[X_LAYER] = layer
+    x[X_WIRE] = p.wire_out - p.metres_per_radian * state[ANGLE]
+    x[X_MOTORS] = p.count + p.passive_count
+    x[X_COUNT] = p.count
+    x[X_PRESSURE] = abs(dp)
+    x[X_PRESSURE_SUM] = state[P_A] + state[P_B] if p.secondary == 0.0 else 2.0 * p.boost_pressure + abs(dp)
+    x[X_DISPLACEMENT] = p.displacement
+    x[X_COUNT + STRIDE] = p.passive_count
+    x[X_PRESSURE + STRIDE] = abs(dp_passive)
+    x[X_PRESSURE_SUM + STRIDE] = passive_sum
+    x[X_DISPLACEMENT + STRIDE] = p.passive_displacement
 
 
-@numba.njit(cache=True)
+@compiled
 def hidden_torque(p, hidden, state, x, memory, direction, model_torque, tension):
     """Friction of the hidden effects at the shaft, N m against hoisting."""
     gear_ratio = p.radius / p.metres_per_radian
-    w = x[1]
-    level = group_loss(hidden, x[11], x[12], x[13], x[14], p.max_displacement, w)
-    level += group_loss(hidden, x[15], x[16], x[17], x[18], p.max_displacement, w)
-    level += shaft_loss(hidden, x[10], w, x[3], gear_ratio, tension * p.metres_per_radian, x[6])
+    w = x[X_MAGNITUDE]
+    level = shaft_loss(hidden, x[X_MOTORS], w, x[X_DRUM], gear_ratio, tension * p.metres_per_radian, x[X_TIME])
+    for group in range(GROUPS):
+        at = group * STRIDE
+        level += group_loss(
+            hidden, x[X_COUNT + at], x[X_PRESSURE + at], x[X_PRESSURE_SUM + at], x[X_DISPLACEMENT + at],
+            p.max_displacement, w,
+        )  # fmt: skip
     dwell = model_torque * hidden.dwell_share * memory[DWELL]
-    return direction * level + dwell + fixed_torque(hidden, direction, state[ANGLE], x[3], gear_ratio)
+    return direction * level + dwell + fixed_torque(hidden, direction, state[ANGLE], x[X_DRUM], gear_ratio)
 
 
-@numba.njit(cache=True)
+@compiled
 def total_friction(p, hidden, address, x, theta, z, memory, state, tension):
     """Friction torque of model and hidden effects, N m against hoisting."""
     torque = friction_torque(address, x, theta, z)
     if hidden.present > 0.0:
-        torque += hidden_torque(p, hidden, state, x, memory, x[0], torque, tension)
+        torque += hidden_torque(p, hidden, state, x, memory, x[X_DIRECTION], torque, tension)
     return torque
 
 
-@numba.njit(cache=True)
+@compiled
 def motion_direction(p, memory, speed):
     """What multiplies an opposing term: the bristle's deflection, or a smooth sign."""
     if p.direction_width > 0.0:
@@ -154,7 +175,7 @@ def motion_direction(p, memory, speed):
     return memory[DIRECTION]
 
 
-@numba.njit(cache=True)
+@compiled
 def valve_flow(p, pressure):
     """Boost inflow and relief outflow of one line, m^3/s."""
     boost = p.valve_gain * max(p.boost_pressure - pressure, 0.0)
@@ -162,7 +183,7 @@ def valve_flow(p, pressure):
     return boost, relief
 
 
-@numba.njit(cache=True)
+@compiled
 def closed_loop(p, state, rate, command):
     """Pump-controlled active loop: pump, line pressures, leakage, boost and relief. Returns the motors' pressure."""
     motor_flow = p.count * p.displacement * state[SPEED]
@@ -189,7 +210,7 @@ def closed_loop(p, state, rate, command):
     return state[P_A] - state[P_B] - drop
 
 
-@numba.njit(cache=True)
+@compiled
 def torque_drive(p, state, rate, command):
     """Torque-commanded drive: the pressure follows the command with a lag. Returns the motors' pressure."""
     rate[P_A] = 0.0
@@ -200,7 +221,7 @@ def torque_drive(p, state, rate, command):
     return state[DRIVE] / (p.count * p.displacement)
 
 
-@numba.njit(cache=True)
+@compiled
 def passive_side(p, state, rate):
     """Passive motors on the accumulator. Returns their torque at the shaft, pressure and pressure sum."""
     if p.passive_count == 0.0:
@@ -223,7 +244,7 @@ def passive_side(p, state, rate):
     return p.passive_count * p.passive_displacement * at_motors, at_motors, pressure + p.passive_low
 
 
-@numba.njit(cache=True)
+@compiled
 def water_force(p, state, share):
     """Buoyancy and drag on the body, N upwards."""
     if p.buoyancy == 0.0:
@@ -231,7 +252,7 @@ def water_force(p, state, share):
     return share * (p.buoyancy - p.water_drag * state[LOAD_SPEED] * abs(state[LOAD_SPEED]))
 
 
-@numba.njit(cache=True)
+@compiled
 def rates(p, hidden, address, theta, z, memory, x, state, rate, time, command, heave_rate, surface, oil_temperature):
     """Time derivatives of all states into `rate`. Returns friction torque, tension, drum torque."""
     rate[:] = 0.0
@@ -258,7 +279,7 @@ def rates(p, hidden, address, theta, z, memory, x, state, rate, time, command, h
     return friction, tension, drum
 
 
-@numba.njit(cache=True)
+@compiled
 def stored_energy(p, state):
     """Kinetic, potential, elastic, hydraulic and gas energy, J."""
     stretch = p.mass * GRAVITY / p.wire_stiffness + state[TIP] + p.metres_per_radian * state[ANGLE] - state[LOAD]

@@ -14,9 +14,8 @@ from numba.extending import intrinsic
 
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.friction.symbols import layout
+from winch_friction.simulation.plant.point import GROUPS, POINT_LENGTH
 
-GROUPS = 2  # the driven group and the passive one; a winch without a passive group has it with no motors
 _POINTER = types.CPointer(types.float64)
 
 
@@ -37,7 +36,7 @@ def friction_kernel(model: FrictionModel) -> FrictionKernel:
 
 @lru_cache(maxsize=64)
 def _kernel(functions: CompiledTerms) -> FrictionKernel:
-    sizes = len(layout(GROUPS)), len(functions.parameters), len(functions.initial_states)
+    sizes = POINT_LENGTH, len(functions.parameters), len(functions.initial_states)
     torque = _torque_function(functions, sizes)
     rates = _rates_function(functions, sizes) if functions.initial_states else None
     return FrictionKernel(

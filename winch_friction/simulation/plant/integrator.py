@@ -6,14 +6,14 @@ each step (DOMAIN section 10); staggered against the states that is of second or
 
 import math
 
-import numba
-
+from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.plant.equations import rates
 from winch_friction.simulation.plant.friction_kernel import friction_state_rates
+from winch_friction.simulation.plant.point import X_ACCELERATION
 from winch_friction.simulation.plant.state import DIRECTION, DWELL, SPEED
 
 
-@numba.njit(cache=True)
+@compiled
 def advance_direction(z, speed, presliding, dt):
     """Dahl's bristle, dz/dt = (omega - |omega| z)/presliding, exactly for a frozen speed; z in -1 ... 1."""
     if speed == 0.0:
@@ -22,7 +22,7 @@ def advance_direction(z, speed, presliding, dt):
     return target + (z - target) * math.exp(-abs(speed) * dt / presliding)
 
 
-@numba.njit(cache=True)
+@compiled
 def advance_dwell(bond, speed, hidden, dt):
     """The bond that grows with dwell and breaks by slip, 0 ... 1, exactly for a frozen speed."""
     if hidden.dwell_share == 0.0:
@@ -33,7 +33,7 @@ def advance_dwell(bond, speed, hidden, dt):
     return target + (bond - target) * math.exp(-total * dt)
 
 
-@numba.njit(cache=True)
+@compiled
 def advance_term_states(rates_address, x, theta, z, gains, dt):
     """States of the model's own terms with memory, exactly for frozen signals."""
     if rates_address == 0:
@@ -45,7 +45,7 @@ def advance_term_states(rates_address, x, theta, z, gains, dt):
         z[k] = z[k] * math.exp(-exponent) + gains[2 * k] * dt * weight
 
 
-@numba.njit(cache=True)
+@compiled
 def hermite(fraction, period, value, slope, next_value, next_slope):
     """Cubic through two ends with their slopes."""
     f = fraction
@@ -55,7 +55,7 @@ def hermite(fraction, period, value, slope, next_value, next_slope):
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def integrate_period(
     p, hidden, addresses, theta, z, gains, memory, x, state, stages, time, command, heave, substeps, period, oil
 ):
@@ -85,5 +85,5 @@ def integrate_period(
             )  # fmt: skip
         for k in range(len(state)):
             state[k] += dt / 6.0 * (stages[0, k] + 2.0 * stages[1, k] + 2.0 * stages[2, k] + stages[3, k])
-        x[4] = stages[3, SPEED]
+        x[X_ACCELERATION] = stages[3, SPEED]
     return friction, tension, drum, stages[3, SPEED]

@@ -2,9 +2,8 @@
 
 import math
 
-import numba
-
 from winch_friction.physics.units import GRAVITY
+from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.control.controller import control
 from winch_friction.simulation.plant.equations import gas_pressure, reported_gas_pressure, stored_energy
 from winch_friction.simulation.plant.integrator import integrate_period
@@ -26,14 +25,14 @@ from winch_friction.simulation.plant.state import (
 _OIL_REFERENCE = 40.0  # degC
 
 
-@numba.njit(cache=True)
+@compiled
 def walther_viscosity(celsius):
     """Kinematic viscosity of an ISO VG 46 oil, cSt (Walther, ASTM D341: 134 cSt at 20 and 21 cSt at 60 degC)."""
     a, b = 9.312590724597092, 3.6416751935979934
     return 10.0 ** (10.0 ** (a - b * math.log10(celsius + 273.15))) - 0.7
 
 
-@numba.njit(cache=True)
+@compiled
 def scale_viscous(p, nominal, viscous, theta, oil):
     """The model's viscous parameters at the oil's temperature."""
     if p.viscosity_share == 0.0:
@@ -44,7 +43,7 @@ def scale_viscous(p, nominal, viscous, theta, oil):
         theta[k] = nominal[k] * (factor if viscous[k] else 1.0)
 
 
-@numba.njit(cache=True)
+@compiled
 def sense(p, sensing, state, measured, noise):
     """What the controller reads: encoder counts and pressures (angle, speed, dp, passive dp)."""
     step = sensing[0]
@@ -57,7 +56,7 @@ def sense(p, sensing, state, measured, noise):
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def pressure_difference(p, state):
     """Pressure drop over the driven group's transducers, Pa."""
     if p.secondary > 0.0:
@@ -66,7 +65,7 @@ def pressure_difference(p, state):
     return state[P_A] - state[P_B]
 
 
-@numba.njit(cache=True)
+@compiled
 def run_periods(
     first, count, p, hidden, c, addresses, nominal, viscous, theta, z, gains, memory, x, state, stages, control_memory,
     measured, sensing, noise, motion, reference, oil, feedforward, history, substeps,
@@ -95,7 +94,7 @@ def run_periods(
         row[22] = feedforward[k]
 
 
-@numba.njit(cache=True)
+@compiled
 def record_row(p, row, state, memory, motion, reference, friction, tension, drum):
     """One row of the truth, in the order of `state.COLUMNS`."""
     dp = pressure_difference(p, state)

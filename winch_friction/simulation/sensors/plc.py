@@ -6,10 +6,10 @@ scan; the row is there at the scan's end, plus the transport delay.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from winch_friction.physics.signals import FloatArray
+from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.scenario import Scenario
 from winch_friction.simulation.sensors.channels import Channels
 
@@ -38,7 +38,7 @@ def draw_scans(scenario: Scenario, channels: Channels, generator: np.random.Gene
     return Scans(ends, normals, lost)
 
 
-@numba.njit(cache=True)
+@compiled
 def at_time(history, column, period, time):
     """A column of the history at a time, linear between the control ticks, held before the start."""
     place = max(time, 0.0) / period
@@ -47,13 +47,13 @@ def at_time(history, column, period, time):
     return history[k, column] + (place - k) * (history[k + 1, column] - history[k, column])
 
 
-@numba.njit(cache=True)
+@compiled
 def quantise(value, step):
     """Nearest multiple of a step; no step, no change."""
     return np.floor(value / step + 0.5) * step if step > 0.0 else value
 
 
-@numba.njit(cache=True)
+@compiled
 def scan(history, period, settings, ends, normals, j, row):
     """Scan number j into `row` (time, then the channels)."""
     end = ends[j]
@@ -72,7 +72,7 @@ def scan(history, period, settings, ends, normals, j, row):
         row[c + 1] = quantise(value, s.step)
 
 
-@numba.njit(cache=True)
+@compiled
 def scan_all(history, period, settings, ends, normals, rows):
     """Every scan of a finished run."""
     for j in range(len(rows)):

@@ -1,0 +1,63 @@
+"""Numba's cache, kept where a change of any source of the simulation makes it a new one.
+
+Numba itself notices changes of the file that a function stands in, not of the functions that it calls.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numba
+
+import winch_friction.physics.friction.symbols as symbols
+import winch_friction.physics.units as units
+
+_numba_config: Any = numba.config
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """`numba.njit`, cached between processes where a cache can be written."""
+    with _cache_directory(_directory()):
+        try:
+            return numba.njit(cache=True)(function)
+        except RuntimeError:  # no place to write: compile anew in every process
+            return numba.njit(function)
+
+
+@contextmanager
+def _cache_directory(path: str) -> Iterator[None]:
+    before = _numba_config.CACHE_DIR
+    _numba_config.CACHE_DIR = path
+    try:
+        yield
+    finally:
+        _numba_config.CACHE_DIR = before
+
+
+@lru_cache(maxsize=1)
+def _directory() -> str:
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "winch_friction" / "numba"
+    if not _writable(root):
+        root = Path(tempfile.gettempdir()) / f"winch_friction_numba_{os.getuid()}"
+    return str(root / _digest())
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def _digest() -> str:
+    sources = sorted(Path(__file__).parent.rglob("*.py"))
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in [*sources, Path(str(symbols.__file__)), Path(str(units.__file__))]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,150 @@
+"""What the closed-loop study reports without a bar, and its limit-cycle checks."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from campaign.loop_cases import (
+    DRIVES,
+    SEAS,
+    SETTLED,
+    SPEED_BINS,
+    Sea,
+    bins,
+    closed_loop,
+    compensator,
+    learn,
+    scenario,
+    score,
+)
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.units import RPM
+
+SEEDS = (111, 112, 113)
+SEA = SEAS[3]  # JONSWAP, Hs 1 m
+MISMATCHES: dict[str, dict[str, float]] = {
+    "leakage + 30 %": {"leakage": 1.3},
+    "leakage - 30 %": {"leakage": 0.7},
+    "bulk modulus - 25 %": {"bulk_modulus": 0.75},
+    "bulk modulus + 25 %": {"bulk_modulus": 1.25},
+    "inertia + 20 %": {"inertia": 1.2},
+    "wire stiffness - 30 %": {"wire_stiffness": 0.7},
+}
+CALM = 60.0  # s of rest or swell that are looked at
+
+
+def extras(truth: FrictionModel, quick: bool) -> str:
+    """Markdown of everything here."""
+    seeds = SEEDS[:1] if quick else SEEDS
+    model = learn("primary", 55e3, SEA, truth).model
+    return "\n\n".join(
+        [
+            "## Limit cycles",
+            LIMIT_CYCLES,
+            _table(["drive", "case", "without, rad/s", "with, rad/s", "ratio", "met"], limit_cycles(truth)),
+            measured_speed(),
+            "## Plant mismatch and slow pump (no bar)",
+            "55 t, Hs 1 m; the controller, the estimator and the compensator know the nominal plant.",
+            _table(["plant", "no feedforward, mm", "learned x 0.9, less by"], mismatches(truth, model, seeds)),
+            "## Speed error by bin (no bar)",
+            "55 t, Hs 1 m, pump-controlled: RMS of true minus reference speed, rpm.",
+            _table(["rpm", "no feedforward", "learned x 0.9"], speed_errors(truth, model, seeds)),
+        ]
+    )
+
+
+LIMIT_CYCLES = """Noise off, bristle (Dahl) friction in the plant, the true model at scale 1.08, reference speed. *Calming*:
+a sea of 1.5 m / 10 s that fades to rest; *swell*: 2 cm, 20 s. Speed RMS over the last 60 s; the bar is 1.5 times that
+without feedforward (a speed below 0.01 rad/s, 0.1 rpm, counts as rest)."""
+REST = 0.01  # rad/s
+
+
+def limit_cycles(truth: FrictionModel) -> list[list[str]]:
+    """One line per drive and case."""
+    calming = Sea("calming", 10.0, {"kind": "regular", "amplitude": 1.5, "period": 10.0})
+    swell = Sea("swell", 20.0, {"kind": "regular", "amplitude": 0.02, "period": 20.0})
+    quiet: dict[str, Any] = {"sensors.noise": False, "sensors.quantisation": False}
+    cases: dict[str, tuple[Sea, float, dict[str, Any]]] = {
+        "calming": (calming, 130.0, {**quiet, "calm_at": 40.0, "calm_time": 30.0}),
+        "swell": (swell, 120.0, quiet),
+    }
+    lines = []
+    for drive in DRIVES:
+        for name, (sea, duration, changes) in cases.items():
+            without, with_it = (_late_speed(drive, sea, duration, changes, truth, on) for on in (False, True))
+            ratio = max(with_it, REST) / max(without, REST)
+            met = "yes" if ratio <= 1.5 else "**no**"
+            lines.append([DRIVES[drive], name, f"{without:.4f}", f"{with_it:.4f}", f"{ratio:.2f}", met])
+    return lines
+
+
+def _late_speed(
+    drive: str, sea: Sea, duration: float, changes: dict[str, Any], truth: FrictionModel, on: bool
+) -> float:
+    case = scenario(drive, 55e3, sea, duration, **changes)
+    record = closed_loop(case, truth, 0, compensator(truth, scale=1.08) if on else None).result().truth
+    late = record.time > duration - CALM
+    return float(math.sqrt(np.mean(record["motor_speed"][late] ** 2)))
+
+
+def measured_speed() -> str:
+    """What the compensator says to measured speed on the torque-commanded drive."""
+    try:
+        CompensatorConfig(drive="torque", velocity_source="measured")
+    except InputError as error:
+        return f"Measured speed as velocity source on the torque-commanded drive is refused: *{error}*."
+    return "**Measured speed on the torque-commanded drive was not refused.**"
+
+
+def mismatches(truth: FrictionModel, model: FrictionModel, seeds: tuple[int, ...]) -> list[list[str]]:
+    """Reduction by the learned model on plants that differ from what everybody believes."""
+    plants: dict[str, dict[str, Any]] = {"nominal": {}, **{name: {"mismatch": m} for name, m in MISMATCHES.items()}}
+    plants["slow pump (second order, 6 rad/s)"] = {"plant": "winch_150t_slow_pump"}
+    lines = []
+    for drive in DRIVES:
+        for name, changes in plants.items():
+            if drive == "secondary" and ("pump" in name or "leakage" in name or "bulk" in name):
+                continue
+            errors = _errors(drive, changes, truth, model, seeds)
+            lines.append(
+                [f"{DRIVES[drive]}, {name}", f"{1e3 * errors[0]:.1f}", f"{100 * (1 - errors[1] / errors[0]):.0f} %"]
+            )
+    return lines
+
+
+def _errors(
+    drive: str, changes: dict[str, Any], truth: FrictionModel, model: FrictionModel, seeds: tuple[int, ...]
+) -> tuple[float, float]:
+    case = scenario(drive, 55e3, SEA, **changes)
+    squares = [
+        [score(closed_loop(case, truth, seed, each)).overall for each in (None, compensator(model, plant=case.plant))]
+        for seed in seeds
+    ]
+    without, with_it = np.sqrt(np.mean(squares, axis=0))
+    return float(without), float(with_it)
+
+
+def speed_errors(truth: FrictionModel, model: FrictionModel, seeds: tuple[int, ...]) -> list[list[str]]:
+    """RMS of the speed error by speed bin, rpm."""
+    pooled: list[dict[int, list[float]]] = [{}, {}]
+    for seed in seeds:
+        for k, each in enumerate((None, compensator(model))):
+            record = closed_loop(scenario("primary", 55e3, SEA), truth, seed, each).result().truth
+            settled = record.time > SETTLED
+            error = (record["motor_speed"] - record["speed_reference"])[settled] / RPM
+            for low, inside in bins(record["speed_reference"][settled]).items():
+                pooled[k].setdefault(low, []).extend(error[inside])
+    edges = dict(zip(SPEED_BINS, SPEED_BINS[1:], strict=False))
+    return [
+        [f"{low} ... {edges[low]}", *(f"{math.sqrt(np.mean(np.square(each[low]))):.1f}" for each in pooled)]
+        for low in pooled[0]
+        if len(pooled[0][low]) > 50
+    ]
+
+
+def _table(head: list[str], rows: list[list[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)

@@ -85,7 +85,7 @@ class Inputs:
         """Age of every input at the last speed, s."""
         return self._stream.hold.ages(self.last_stamp)
 
-    def _subscribe(self, source: Input, callback: Callable[[Any], None] | None, group: Any = None) -> Any:
+    def _subscribe(self, source: Input, callback: Callable[..., None] | None, group: Any = None) -> Any:
         return self._node.create_subscription(
             message_type(source.type_name),
             source.topic,
@@ -95,11 +95,12 @@ class Inputs:
             qos_overriding_options=overridable(),
         )
 
-    def _on_speed(self, message: Any) -> None:
+    def _on_speed(self, message: Any, info: Any) -> None:
         """The others first: they were sent before the speed that belongs to them."""
         self.take_held()
         topics = self._stream.topics
-        sample = self._stream.take(topics.inputs[topics.speed_topic], message, self._receipt())
+        source, sent = topics.inputs[topics.speed_topic], info["source_timestamp"]
+        sample = self._stream.take(source, message, self._receipt(), sent)
         if sample is not None:
             self._last_seen = self.steady()
             self._on_sample(sample)
@@ -108,8 +109,8 @@ class Inputs:
         """Take in what has come on all topics but the speed's."""
         receipt = self._receipt()
         for source, subscription in self._held:
-            for message, _ in drain(subscription):
-                self._stream.take(source, message, receipt)
+            for message, info in drain(subscription):
+                self._stream.take(source, message, receipt, info["source_timestamp"])
 
     def _receipt(self) -> float:
         return float(self._node.get_clock().now().nanoseconds * NANOSECOND)

@@ -15,8 +15,9 @@ from winch_friction.nodes.messages import ROS, clock_message, message_type
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.run import run
-from winch_friction.nodes.voyage import Answers, Voyage, adjusted, harder_turning, hidden_effects
+from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.scaled import scaled_system
 from winch_friction.physics.options import check, option
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
@@ -67,7 +68,7 @@ class SimulatorNode(WinchNode):
         """The crane at sea and what it publishes."""
         self.own = own = self._own.read(self)
         scenario = adjusted(load_scenario(own.scenario), own.sensor_rate, own.duration)
-        truth = harder_turning(model, own.friction_factor)
+        truth = scaled_system(model, own.friction_factor)
         self.voyage = Voyage(scenario, crane, truth, own.seed, hidden_effects(own.hidden))
         self.topics = self.options.topics(crane)
         self.answers = Answers(own.wait_for if own.lockstep else ())

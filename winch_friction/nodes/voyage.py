@@ -13,14 +13,6 @@ from winch_friction.simulation.simulator import Simulator
 GAP = 2.0  # s of time between one voyage and the next
 
 
-def harder_turning(model: FrictionModel, factor: float) -> FrictionModel:
-    """The model with its system friction (gear and drum) times `factor`, shapes such as C4 as they are."""
-    system = {p.name for term in model.terms if term.place == "gear and drum" for p in term.parameters if not p.shape}
-    values = {name: value * factor for name, value in model.as_dict().items() if name in system}
-    bounds = {name: each for name, each in model.bounds.items() if name not in values}
-    return replace(model, name=f"{model.name}_x{factor:g}", bounds=bounds).with_values(values)
-
-
 def hidden_effects(names: Sequence[str]) -> list[tuple[str, float]]:
     """`name` or `name=size` as pairs; the size 1 is the typical one."""
     pairs = []

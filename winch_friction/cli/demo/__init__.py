@@ -1,0 +1,164 @@
+"""`winch-friction demo`: the whole loop on a simulated sea."""
+
+import shutil
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import show_json, show_table, stderr
+from winch_friction.physics.errors import InputError
+
+PRODUCTS = ("bag", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
+
+
+def command(
+    out: Annotated[Path, typer.Option(help="Folder for bag, picture, page and logs.")] = Path("out/demo"),
+    scenario: Annotated[str, typer.Option(help="Shipped scenario or file; heave compensation.")] = "ahc_irregular",
+    duration: Annotated[float, typer.Option(help="Seconds of sea per phase.", min=40.0, max=3600.0)] = 100.0,
+    seed: Annotated[int, typer.Option(help="Which sea.", min=0)] = 1,
+    friction_factor: Annotated[
+        float,
+        typer.Option(help="The plant's system friction as a multiple of what the nodes are told.", min=0.5, max=1.5),
+    ] = 1.3,
+    json: Annotated[bool, typer.Option("--json", help="The figures as JSON on stdout.")] = False,
+) -> None:
+    """Three real nodes over DDS on a simulated sea: friction is learned, compensated, recorded and replayed.
+
+    Example: winch-friction demo --seed 7 --duration 200
+    """
+    from winch_friction.cli.demo.plan import make_plan
+
+    _clear(out)
+    plan = make_plan(out.resolve(), scenario, duration, seed, friction_factor)
+    started = time.monotonic()
+    _play(plan)
+    results = _evaluate(plan, time.monotonic() - started)
+    show_json(results) if json else _show(plan, results)
+    if not all(each["holds"] for each in results["live_equals_replay"]):
+        raise RuntimeError(f"the replay of {plan.bag} differs from the live outputs")
+
+
+def _clear(out: Path) -> None:
+    """Remove what an earlier demo left; a folder of something else is not touched."""
+    if out.exists() and not out.is_dir():
+        raise InputError(f"{out}: is a file; give a folder")
+    if out.is_dir() and any(out.iterdir()) and not (out / "plan.json").exists():
+        raise InputError(f"{out}: holds other files; give a folder of its own")
+    for name in PRODUCTS:
+        path = out / name
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
+
+
+def _play(plan: Any) -> None:
+    """Nodes and stage, with progress."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from winch_friction.cli.demo.processes import events, running_nodes, running_stage
+
+    parameter_file, plan_file = plan.write()
+    logs = plan.out / "logs"
+    columns = (
+        TextColumn("{task.description:<24}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeElapsedColumn(),
+    )
+    with (
+        running_nodes(parameter_file, logs) as nodes,
+        running_stage(plan_file) as stage,
+        Progress(*columns, console=stderr) as bars,
+    ):
+        tasks = {phase.name: bars.add_task(phase.title, total=1.0, start=False) for phase in plan.phases}
+        bars.console.print("starting simulator, compensator and estimator as processes over DDS ...")
+        for event in events(stage, nodes, logs):
+            _follow(bars, tasks, event)
+
+
+def _follow(bars: Any, tasks: dict[str, Any], event: dict[str, Any]) -> None:
+    if event["event"] == "phase":
+        names = list(tasks)
+        for done in names[: names.index(event["name"])]:
+            bars.update(tasks[done], completed=1.0)
+        bars.start_task(tasks[event["name"]])
+    elif event["event"] == "progress":
+        bars.update(tasks[event["name"]], completed=event["value"])
+    elif event["event"] == "recorded":
+        for task in tasks.values():
+            bars.update(task, completed=1.0)
+        bars.console.print(f"recorded {sum(event['messages'].values())} messages")
+
+
+def _evaluate(plan: Any, elapsed: float) -> dict[str, Any]:
+    """Figures, replay, picture and page from the bag."""
+    from winch_friction.cli.demo.measures import measure
+    from winch_friction.cli.demo.page import sections
+    from winch_friction.cli.demo.picture import draw
+    from winch_friction.cli.demo.recording import read_recording
+    from winch_friction.cli.demo.verify import verify
+    from winch_friction.physics.friction.scaled import scaled_system
+    from winch_friction.records.atomic import write_text
+    from winch_friction.records.model_file import save_model
+    from winch_friction.report.base import write_report
+    from winch_friction.report.figures import save_figure
+
+    stderr.print("reading the bag and replaying it ...")
+    recording = read_recording(plan)
+    rows, agreements = measure(plan, recording), verify(plan, recording)
+    picture = draw(plan, recording, rows)
+    truth = scaled_system(plan.seed, plan.friction_factor)
+    save_figure(picture, plan.out / "demo.png")
+    save_model(recording.models[-1], plan.out / "learned_model.yaml")
+    page = sections(plan, recording, rows, agreements, truth, picture)
+    write_report(plan.out / "demo.html", "The loop closes", page, f"{plan.scenario}, sea {plan.sea}")
+    results = _results(plan, rows, agreements, elapsed)
+    write_text(plan.out / "demo.json", _json_text(results))
+    return results
+
+
+def _results(plan: Any, rows: Any, agreements: Any, elapsed: float) -> dict[str, Any]:
+    return {
+        "schema": "winch_friction.demo/1",
+        "scenario": plan.scenario,
+        "sea": plan.sea,
+        "friction_factor": plan.friction_factor,
+        "phases": [row.as_dict() for row in rows],
+        "live_equals_replay": [
+            {"what": a.what, "samples": a.samples, "difference": a.difference, "holds": a.holds} for a in agreements
+        ],
+        "simulated_seconds": plan.duration * len(plan.phases),
+        "elapsed_seconds": elapsed,
+        "out": str(plan.out),
+    }
+
+
+def _json_text(results: dict[str, Any]) -> str:
+    import json
+
+    return json.dumps(results, indent=1)
+
+
+def _show(plan: Any, results: dict[str, Any]) -> None:
+    phases = results["phases"]
+    bins = list(phases[0]["friction_torque_error_share"])
+    rows = [
+        [
+            each["title"],
+            f"{each['residual_heave_rms_m'] * 1e3:.2f}",
+            f"{each['less_than_without']:.0%}" if each["less_than_without"] else "-",
+            *(_share(each["friction_torque_error_rms_Nm"][b], each["friction_torque_error_share"][b]) for b in bins),
+        ]
+        for each in phases
+    ]
+    title = f"Residual heave and friction-torque error, {plan.scenario}, sea {plan.sea}, plant friction x {plan.friction_factor:g}"
+    show_table(title, ("feedforward", "heave RMS [mm]", "less", *bins), rows)
+    worst = max(each["difference"] for each in results["live_equals_replay"])
+    speed = results["simulated_seconds"] / results["elapsed_seconds"]
+    print(f"live equals replay: largest relative difference {worst:.1e}; sailed at {speed:.1f} x real time")
+    print(f"page {plan.out / 'demo.html'}, picture {plan.out / 'demo.png'}, bag {plan.bag}")
+
+
+def _share(error: float, share: float) -> str:
+    return "-" if error != error else f"{error:.0f} N m ({share:.0%})"

@@ -89,3 +89,13 @@ def test_dropouts_are_rows_of_nan_or_missing(ahc, crane, model):
 def test_a_setting_for_a_channel_that_is_not_there(cycle, crane, model):
     with pytest.raises(InputError, match="sensors.skew names 'active.pressure_a', the run has motor_speed"):
         Simulator(cycle.override({"sensors.skew": {"active.pressure_a": 0.1}}), crane, model)
+
+
+def test_absent_channels_are_absent_live_and_logged(ahc, crane, model):
+    absent = ["hook_load", "wire_layer", "heave_velocity"]
+    simulator = Simulator(ahc.override({"sensors.absent": absent, "duration": 1.0}), crane, model)
+    sample = simulator.step(0.0)
+    assert all(np.isnan(getattr(sample, name)) for name in absent)
+    assert not set(absent) & set(simulator.result().run.columns)
+    with pytest.raises(InputError, match="'tension', which is not an optional channel"):
+        Simulator(ahc.override({"sensors.absent": ["tension"]}), crane, model)

@@ -95,8 +95,9 @@ class Water(Strict):
 
 
 class Sensors(Strict):
-    """The PLC's view of the winch. Skew and offsets by channel; standard deviations in SI."""
+    """The PLC's view of the winch. Skew and offsets by channel, channels that are absent; standard deviations in SI."""
 
+    absent: tuple[str, ...] = ()
     rate: float = Field(default=50.0, ge=5.0, le=500.0)
     jitter: Seconds = Field(default=0.001, ge=0.0)
     delay: Seconds = Field(default=0.0, ge=0.0, le=0.5)

@@ -152,10 +152,11 @@ class Simulator:
                 setattr(groups.setdefault(group, GroupSample()), channel, value)
             else:
                 scalars[name] = value
+        if "wire_layer" not in self.scenario.sensors.absent:
+            scalars["wire_layer"] = float(self.scenario.wire_layer)
         return Sample(
             time=self.scenario.start_time + values[0],
             groups=groups,
-            wire_layer=float(self.scenario.wire_layer),
             **scalars,
         )
 
@@ -185,7 +186,8 @@ class Simulator:
         columns = {"time": rows[:, 0].copy()}
         columns |= {name: rows[:, k + 1].copy() for k, name in enumerate(self.channels.names)}
         columns["time"] += self.scenario.start_time
-        columns["wire_layer"] = np.where(np.isnan(rows[:, 1]), np.nan, float(self.scenario.wire_layer))
+        if "wire_layer" not in self.scenario.sensors.absent:
+            columns["wire_layer"] = np.where(np.isnan(rows[:, 1]), np.nan, float(self.scenario.wire_layer))
         history = self.history[: self.tick + 1]
         truth = {name: history[:, k].copy() for k, name in enumerate(COLUMNS)}
         name = f"{self.scenario.name}_seed{self.seed}"

@@ -12,6 +12,7 @@ from winch_friction.simulation.scenario import Scenario, Sensors
 # channel -> column of the plant's history
 GROUP_SOURCES = {"pressure_a": "pressure_a", "pressure_b": "pressure_b", "displacement": "displacement"}
 SPEED = "motor_speed"
+OPTIONAL = ("wire_layer",)  # besides the plant's own columns
 
 CHANNEL = np.dtype(
     [("source", np.int64)]
@@ -50,7 +51,18 @@ def _sources(scenario: Scenario) -> dict[str, str]:
             "passive.displacement": "passive_displacement",
         }
         sources["heave_velocity"] = "heave_velocity"
-    return sources | {"hook_load": "hook_load", "oil_temperature": "oil_temperature", "wire_out": "wire_out"}
+    sources |= {"hook_load": "hook_load", "oil_temperature": "oil_temperature", "wire_out": "wire_out"}
+    return {name: column for name, column in sources.items() if name not in _absent(scenario, tuple(sources))}
+
+
+def _absent(scenario: Scenario, names: tuple[str, ...]) -> tuple[str, ...]:
+    for name in scenario.sensors.absent:
+        if name not in (*OPTIONAL, *names) or name == SPEED:
+            raise InputError(
+                f"scenario '{scenario.name}': sensors.absent names '{name}', which is not an optional channel; "
+                f"these are {', '.join(sorted({*OPTIONAL, *names} - {SPEED}))}"
+            )
+    return scenario.sensors.absent
 
 
 def _set_sensor(row: Any, name: str, sensors: Sensors) -> None:

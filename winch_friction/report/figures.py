@@ -45,6 +45,11 @@ def new_figure(rows: int = 1, columns: int = 1, height: float = 2.8, width: floa
         return figure, figure.subplots(rows, columns, **options)
 
 
+def legend_above(axes: Any, columns: int = 1) -> None:
+    """A legend that covers no curve."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
+
+
 def figure_html(figure: Any, caption: str = "", description: str = "") -> str:
     """An inline picture: SVG in the colours of the page, PNG when the SVG would be too large."""
     svg = _svg(figure, description or caption)

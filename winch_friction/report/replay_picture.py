@@ -7,13 +7,13 @@ import numpy as np
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.units import RPM
-from winch_friction.report.figures import COLOURS, new_figure
+from winch_friction.report.figures import COLOURS, legend_above, new_figure
 
-_MOST_PARAMETERS = 6
+_MOST_PARAMETERS = 4
 
 
 def replay_figure(compensator: Run, estimator: Run, seed: FrictionModel) -> Any:
-    """Friction torque and speed over time above, the parameters that moved most in units of their seed below."""
+    """Friction torque and speed over time above, the parameters learned best below, in σ of their seed."""
     figure, axes = new_figure(3, 1, height=2.5, sharex=True)
     start = compensator.time[0]
     _torque(axes[0], compensator, estimator, start)
@@ -28,19 +28,19 @@ def _torque(axes: Any, compensator: Run, estimator: Run, start: float) -> None:
     axes.plot(compensator.time - start, compensator["friction_torque"], label="feedforward")
     axes.plot(estimator.time - start, estimator["friction_torque"], label="learned friction", alpha=0.8)
     axes.set_ylabel("torque at the shaft, N m")
-    axes.legend(loc="upper right", ncols=2)
+    legend_above(axes, 2)
 
 
 def _parameters(axes: Any, estimator: Run, seed: FrictionModel, start: float) -> None:
     shown = _most_learned(estimator, seed)
     for colour, name in zip(COLOURS, shown, strict=False):
-        scale = abs(seed.value(name)) or 1.0
-        value, std = estimator[name] / scale, estimator[f"{name}_std"] / scale
+        scale = estimator[f"{name}_std"][0]
+        value, std = (estimator[name] - seed.value(name)) / scale, estimator[f"{name}_std"] / scale
         axes.plot(estimator.time - start, value, color=colour, label=name)
         axes.fill_between(estimator.time - start, value - std, value + std, color=colour, alpha=0.15, linewidth=0)
-    axes.set_ylabel("parameter / seed, ±1 σ")
+    axes.set_ylabel("parameter − seed,\nin σ of the seed, ±1 σ")
     if shown:
-        axes.legend(loc="upper left", ncols=len(shown))
+        legend_above(axes, len(shown))
 
 
 def _most_learned(estimator: Run, seed: FrictionModel) -> list[str]:

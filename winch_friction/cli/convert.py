@@ -1,0 +1,62 @@
+"""`winch-friction convert`: run files from one format to another."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.physics.signals import Run
+
+app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
+OUT = typer.Argument(help="Where to, one or several: .csv, .parquet, .mcap, .db3, or a folder for a bag.")
+
+
+@app.command("run")
+def run(
+    source: Annotated[Path, typer.Argument(help="Run file or bag.")],
+    out: Annotated[list[Path], OUT],
+    crane: Annotated[str, typer.Option(help="Crane: for drum speeds and displacement fractions.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
+) -> None:
+    """Convert a run file or bag.
+
+    Example:
+
+      winch-friction convert run log.csv log.parquet log.mcap
+    """
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.runs import read_run
+
+    content = read_run(source, load_crane(crane) if crane else None)
+    show_warnings(content.warnings)
+    _write(content, out, as_json)
+
+
+@app.command("emps")
+def emps(
+    source: Annotated[Path, typer.Argument(help="The benchmark's DATA_EMPS.mat.")],
+    out: Annotated[list[Path], OUT],
+    causal: Annotated[bool, typer.Option(help="Speed as a drive would have it live, without looking ahead.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
+) -> None:
+    """Convert the EMPS benchmark's measurement into a run for crane 'emps'.
+
+    Example:
+
+      winch-friction convert emps DATA_EMPS.mat emps.csv emps_bag
+    """
+    from winch_friction.records.emps import read_emps
+
+    _write(read_emps(source, causal), out, as_json)
+
+
+def _write(content: Run, paths: list[Path], as_json: bool) -> None:
+    from winch_friction.records.runs import write_run
+
+    written = [str(write_run(content, path)) for path in paths]
+    if as_json:
+        show_json({"written": written, "samples": len(content), "columns": list(content.columns)})
+        return
+    for path in written:
+        print(f"{path}: {len(content)} samples of {', '.join(content.columns)}")

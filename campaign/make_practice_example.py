@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from practice_logs import AHC, TABLE_2, TABLE_5, SensorErrors, drive_ahc, drive_tests
-from supplier_generator import LOW_DISPLACEMENT_LOSS, write_supplier_table
 
+from campaign.practice_logs import AHC, TABLE_2, TABLE_5, SensorErrors, drive_ahc, drive_tests
+from campaign.supplier_generator import LOW_DISPLACEMENT_LOSS, write_supplier_table
 from winch_friction.physics.signals import Run
 from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.records.atomic import write_text

@@ -8,7 +8,7 @@ from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
 sys.path.insert(0, str(Path(__file__).parent))
-sys.path.insert(0, str(Path(__file__).parents[2] / "campaign"))
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
 
 @pytest.fixture(scope="session")

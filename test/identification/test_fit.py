@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from supplier_generator import TABLE_1, torque_loss, write_supplier_table
+from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
 
 from winch_friction.identification.fit import clustered_covariance, condition_number, fit
 from winch_friction.identification.fit_data import CountedModel

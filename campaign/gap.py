@@ -31,7 +31,7 @@ TABLE = Path("docs/campaign_gap.md")
 
 def diagnose(case: Case) -> dict[str, Any]:
     """Generate one data set, run the workflow on it, judge its answer."""
-    from winch_friction.discrepancy import find_gap
+    from winch_friction.discrepancy.workflow import GapOptions, find_gap
     from winch_friction.physics.signals import Run
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
@@ -39,9 +39,9 @@ def diagnose(case: Case) -> dict[str, Any]:
     data = make_dataset(case.seed, case.flavour, case.effects)
     runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(data)]
     started = time.perf_counter()
-    result = find_gap(runs, load_crane("crane_150t"), load_model("a6vm215_crane2"))
+    result = find_gap(runs, load_crane("crane_150t"), load_model("a6vm215_crane2"), GapOptions())
     seconds = time.perf_counter() - started
-    answer = json.loads(json.dumps(result.to_json()))
+    answer = json.loads(json.dumps(result.content()))
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {
         "key": case.key,

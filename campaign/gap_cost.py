@@ -25,7 +25,7 @@ SEED = 100_999
 IN_PROCESS = """
 import json, sys, time, numpy as np
 from campaign.rig import make_dataset
-from winch_friction.discrepancy import find_gap
+from winch_friction.discrepancy.workflow import GapOptions, find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -34,7 +34,7 @@ data = make_dataset(seed, "quiet", [("low_displacement_loss", 1.0)], length=leng
 runs = [Run(f"run_{k}", columns) for k, columns in enumerate(data)]
 crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
 started = time.perf_counter()
-find_gap(runs, crane, model)
+find_gap(runs, crane, model, GapOptions())
 print(json.dumps([sum(len(run) for run in runs), time.perf_counter() - started]))
 """
 

@@ -27,12 +27,13 @@ def write_csv(folder: Path, dataset: Sequence[Mapping[str, np.ndarray]], units: 
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for k, columns in enumerate(dataset):
-        header, values = [], []
+        header, values, formats = [], [], []
         for name, column in columns.items():
             unit, factor = _UNITS.get(name.rpartition(".")[2], ("", 1.0)) if units == "plant" else ("", 1.0)
             header.append(f"{name} [{unit}]" if unit else name)
             values.append(column / factor)
+            formats.append("%.6f" if name == "time" else "%.8g")
         path = folder / f"run_{k + 1:02d}.csv"
-        np.savetxt(path, np.column_stack(values), delimiter=",", header=",".join(header), comments="", fmt="%.10g")
+        np.savetxt(path, np.column_stack(values), delimiter=",", header=",".join(header), comments="", fmt=formats)
         paths.append(path)
     return paths

@@ -103,3 +103,4 @@ def test_files_carry_the_columns(units, tmp_path):
     assert len(paths) == 12
     table = np.loadtxt(paths[-1], delimiter=",", skiprows=1)
     assert table.shape == (50, len(runs[-1]))
+    assert np.abs(np.diff(table[:, 0]) - np.diff(runs[-1]["time"])).max() < 1e-5

@@ -100,3 +100,24 @@ def test_memory_of_the_models_own_terms_is_carried(ahc, crane, model):
     assert np.isfinite(result.truth["friction_torque"]).all()
     plain = simulate(ahc.override({"duration": 30.0}), crane, model)
     assert not np.array_equal(result.truth["friction_torque"], plain.truth["friction_torque"])
+
+
+def test_displacement_and_boost_can_be_switched_during_a_run(cycle, crane, model):
+    full = crane.max_displacement
+    points = [[0, 0], [2, 0], [5, 60.0], [40, 60.0]]
+    changes = {
+        "duration": 40.0,
+        "profile": {"points": points},
+        "displacement_schedule": [[15, full], [17, 0.6 * full]],
+        "boost_schedule": [[28, 25 * BAR], [29, 45 * BAR]],
+    }
+    truth = simulate(cycle.override({**CLEAN, **changes}), crane, model).truth
+    before, small, boosted = (
+        np.interp([14.0, 26.0, 39.0], truth.time, truth[c]) for c in ("motor_speed", "pressure_a", "pressure_b")
+    )
+    assert before[1] == pytest.approx(before[0], rel=0.1)  # the pump gives less, the speed stays
+    assert small[1] > 1.5 * small[0]
+    assert boosted[2] == pytest.approx(45 * BAR, rel=0.05)
+    stored = truth["energy_stored"] - truth["energy_stored"][0]
+    moved = truth["energy_in"] + truth["energy_heave"] - truth["energy_friction"] - truth["energy_lost"]
+    assert np.abs(stored - moved).max() < 1e-6 * truth["energy_in"].max()

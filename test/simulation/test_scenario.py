@@ -36,7 +36,7 @@ def test_shipped_scenarios_run(name, crane, model):
         ({"duration": float("nan")}, r"duration: in s must be a finite number"),
         ({"sensors": {"rate": 400}}, r"sensors.rate 400 Hz is above the control rate"),
         ({"sensors": {"rate": 30}}, r"whole number of control periods"),
-        ({"profile": {"points": [1, 2]}}, r"list of \[time s, speed\] pairs"),
+        ({"profile": {"points": [1, 2]}}, r"list of \[time s, value in rad/s\] pairs"),
         ({"schema": "winch_friction.crane/1"}, r"schema: "),
     ],
 )
@@ -55,7 +55,7 @@ def test_a_missing_key_is_named():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"displacement": 300 * CM3_PER_REV}, "is above the motors'"),
+        ({"displacement": 300 * CM3_PER_REV}, "is outside the motors'"),
         ({"mismatch": {"leakige": 1.2}}, "mismatch.leakige is not a plant parameter"),
         ({"wire_layer": 9}, "wire_layer 9 does not exist"),
         ({"hidden": {"gremlins": 1.0}}, "hidden effect 'gremlins' is not known"),

@@ -112,11 +112,12 @@ def plant_record(scenario: Scenario, crane: Crane, plant: PlantFile) -> np.ndarr
 def _check(scenario: Scenario, crane: Crane) -> None:
     if crane.electric or not crane.max_displacement:
         raise InputError(f"crane '{crane.name}' is electric; scenarios simulate hydraulic winches")
-    if scenario.displacement > 1.001 * crane.max_displacement:
-        raise InputError(
-            f"scenario '{scenario.name}': displacement {scenario.displacement:g} m^3/rad is above the motors' "
-            f"{crane.max_displacement:g}"
-        )
+    for value in (scenario.displacement, *(each for _, each in scenario.displacement_schedule)):
+        if not 0.02 * crane.max_displacement <= value <= 1.001 * crane.max_displacement:
+            raise InputError(
+                f"scenario '{scenario.name}': displacement {value:g} m^3/rad is outside the motors' "
+                f"{0.02 * crane.max_displacement:g} ... {crane.max_displacement:g}"
+            )
 
 
 def _apply_mismatch(out: np.ndarray, scenario: Scenario) -> None:
@@ -167,6 +168,21 @@ def prescribed_motion(scenario: Scenario, crane: Crane, time: FloatArray, seed: 
     compensation = -tip / metres_per_radian if scenario.mode == "ahc" else np.zeros_like(tip)
     reference = np.column_stack([winch + compensation, winch[:, 0] * metres_per_radian])
     return Motion(np.column_stack([tip, surface]), reference, _oil(scenario, time))
+
+
+def schedule(scenario: Scenario, time: FloatArray, plant: np.ndarray, control: np.ndarray) -> FloatArray:
+    """What is switched during the run, at the control ticks: true displacement per driven motor, the displacement that
+    the controller counts with (all of them), boost pressure; linear between the scenario's points."""
+    p, c = plant[0], control[0]
+    asked = _along(scenario.displacement_schedule, scenario.displacement, time) / scenario.displacement
+    boost = _along(scenario.boost_schedule, float(p["boost_pressure"]), time)
+    return np.column_stack([p["displacement"] * asked, c["drive_displacement"] * asked, boost])
+
+
+def _along(points: tuple[tuple[float, float], ...], constant: float, time: FloatArray) -> FloatArray:
+    if not points:
+        return np.full(len(time), constant)
+    return np.interp(time, [point[0] for point in points], [point[1] for point in points])
 
 
 def _profile_points(scenario: Scenario, full_speed: float) -> list[tuple[float, float]]:

@@ -1,5 +1,6 @@
 """Scenarios: what happens to the simulated winch, from YAML, checked by pydantic."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -23,13 +24,21 @@ from winch_friction.simulation.quantities import (
 )
 
 SCHEMA = "winch_friction.scenario/1"
+Steps = tuple[tuple[float, float], ...]
 
 
-def _corners(content: Any) -> Any:
-    """Corner points [[time, speed], ...]; the speed may carry a unit."""
-    if not isinstance(content, (list, tuple)) or any(not isinstance(p, (list, tuple)) or len(p) != 2 for p in content):
-        raise ValueError("must be a list of [time s, speed] pairs")
-    return tuple((as_quantity(t, "s", "time"), as_quantity(v, "rad/s", "speed")) for t, v in content)
+def _steps(unit: str) -> Callable[[Any], Any]:
+    """Reader of [[time, value], ...] with values in `unit`."""
+
+    def read(content: Any) -> Any:
+        pairs = isinstance(content, (list, tuple)) and all(
+            isinstance(p, (list, tuple)) and len(p) == 2 for p in content
+        )
+        if not pairs:
+            raise ValueError(f"must be a list of [time s, value in {unit}] pairs")
+        return tuple((as_quantity(t, "s", "time"), as_quantity(v, unit, "value")) for t, v in content)
+
+    return read
 
 
 def _speeds(content: Any) -> Any:
@@ -68,7 +77,7 @@ class Profile(Strict):
     as speeds or as shares of the pump's flow.
     """
 
-    points: Annotated[tuple[tuple[float, float], ...], BeforeValidator(_corners)] = ()
+    points: Annotated[Steps, BeforeValidator(_steps("rad/s"))] = ()
     plateaus: Annotated[tuple[float, ...], BeforeValidator(_speeds)] = ()
     pump_shares: tuple[Annotated[float, Field(gt=0.0, le=1.0)], ...] = ()
     hold: Seconds = Field(default=8.0, gt=0.0)
@@ -142,6 +151,8 @@ class Scenario(Strict):
     drive: Literal["primary", "secondary"] = "primary"
     load: Kilograms = Field(gt=0.0, le=400000.0)
     displacement: Displacement = Field(gt=0.0)
+    displacement_schedule: Annotated[Steps, BeforeValidator(_steps("m^3/rad"))] = ()
+    boost_schedule: Annotated[Steps, BeforeValidator(_steps("Pa"))] = ()
     passive_displacement: Displacement | None = None
     wire_layer: int = Field(default=6, ge=1)
     wire_out: Metres = Field(default=50.0, gt=1.0)

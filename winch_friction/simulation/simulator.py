@@ -10,7 +10,13 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import FloatArray, GroupSample, Run, Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.simulation.assembly import control_record, plant_record, prescribed_motion, viscous_parameters
+from winch_friction.simulation.assembly import (
+    control_record,
+    plant_record,
+    prescribed_motion,
+    schedule,
+    viscous_parameters,
+)
 from winch_friction.simulation.control.settings import CONTROL_STATES
 from winch_friction.simulation.hidden.catalogue import apply_effects
 from winch_friction.simulation.plant.friction_kernel import friction_kernel
@@ -67,6 +73,7 @@ class Simulator:
         sensors, controller = (np.random.default_rng([seed, stream]) for stream in (1, 2))
         time = np.arange(self.periods + 1, dtype=np.float64) * self.period
         self.motion = prescribed_motion(self.scenario, self.crane, time, seed, self._full_speed())
+        self._schedule = schedule(self.scenario, time, self._plant, self._control)
         self._scans = draw_scans(self.scenario, self.channels, sensors)
         self._noise = controller.standard_normal((self.periods + 1, 2))
 
@@ -91,8 +98,8 @@ class Simulator:
             viscous_parameters(self.model), nominal.copy(), terms, np.zeros(2 * len(terms)), self._memory, self._x,
             self._state, np.zeros((5, len(STATES))), np.zeros(CONTROL_STATES), np.zeros(4),
             np.array([step, settings.pressure_noise if settings.noise else 0.0, self.period]), self._noise,
-            np.ascontiguousarray(self.motion.tip), self.motion.reference, self.motion.oil, self.feedforward,
-            self.history, max(1, round(self.period / self.scenario.step)),
+            self._schedule, np.ascontiguousarray(self.motion.tip), self.motion.reference, self.motion.oil,
+            self.feedforward, self.history, max(1, round(self.period / self.scenario.step)),
         )  # fmt: skip
         self.tick = 0
         self._scan = 0

@@ -68,16 +68,18 @@ def pressure_difference(p, state):
 @compiled
 def run_periods(
     first, count, p, hidden, c, addresses, nominal, viscous, theta, z, gains, memory, x, state, stages, control_memory,
-    measured, sensing, noise, motion, reference, oil, feedforward, history, substeps,
+    measured, sensing, noise, schedule, motion, reference, oil, feedforward, history, substeps,
 ):  # fmt: skip
     """Advance `count` control periods from number `first`.
 
+    `schedule` (periods + 1, 3): displacement, the controller's, boost pressure;
     `motion` (periods + 1, 4): tip height, speed, acceleration, water surface; `reference` (periods + 1, 4): shaft
     angle, speed, acceleration, load target in m; `history` (periods + 1, len(COLUMNS)): filled from row `first + 1`.
     """
     period = c.period
     for k in range(first, first + count):
         time = k * period
+        p.displacement, c.drive_displacement, p.boost_pressure = schedule[k, 0], schedule[k, 1], schedule[k, 2]
         scale_viscous(p, nominal, viscous, theta, oil[k])
         sense(p, sensing, state, measured, noise[k])
         command = control(c, control_memory, reference[k], measured, feedforward[k])

@@ -56,9 +56,9 @@ def extras(truth: FrictionModel, quick: bool) -> str:
     )
 
 
-LIMIT_CYCLES = """Noise off, bristle (Dahl) friction in the plant, the true model at scale 1.08, reference speed. *Calming*:
-a sea of 1.5 m / 10 s that fades to rest; *swell*: 2 cm, 20 s. Speed RMS over the last 60 s; the bar is 1.5 times that
-without feedforward (a speed below 0.01 rad/s, 0.1 rpm, counts as rest)."""
+LIMIT_CYCLES = """Noise off, bristle (Dahl) friction in the plant, the true model at scale 1.08, reference speed.
+*Calming*: a sea of 1.5 m / 10 s that fades to rest; *swell*: 2 cm, 20 s. Speed RMS over the last 60 s; the bar is
+1.5 times that without feedforward (a speed below 0.01 rad/s, 0.1 rpm, counts as rest)."""
 REST = 0.01  # rad/s
 
 

@@ -90,7 +90,7 @@ def study(seed: int, restarts: int = 3) -> dict[str, Any]:
         "coverage": _coverage(found, given),
         "loops": {"fitted": [loop.cost for loop in found.loops], "held_out": list(found.held_out_costs)},
         "fits": {name: (fit.cost, fit.evaluations) for name, fit in found.fits.items()},
-        "ahc": _ahc(models, given),
+        "ahc": _ahc(models, given, found.joint.sensor_errors["displacement_scale"][0]),
         "consistency": {
             "sensors exact": consistency(winch_seed(found, given.crane, "seed", {}), given, SensorErrors()),
             "sensors with errors": consistency(winch_seed(found, given.crane, "seed", {}), given, given.errors),
@@ -133,13 +133,16 @@ def _coverage(found: SystemIdentification, given: Case) -> dict[str, float]:
     return {name: float(row @ difference / np.sqrt(row @ model.covariance @ row)) for name, row in rows.items()}
 
 
-def _ahc(models: dict[str, FrictionModel], given: Case) -> dict[str, dict[str, tuple[float, float]]]:
-    """RMS of the predicted pressure, turning and over the whole run, bar."""
+def _ahc(models: dict[str, FrictionModel], given: Case, scale: float) -> dict[str, dict[str, tuple[float, float]]]:
+    """RMS of the predicted pressure, turning and over the whole run, bar; `scale` as the joint fit found it."""
     results: dict[str, dict[str, tuple[float, float]]] = {}
     for k, (name, cm3) in enumerate(AHC.items()):
         scenario = ahc_scenario(name, cm3, given.errors)
         run = simulate(scenario, given.crane, given.truth, given.seed * 100 + 50 + k).run
-        checks = {model: pressure_check(run, given.crane, each) for model, each in models.items()}
+        scales = {"joint fit": scale}
+        checks = {
+            model: pressure_check(run, given.crane, each, scales.get(model, 0.0)) for model, each in models.items()
+        }
         results[name] = {model: (check.moving_rms / BAR, check.rms / BAR) for model, check in checks.items()}
     return results
 

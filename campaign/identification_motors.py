@@ -39,7 +39,9 @@ def recovery(motor: int) -> dict[str, Any]:
     return {
         "motor": motor,
         "deviation": {n: 100.0 * (model.value(n) / truth.value(n) - 1.0) for n in model.parameter_names},
-        "sigmas": {n: (v - truth.value(n)) / s for n, v, s in zip(model.parameter_names, model.values, model.std)},
+        "sigmas": {
+            n: (v - truth.value(n)) / s for n, v, s in zip(model.parameter_names, model.values, model.std, strict=True)
+        },
         "worst_high_displacement": float(error[high].max()),
         "worst": float(error.max()),
     }

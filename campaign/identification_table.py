@@ -16,12 +16,13 @@ def page(results: dict[str, Any]) -> str:
     """The whole page as Markdown."""
     parts = [
         "# Identification campaign",
-        f"`{results['command']}` · commit {_commit()} · {datetime.now(UTC):%Y-%m-%d} · {results['seconds']:.0f} s on one "
-        f"core · {len(results['cranes'])} cranes (seeds {results['cranes'][0]['seed']} and following, not used in "
+        f"`{results['command']}` · commit {_commit()} · {datetime.now(UTC):%Y-%m-%d} · {results['seconds']:.0f} s on "
+        f"one core · {len(results['cranes'])} cranes (seeds {results['cranes'][0]['seed']} and following, not used in "
         "development)",
-        "Bars are those of the project's issue on identification. A crane of its own per seed: every parameter of crane 2 "
+        "A crane of its own per seed: every parameter of crane 2 "
         "moved by the spread between units, sensors with systematic errors (displacement 1 %, pressure 0.25 % and "
-        "0.75 bar, one sigma), noise, quantisation. Supplier's table: generated, with a low-displacement loss MJ4 lacks.",
+        "0.75 bar, one sigma), noise, quantisation. Supplier's table: generated, with a low-displacement loss that MJ4 "
+        "lacks.",
         "## Bars",
         _table(("bar", "required", "found", "met"), _bars(results)),
         "## MJ4 on tables whose truth is Table 1 of paper 2",
@@ -142,8 +143,8 @@ def _ranking(results: dict[str, Any]) -> str:
              f"{variable['cost']:.6g}", f"{variable['cost_complex']:.6g}", variable["evaluations"],
              variable["evaluations_complex"]]
         )  # fmt: skip
-    columns = ("model", "parameters", "fixed: RMS N·m", "variable: RMS", "held-out displacement: RMS", "variable: cost LS",
-               "cost complex", "evaluations LS", "evaluations complex")  # fmt: skip
+    columns = ("model", "parameters", "fixed: RMS N·m", "variable: RMS", "held-out displacement: RMS",
+               "variable: cost LS", "cost complex", "evaluations LS", "evaluations complex")  # fmt: skip
     rows.sort(key=lambda row: row[3])
     return f"Motor of 280 cm³/rev, table {last}, equal weights (the papers' cost).\n\n" + _table(columns, rows)
 
@@ -173,14 +174,15 @@ def _claims(results: dict[str, Any]) -> str:
     return _table(("paper 1", "generated tables", "RMS"), rows) + "\n\n" + _WHY
 
 
-_WHY = """Why they agree and where they cannot be compared: the generated tables are MJ4 plus a small loss at low displacement, so
-MJ4 and its supersets MJ5 and MJ6 must lead; that Figs 4 and 5 agree is therefore no independent confirmation of paper 1.
-What the tables do test: Wilson, Schlösser and Jeong read no displacement and fail for variable displacement whatever the
-truth; Thoma is the best of the old ones because its inertia term has the right D³ w²; Ortwig and the reconstructed Huhtala
-are at most bilinear in displacement and speed and miss D³ w², though they have 8 and 28 parameters. At fixed displacement MJ1
-equals Jeong, MJ2, MJ4 and MJ6 nearly coincide, Pacey is Wilson and Thoma is Schlösser, so only the groups can be ranked.
-The notch term (Jeong, MJ1, MJ6) gains nothing: the truth has none, as paper 1's MJ2 suggests for the real motors. Paper 1
-prints no numbers with its figures, so only order and size words can be compared."""
+_WHY = """\
+Why they agree, and what cannot be compared. The generated tables are MJ4 plus a small low-displacement loss, so MJ4
+and its supersets MJ5 and MJ6 must lead: that Figs 4 and 5 agree is no independent confirmation of paper 1. What the
+tables do test: Wilson, Schlösser and Jeong read no displacement and fail for variable displacement whatever the
+truth; Thoma is the best of the old ones because its inertia term has the right D³ω²; Ortwig and the reconstructed
+Huhtala are at most bilinear in displacement and speed and miss D³ω², with 8 and 28 parameters. At fixed displacement
+MJ1 equals Jeong, MJ2, MJ4 and MJ6 nearly coincide, Pacey is Wilson and Thoma is Schlösser, so that only groups can be
+ranked. The notch term (Jeong, MJ1, MJ6) gains nothing: the truth has none. Paper 1 prints no numbers with its
+figures, so that only the order and its words can be compared."""
 
 
 def _cranes(cranes: list[dict[str, Any]]) -> str:
@@ -215,8 +217,8 @@ def _loop_text(cranes: list[dict[str, Any]]) -> str:
     counts = [len(c["loops"]["fitted"]) for c in cranes]
     return (
         f"Second loop: E on the fitted tests falls by {100 * np.median(gains):.0f} % (median; paper 2: 30 %) in "
-        f"{np.median(counts):.0f} loops. On the held-out tests it falls by {100 * np.median(changes):.0f} % (median) and "
-        f"rises, an over-fit, in {sum(change < 0 for change in changes)} of {len(changes)} seeds (worst: "
+        f"{np.median(counts):.0f} loops. On the held-out tests it falls by {100 * np.median(changes):.0f} % (median) "
+        f"and rises, an over-fit, in {sum(change < 0 for change in changes)} of {len(changes)} seeds (worst: "
         f"{-100 * min(changes):+.0f} %)."
     )
 

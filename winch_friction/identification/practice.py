@@ -149,6 +149,7 @@ def run_practice(
         complex_options=complex_options,
     )
     models = {"first loop": system.first_loop, "second loop": system.last_loop, "joint fit": system.joint.model}
+    scales = {"joint fit": system.joint.sensor_errors["displacement_scale"][0]}
     curves = [test.curve for test in (*system.tests, *system.held_out)]
     heaviest = max(system.tests, key=lambda test: (test.curve.load_torque * test.curve.displacement, test.run.name))
     return Practice(
@@ -159,6 +160,12 @@ def run_practice(
         seed=winch_seed(system, folder.crane, folder.name, provenance),
         map=BlackBoxMap(motor.table),
         errors={name: test_errors(model, curves) for name, model in models.items()},
-        normal_mode={name: pressure_check(heaviest.run, folder.crane, model) for name, model in models.items()},
-        ahc={name: [pressure_check(run, folder.crane, model) for run in folder.ahc] for name, model in models.items()},
+        normal_mode={
+            name: pressure_check(heaviest.run, folder.crane, model, scales.get(name, 0.0))
+            for name, model in models.items()
+        },
+        ahc={
+            name: [pressure_check(run, folder.crane, model, scales.get(name, 0.0)) for run in folder.ahc]
+            for name, model in models.items()
+        },
     )

@@ -1,7 +1,7 @@
 """Does the model hold on what it has not seen? Friction per test (paper 2 Fig 16, 17), pressures (Fig 18, 21, 23)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from scipy.signal import bilinear, lfilter, savgol_filter
 
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import GRAVITY, RPM
@@ -18,7 +19,7 @@ from winch_friction.physics.winch.operating_point import run_drum_torque
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
 _SMOOTHING = 0.2  # s, window of the winch's acceleration
-_WIRE_DAMPING = 0.04  # of critical, load on the wire: engineering judgement
+_WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judgement
 STANDSTILL = 3.0  # rad/s; below it friction lies anywhere within the break-away level, for any model without presliding
 
 
@@ -98,23 +99,42 @@ class PressureCheck:
         return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM]))
 
 
-def pressure_check(run: Run, crane: Crane, model: FrictionModel, width: float = 1.0) -> PressureCheck:
+def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_scale: float = 0.0) -> PressureCheck:
     """Predict the driving group's pressure drop from the torque balance: load, motion, passive side.
 
-    `width` rad/s smooths the direction at reversal. The driving group is `active` where there is one: it carries all
-    the friction, the passive motors' too.
+    The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
+    winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
+    relative error of the displacement feedback that a joint fit found for these motors.
     """
+    run = _with_true_displacement(run, displacement_scale)
     group = "active" if "active" in run.groups else run.groups[0]
+    if not np.any(np.abs(run["motor_speed"]) > STANDSTILL):
+        raise InputError(f"{run.name}: the winch never turns; there is no friction to verify")
     drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}
     drum_torque = run_drum_torque(run, crane)
     inertia, acceleration = inertia_torque(run, crane)
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
     capacity = crane.motor_count(group) * run[f"{group}.displacement"]
     predicted = held / capacity
+    moving = np.abs(run["motor_speed"]) > STANDSTILL
     for _ in range(4):  # the driving group's friction depends on its own pressure, weakly
-        points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration, width)
-        predicted = (held + np.asarray(model.torque(points))) / capacity
+        points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
+        friction = np.asarray(model.torque(points))
+        predicted = (held + _through_standstill(run.time, friction, moving)) / capacity
     return PressureCheck(run.name, group, run.time, run["motor_speed"], drop[group], predicted)
+
+
+def _with_true_displacement(run: Run, scale: float) -> Run:
+    corrected = {f"{group}.displacement": run[f"{group}.displacement"] / (1.0 + scale) for group in run.groups}
+    return replace(run, columns={**run.columns, **corrected})
+
+
+def _through_standstill(time: FloatArray, friction: FloatArray, moving: Any) -> FloatArray:
+    """Friction while moving, a straight line between; a run that starts at rest starts from none."""
+    knots, values = time[moving], friction[moving]
+    if not moving[0]:
+        knots, values = np.append(time[0], knots), np.append(0.0, values)
+    return np.interp(time, knots, values)
 
 
 def _other_groups(run: Run, crane: Crane, group: str, drop: dict[str, FloatArray]) -> Any:
@@ -123,7 +143,7 @@ def _other_groups(run: Run, crane: Crane, group: str, drop: dict[str, FloatArray
 
 
 def _points(
-    run: Run, crane: Crane, drop: dict[str, FloatArray], drum_torque: FloatArray, acceleration: FloatArray, width: float
+    run: Run, crane: Crane, drop: dict[str, FloatArray], drum_torque: FloatArray, acceleration: FloatArray
 ) -> tuple[Any, ...]:
     speed = _smooth(run, run["motor_speed"], 0)
     groups = [
@@ -131,7 +151,7 @@ def _points(
         for name, p in drop.items()
     ]
     return operating_point(
-        direction=np.tanh(speed / width),
+        direction=np.sign(speed),
         speed=speed,
         drum_torque=drum_torque,
         groups=groups,
@@ -157,8 +177,8 @@ def _load_acceleration(run: Run, crane: Crane, wire_speed: FloatArray) -> FloatA
     length = float(np.mean(run.column("wire_out")))
     if not (np.isfinite(length) and np.isfinite(crane.wire_stiffness)):
         return _smooth(run, wire_speed, 1)
-    natural = np.sqrt(crane.wire_stiffness / length / float(np.mean(run["hook_load"])))
-    rest = [2.0 * _WIRE_DAMPING * natural, natural**2]
+    mass = float(np.mean(run["hook_load"]))
+    rest = [_WIRE_DAMPING / mass, crane.wire_stiffness / length / mass]
     numerator, denominator = bilinear([*rest, 0.0], [1.0, *rest], fs=1.0 / _step(run))
     return np.asarray(lfilter(numerator, denominator, wire_speed))
 

@@ -116,7 +116,8 @@ def _ahc_html(practice: Practice) -> str:
         paragraph(
             "The active group's pressure drop from load, motion and the measured passive side; it carries the "
             f"friction of all motors. Turning: |ω| above {STANDSTILL / RPM:.0f} rpm; at standstill friction lies "
-            "anywhere within the break-away level. Paper 2: within about 10 of 130 bar."
+            "anywhere within the break-away level. The joint fit's displacement error is taken out of its prediction. "
+            "Paper 2: within about 10 of 130 bar."
         )
         + table_html(_COLUMNS, _check_rows(practice.ahc), digits=3)
         + figures

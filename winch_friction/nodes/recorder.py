@@ -48,7 +48,7 @@ class Recorder:
         self._subscriptions["/clock"] = node.create_subscription(
             Clock, "/clock", print, RECORDING, callback_group=self._group
         )
-        self._now = 0  # ns of the simulated clock
+        self._now = self._last = 0  # ns: the simulated clock, the last receipt written
         self.counts: Counter[str] = Counter()
 
     def hears(self, *topics: str) -> bool:
@@ -67,7 +67,8 @@ class Recorder:
             if topic == "/clock":
                 self._now = message.clock.sec * 1_000_000_000 + message.clock.nanosec
             else:
-                self._writer.write_raw(topic, self._types[topic], message, self._now or sent)
+                self._last = max(self._now or sent, self._last + 1)  # one after the other, also within one tick
+                self._writer.write_raw(topic, self._types[topic], message, self._last)
                 self.counts[topic] += 1
 
     def _subscribe(self, topic: str, type_name: str) -> Any:

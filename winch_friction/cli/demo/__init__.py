@@ -152,7 +152,7 @@ def _show(plan: Any, results: dict[str, Any]) -> None:
         ]
         for each in phases
     ]
-    title = f"Residual heave and friction-torque error, {plan.scenario}, sea {plan.sea}, plant friction x {plan.friction_factor:g}"
+    title = f"Residual heave and error of the friction torque: {plan.scenario}, sea {plan.sea}"
     show_table(title, ("feedforward", "heave RMS [mm]", "less", *bins), rows)
     worst = max(each["difference"] for each in results["live_equals_replay"])
     speed = results["simulated_seconds"] / results["elapsed_seconds"]

@@ -34,15 +34,15 @@ def sections(
 
 
 _CAPTION = (
-    "Top: position error of the load over the last half minute of each phase, the same waves in each. Middle: the plant's "
-    "true friction and the feedforward as sent. Bottom: error of the model behind the feedforward."
+    "Top: position error of the load over the last half minute of each phase, the same waves in each. Middle: the "
+    "plant's true friction and the feedforward as sent. Bottom: error of the model behind the feedforward."
 )
 
 
 def _story(plan: DemoPlan) -> str:
     words = (
-        f"A simulated 150 t crane ({plan.scenario}, sea {plan.sea}) compensates heave while its friction is held against it: "
-        f"the plant's gears and drum turn {plan.friction_factor:g} times as hard as the seed model says, and nobody tells the "
+        f"A simulated 150 t crane ({plan.scenario}, sea {plan.sea}) compensates heave against its friction: the plant's "
+        f"gears and drum turn {plan.friction_factor:g} times as hard as the seed model says, and nobody tells the "
         "nodes. Simulator, compensator and estimator are three processes that talk over DDS in lockstep. "
         f"The same {plan.duration:g} s of sea were sailed four times; the estimator learned all along. "
         "All figures were measured from the recorded bag, the first 20 s of each phase left out."

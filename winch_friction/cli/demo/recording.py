@@ -61,8 +61,8 @@ def read_recording(plan: DemoPlan) -> Recording:
                 rows[topic].append(_row(topic, message))
             elif (sample := stream.take(sources[topic], message, receipt)) is not None:
                 samples.append(sample)
-    arrays = [np.array(rows[topic]) for topic in (TRUTH, COMPENSATOR, ESTIMATOR)]
-    return Recording(samples, *arrays, rows[MODEL])
+    truth, fed, learned = (np.array(rows[topic]) for topic in (TRUTH, COMPENSATOR, ESTIMATOR))
+    return Recording(samples, truth, fed, learned, rows[MODEL])
 
 
 def _row(topic: str, message: Any) -> Any:

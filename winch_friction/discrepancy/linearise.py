@@ -36,7 +36,7 @@ def expand_at_seed(
 
 def expand_around(
     runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], before: Expansion,
-    explanation: Explanation, candidates: Sequence[Candidate],
+    explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False,
 ) -> Expansion:  # fmt: skip
     """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
     base = before.layout.base
@@ -45,7 +45,14 @@ def expand_around(
     bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
     model = seed.with_values(list(np.clip(values, bounds[:, 0], bounds[:, 1])))
     prepared = tuple(
-        prepare(run, crane, model, loads.get(run.name, float("nan")), missing_torque(old, before.layout, explanation))
+        prepare(
+            run,
+            crane,
+            model,
+            loads.get(run.name, float("nan")),
+            missing_torque(old, before.layout, explanation),
+            turning,
+        )
         for run, old in zip(runs, before.runs, strict=True)
     )
     return Expansion(prepared, layout_of(base_of(seed, model), candidates, prepared, seed), model)

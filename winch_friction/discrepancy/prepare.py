@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
+from winch_friction.discrepancy.travel import resolution, travel_of
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -20,7 +21,8 @@ from winch_friction.physics.winch import Crane, operating_point
 from winch_friction.physics.winch.operating_point import run_drum_torque
 
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
-GUARD_SAMPLES = 8  # kept away from a reversal on both sides, half a smoothing window
+FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
+GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoothing window
 MIN_SAMPLES = 100
 MIN_DISPLACEMENT_SHARE = 0.05
 FIXED_POINT_STEPS = 3
@@ -67,7 +69,6 @@ class PreparedRun:
     constants: tuple[tuple[str, float], ...]  # for the candidates' equations
     unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
     moving: np.ndarray
-    turning: np.ndarray
     valid: np.ndarray
     present: frozenset[str]  # columns that the file had
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
@@ -79,12 +80,18 @@ class PreparedRun:
 
 
 def prepare(
-    run: Run, crane: Crane, model: FrictionModel, load: float = float("nan"), missing_torque: FloatArray | float = 0.0
+    run: Run,
+    crane: Crane,
+    model: FrictionModel,
+    load: float = float("nan"),
+    missing_torque: FloatArray | float = 0.0,
+    turning: bool = False,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
     `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that the predicted
-    pressure comes close to the true one.
+    pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples just after
+    reversals instead of the moving ones.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     columns, dt, valid = _uniform(run)
@@ -98,14 +105,16 @@ def prepare(
     else:
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (raw_speed[1:] + raw_speed[:-1])) * dt])
     guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw_speed) / np.sqrt(window / 3.0))
-    still = np.abs(speed) <= guard
-    moving = ~dilated(still, max(GUARD_SAMPLES, window // 2 + 1))
-    turning = ~moving & ~_long(still, int(0.6 / dt) + 1)
-    state_speed = np.where(np.abs(speed) > guard / 8.0, speed, 0.0)
+    # a short touch of zero hides in the smoothed speed
+    still = (np.abs(speed) <= guard) | (np.abs(smooth(raw_speed, 5, 1)) <= guard)
+    moving = ~dilated(still, window // 2 + GUARD_SAMPLES)
+    direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
+    state_speed = np.where(direction != 0.0, speed, 0.0)
+    if turning:
+        direction, state_speed, moving = _just_reversed(angle, raw_speed, speed, guard, dt)
     static, load_side = _load(run, columns, crane, load, acceleration, window, dt, size)
     mass, radius, drum_torque, load_acceleration = load_side
     inertial = crane.inertia * acceleration + mass * radius / crane.gear_ratio * load_acceleration
-    direction = np.sign(state_speed)
     extra = _optional(columns, angle, run.time[0], size)
     measured, groups, point, predicted, jacobian, unit = _balance(
         columns,
@@ -129,7 +138,7 @@ def prepare(
         name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
-        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, turning=turning & valid, valid=valid,
+        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
 
@@ -177,13 +186,18 @@ def _motor_speed(run: Run, columns: Mapping[str, FloatArray], crane: Crane) -> F
     raise InputError(f"{run.name}: neither 'motor_speed' nor 'drum_speed' holds values; one of them is needed")
 
 
-def _long(mask: np.ndarray, samples: int) -> np.ndarray:
-    """The stretches of a mask that last at least so many samples."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-    out = np.zeros(len(mask), bool)
-    for begin, end in zip(edges[::2], edges[1::2], strict=True):
-        out[begin:end] = end - begin >= samples
-    return out
+def _just_reversed(angle, raw_speed, speed, guard, dt):  # type: ignore[no-untyped-def]
+    """Direction, speed of the travel and the samples whose contact has begun to slide but not gone far."""
+    least = resolution(raw_speed, dt)
+    direction, travel, progress = travel_of(angle, least)
+    top = float(np.percentile(np.abs(speed), 99))
+    turned = np.flatnonzero(np.diff(direction) != 0.0) + 1
+    since = (
+        np.arange(len(angle)) - np.concatenate([[0], turned])[np.searchsorted(turned, np.arange(len(angle)), "right")]
+    )
+    near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
+    near &= (direction != 0.0) & (direction * speed > guard / 8.0)
+    return direction, direction * progress / dt, near
 
 
 def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: ignore[no-untyped-def]

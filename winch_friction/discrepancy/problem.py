@@ -158,8 +158,7 @@ def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "mo
     size = BLOCK_SAMPLES if regime == "moving" else 1
     tables: list[RunBlocks] = []
     for run in runs:
-        mask = run.moving if regime == "moving" else run.turning
-        table = run_blocks(run, layout.regressors(run), mask, size, length)
+        table = run_blocks(run, layout.regressors(run), run.moving, size, length)
         tables.append(
             table if "hook_load" in run.present or not run.groups else _weightless(table, layout.base.parameters)
         )

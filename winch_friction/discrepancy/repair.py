@@ -5,12 +5,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.optimize import least_squares
 
 from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.linearise import Expansion
 from winch_friction.discrepancy.problem import PRIOR_WEIGHT
+from winch_friction.discrepancy.turning import TurningFinding
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.signals import FloatArray
@@ -81,6 +83,25 @@ def repair(
     if corrections:
         notes["measurement_corrections"] = corrections
     return Repair(FrictionModel(**{**_fields(model), "provenance": notes}), parameters)
+
+
+def with_turning(model: FrictionModel, finding: TurningFinding) -> tuple[FrictionModel, dict[str, Estimate]]:
+    """The model with an effect that shows only after reversals; its amplitudes are independent of the other parameters."""
+    term = finding.slot.candidate.term
+    problem = finding.cross.problem
+    columns = problem.columns(finding.fitted.slots)
+    where = [columns.index(c) for c in finding.slot.columns]
+    scale = problem.scales[list(finding.slot.columns)]
+    std = np.sqrt(np.diag(covariance_of(finding.cross, finding.fitted)))[where] * scale
+    own = _estimates(finding.slot, finding.fitted.beta[where] * scale, std)
+    if term is None or term.name in model.term_names:
+        return model, own
+    old = model.covariance if model.covariance is not None else np.diag(np.full(len(model.values), 1e-12))
+    added = [own[p.name] for p in term.parameters]
+    covariance = block_diag(old, np.diag([max(each.std, 1e-12) ** 2 for each in added]))
+    values = (*model.values, *(float(np.clip(own[p.name].value, p.lower, p.upper)) for p in term.parameters))
+    fields = _fields(model) | {"terms": (*model.terms, term), "values": values, "covariance": covariance}
+    return FrictionModel(**fields), own
 
 
 def _fields(model: FrictionModel) -> dict[str, Any]:

@@ -13,11 +13,39 @@ from winch_friction.discrepancy.omnibus import Dependence
 from winch_friction.discrepancy.prepare import PreparedRun
 from winch_friction.discrepancy.regions import Region
 from winch_friction.discrepancy.repair import Estimate
-from winch_friction.discrepancy.selection import Considered, Found
+from winch_friction.discrepancy.selection import Considered
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 
 SCHEMA = "winch_friction.gap/1"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One missing effect as it is reported; `gain` is the relative reduction of the held-out error where it shows."""
+
+    name: str
+    rivals: tuple[str, ...]
+    variant: str
+    law: str
+    parameters: Mapping[str, Estimate]
+    p_value: float
+    gain: float
+    selection_frequency: float
+    where: str = "moving"
+
+    def content(self) -> dict[str, Any]:
+        """The entry of `effects` in gap.json."""
+        return {
+            "name": self.name,
+            "indistinguishable_from": list(self.rivals),
+            "parameters": {k: {"value": e.value, "std": e.std, "unit": e.unit} for k, e in self.parameters.items()},
+            "variant": self.variant,
+            "evidence": {
+                "p_value": self.p_value, "cv_gain": self.gain, "selection_frequency": self.selection_frequency,
+                "where": self.where,
+            },
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -40,8 +68,7 @@ class GapResult:
 
     verdict: str
     refused: str
-    found: tuple[Found, ...]
-    parameters: Mapping[str, Mapping[str, Estimate]]
+    effects: tuple[Effect, ...]
     regions: tuple[Region, ...]
     unit: str
     train: Side
@@ -61,7 +88,7 @@ class GapResult:
         return {
             "schema": SCHEMA,
             "verdict": self.verdict,
-            "effects": [self._effect(found) for found in self.found],
+            "effects": [effect.content() for effect in self.effects],
             "regions": [
                 {"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual} for r in self.regions
             ],
@@ -88,20 +115,6 @@ class GapResult:
                  "outcome": c.verdict} for c in self.considered
             ],
             "notes": list(self.notes),
-        }  # fmt: skip
-
-    def _effect(self, found: Found) -> dict[str, Any]:
-        name = found.slot.candidate.name
-        return {
-            "name": name,
-            "indistinguishable_from": [rival.candidate.name for rival in found.rivals],
-            "parameters": {
-                key: {"value": e.value, "std": e.std, "unit": e.unit} for key, e in self.parameters.get(name, {}).items()
-            },
-            "variant": found.slot.variant.label,
-            "evidence": {
-                "p_value": found.p_value, "cv_gain": found.gain, "selection_frequency": found.selection_frequency,
-            },
         }  # fmt: skip
 
 

@@ -1,26 +1,29 @@
 """Locate, name, add, prove: the whole workflow on runs in memory."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from winch_friction.discrepancy.blocks import Blocks
-from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.candidate import Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.holdout import lock_holdout, rms_with_interval
+from winch_friction.discrepancy.holdout import Split, lock_holdout, rms_with_interval
 from winch_friction.discrepancy.linearise import Expansion, expand_around, expand_at_seed
 from winch_friction.discrepancy.loads import estimated_loads
 from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence, dependences, remainder
 from winch_friction.discrepancy.problem import Problem, base_of, build_problem, layout_of
 from winch_friction.discrepancy.regions import find_regions
-from winch_friction.discrepancy.repair import repair
-from winch_friction.discrepancy.result import GapResult, Side, relative_error
-from winch_friction.discrepancy.selection import Selection, select
-from winch_friction.discrepancy.verdict import NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.repair import Estimate, repair, with_turning
+from winch_friction.discrepancy.result import Effect, GapResult, Side, relative_error
+from winch_friction.discrepancy.ripple import Ripple
+from winch_friction.discrepancy.selection import Found, Selection, select
+from winch_friction.discrepancy.side_findings import find_ripple, leakage_effect, ripple_effect, without_ripple
+from winch_friction.discrepancy.turning import TurningFinding, search_turning
+from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
@@ -48,32 +51,108 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     _check(runs, options)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
+    search = _search(split, crane, model, options, rng)
+    return _assemble(split, crane, model, options, search, rng)
+
+
+@dataclass(frozen=True)
+class _Search:
+    """What the training runs gave."""
+
+    at_seed: Expansion
+    expansion: Expansion
+    cross: CrossFit
+    selection: Selection
+    left: tuple[Dependence, ...]
+    verdict: Verdict
+    turning: TurningFinding | None
+    side: tuple[Effect, ...]
+    untestable: tuple[Untestable, ...]
+    loads: Mapping[str, float]
+
+    @property
+    def explanation(self) -> Explanation:
+        """The effects that the verdict stands by."""
+        return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
+
+
+def _search(split: Split, crane: Crane, model: FrictionModel, options: GapOptions, rng: np.random.Generator) -> _Search:
     loads = estimated_loads(split.runs, crane, model)
     prepared = expand_at_seed(split.runs, crane, model, loads)
+    training = [(r, p) for r, p in zip(split.runs, prepared, strict=True) if r.name in split.train]
+    own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
+    ripple = find_ripple(own_runs, own_prepared, crane)
     usable, blind = testable(options.candidates or all_candidates(options.effects_file), prepared, model)
     candidates = [each for each in usable if each.regime == "moving"]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
-    cross = at_seed.cross(split.train)
+    cross = _cleaned(at_seed, ripple).cross(split.train)
     first = select(cross, rng, 1)
     expansion = expand_around(split.runs, crane, model, loads, at_seed, first.final, candidates)
+    expansion = _cleaned(expansion, ripple)
     cross = expansion.cross(split.train)
     selection = select(cross, rng)
     left = dependences(cross, remainder(cross, selection.final), rng)
     verdict = decide(cross, selection, left)
     if verdict.kind == UNEXPLAINED:
         left = dependences(cross, remainder(cross, selection.base), rng)
-    explanation = selection.final if verdict.kind not in (UNEXPLAINED, NOTHING) else selection.base
+    kept = selection.base if verdict.kind in (UNEXPLAINED, NOTHING) else selection.final
+    turning = None
+    if verdict.kind != UNEXPLAINED:
+        turning = search_turning(split.runs, crane, model, loads, expansion, kept, usable, split.train, rng)
+    leakage = leakage_effect(own_runs, own_prepared)
+    side = ([ripple_effect(ripple)] if ripple else []) + ([leakage] if leakage else [])
+    if verdict.kind == NOTHING and (turning or side):
+        verdict = Verdict(MISSING)
+    return _Search(
+        at_seed, expansion, cross, selection, tuple(left), verdict, turning, tuple(side), tuple(blind), loads
+    )
+
+
+def _cleaned(expansion: Expansion, ripple: Ripple | None) -> Expansion:
+    if ripple is None:
+        return expansion
+    return replace(expansion, runs=tuple(without_ripple(run, ripple) for run in expansion.runs))
+
+
+def _assemble(
+    split: Split, crane: Crane, model: FrictionModel, options: GapOptions, search: _Search, rng: np.random.Generator
+) -> GapResult:
+    cross, selection, verdict = search.cross, search.selection, search.verdict
+    explanation = search.explanation
     found = selection.found if explanation is selection.final else ()
-    repaired = repair(model, expansion, cross, explanation, _provenance(split.train, verdict, options))
-    train = _side(at_seed, expansion, split.train, explanation, rng)
-    holdout = _side(at_seed, expansion, split.holdout, explanation, rng)
+    notes = _provenance(split.train, verdict, options)
+    repaired = repair(model, search.expansion, cross, explanation, notes)
+    effects = [_effect(each, repaired.parameters) for each in found]
+    final_model = repaired.model
+    if search.turning is not None:
+        final_model, parameters = with_turning(repaired.model, search.turning)
+        effects.append(_turning_effect(search.turning, parameters))
+    train = _side(search.at_seed, search.expansion, split.train, explanation, rng)
+    holdout = _side(search.at_seed, search.expansion, split.holdout, explanation, rng)
+    unexplained = verdict.kind == UNEXPLAINED
     return GapResult(
-        verdict=verdict.kind, refused=verdict.refused, found=found, parameters=repaired.parameters,
+        verdict=verdict.kind, refused=verdict.refused, effects=(*effects, *search.side),
         regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base))),
         unit="N*m" if crane.electric else "bar", train=train, holdout=holdout,
-        depends=_named(left) if verdict.kind == UNEXPLAINED else (),
+        depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
-        untestable=tuple(blind), model=repaired.model, seed_model=model, notes=_notes(split.runs, loads),
+        untestable=search.untestable, model=final_model, seed_model=model, notes=_notes(split.runs, search.loads),
+    )  # fmt: skip
+
+
+def _effect(found: Found, parameters: Mapping[str, Mapping[str, Estimate]]) -> Effect:
+    candidate = found.slot.candidate
+    return Effect(
+        candidate.name, tuple(rival.candidate.name for rival in found.rivals), found.slot.variant.label, candidate.law,
+        parameters.get(candidate.name, {}), found.p_value, found.gain, found.selection_frequency,
+    )  # fmt: skip
+
+
+def _turning_effect(turning: TurningFinding, parameters: Mapping[str, Estimate]) -> Effect:
+    candidate = turning.slot.candidate
+    return Effect(
+        candidate.name, (), turning.slot.variant.label, candidate.law, parameters, turning.p_value, turning.gain, 1.0,
+        "just after reversals",
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from winch_friction.physics.signals import FloatArray
 
 Shape = Mapping[str, float]
 Columns = Callable[[PreparedRun, Shape], FloatArray]
+Shapes = Callable[[Sequence[PreparedRun]], "list[Variant]"]
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Candidate:
     law: str
     linear: tuple[Parameter, ...]
     columns: Columns
-    shapes: Callable[[Sequence[PreparedRun]], list[Variant]]
+    shapes: Shapes
     kind: str = "friction"
     needs: tuple[str, ...] = ()
     presumes: tuple[str, ...] = ()

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from winch_friction.discrepancy.candidates.accumulator import accumulator_candidates
 from winch_friction.discrepancy.candidates.candidate import Candidate, Untestable
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates
@@ -13,15 +14,14 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
 
 # these leave the torque balance at the motor shaft closed, whatever their size
-BLIND_SPOTS = (
-    Untestable("slip_leakage", r"C\,p/\mu", "pump flow", "lost flow changes the speed that is measured, not the torque"),
-    Untestable("entrained_air", r"K(p)", "pump flow", "a softer oil column changes the flow, not the torque"),
-)  # fmt: skip
+LOST_FLOW = Untestable("slip_leakage", r"C\,p/\mu", "speed_reference", "lost flow shows only against a commanded speed")
+SOFT_OIL = Untestable("entrained_air", r"K(p)", "pump flow", "a softer oil column changes the flow, not the torque")
+ONE_SIDE = Untestable("accumulator_thermal", r"p V^n", "a passive motor group", "no run has one")
 
 
 def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
     """Every candidate, with those that a user's file registers as terms; a clash of names raises `InputError`."""
-    found = [*shipped_friction(), *signal_candidates(), *geometry_candidates()]
+    found = [*shipped_friction(), *signal_candidates(), *accumulator_candidates(), *geometry_candidates()]
     if effects_file is not None:
         found += [friction_candidate(term) for term in load_file(Path(effects_file))]
     names = [each.name for each in found]
@@ -37,8 +37,15 @@ def testable(
     """Split by the channels at hand and by what the model already has."""
     present = frozenset.intersection(*(run.present for run in runs))
     hydraulic = any(run.groups for run in runs)
-    usable, blind = [], list(BLIND_SPOTS if hydraulic else ())
+    several = any(len(run.groups) > 1 for run in runs)
+    usable: list[Candidate] = []
+    blind = [SOFT_OIL] if hydraulic else []
+    if hydraulic and not any("speed_reference" in run.present for run in runs):
+        blind.append(LOST_FLOW)
     for each in candidates:
+        if each.name == ONE_SIDE.name and not several:
+            blind += [ONE_SIDE] if hydraulic else []
+            continue
         missing = [name for name in each.needs if name not in present]
         if each.presumes and not set(each.presumes) & set(model.term_names):
             continue

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from scipy.signal import lfilter
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant, single_shape
+from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Variant, single_shape
 from winch_friction.discrepancy.prepare import GroupSignals, PreparedRun
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
@@ -24,10 +23,6 @@ p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="ze
 e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
-)
-c_T = Parameter("c_T", "1", 0.2, lower=-1.0, upper=1.0, doc="share of the compression that turns into heat and is lost")
-theta_0 = Parameter(
-    "theta_0", "1", 0.02, lower=-0.3, upper=0.3, doc="relative excess temperature of the gas at the start"
 )
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
@@ -75,29 +70,6 @@ def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
     ]
 
 
-def thermal_columns(run: PreparedRun, shape: Shape) -> FloatArray:
-    """What a passive pressure that was calculated from pV^n leaves out: the gas gives its heat of compression away.
-
-    The gas' logarithmic temperature follows its compression and decays with the time constant; the second column is the excess
-    temperature at the start of a run.
-    """
-    out = np.zeros((len(run.time), 2))
-    decay = np.exp(-run.time / shape["tau_gas"])
-    for g in run.groups:
-        if g.balances:
-            continue
-        pressure = np.maximum(g.pressure + g.low_pressure, 1e5)
-        compression = np.log(pressure / pressure[0])
-        keep = np.exp(-run.dt / shape["tau_gas"])
-        lost = lfilter([0.0, 1.0 - keep], [1.0, -keep], compression)
-        out += (g.count * g.displacement * pressure)[:, None] * np.column_stack([lost, -decay])
-    return out
-
-
-def _thermal_shapes(_: Sequence[PreparedRun]) -> list[Variant]:
-    return [Variant(f"tau = {tau:g} s", {"tau_gas": tau}) for tau in (20.0, 40.0, 70.0, 120.0, 240.0)]
-
-
 def _swivel(g: GroupSignals) -> FloatArray:
     return g.count * g.pressure
 
@@ -111,11 +83,14 @@ def delay_columns(run: PreparedRun, _: Shape) -> FloatArray:
 
 def signal_candidates() -> list[Candidate]:
     """Offset, gain, delay and displacement feedback."""
-    groups = {"shapes": group_shapes, "kind": "signal", "hydraulic": True}
+    scale, delay = r"e_p\sum_g n_g D_g\,\Delta p_g", r"\tau\,\dot M"
     return [
-        Candidate("pressure_offset", r"\sum_g n_g D_g\,p_0", (p_0,), partial(group_columns, _offset), **groups),  # type: ignore[arg-type]
-        Candidate("pressure_scale", r"e_p\sum_g n_g D_g\,\Delta p_g", (e_p,), scale_columns, _scale_shapes, kind="signal", hydraulic=True),
-        Candidate("accumulator_thermal", r"n_p D_p\,p\,(c_T\,\theta_\tau - \theta_0 e^{-t/\tau})", (c_T, theta_0), thermal_columns, _thermal_shapes, kind="signal", hydraulic=True),
-        Candidate("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", (D_0,), partial(group_columns, _swivel), **groups),  # type: ignore[arg-type]
-        Candidate("signal_delay", r"\tau\,\dot M", (tau,), delay_columns, single_shape, kind="signal"),
-    ]  # fmt: skip
+        _in_groups("pressure_offset", r"\sum_g n_g D_g\,p_0", p_0, partial(group_columns, _offset), group_shapes),
+        _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes),
+        _in_groups("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", D_0, partial(group_columns, _swivel), group_shapes),
+        Candidate("signal_delay", delay, (tau,), delay_columns, single_shape, kind="signal"),
+    ]
+
+
+def _in_groups(name: str, law: str, parameter: Parameter, columns: Columns, shapes: Shapes) -> Candidate:
+    return Candidate(name, law, (parameter,), columns, shapes, kind="signal", hydraulic=True)

@@ -1,0 +1,56 @@
+"""Effects that the block means of the torque balance cannot show: ripple over the angle and speed lost to leakage."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from winch_friction.discrepancy.flow_balance import lost_speed
+from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.repair import Estimate
+from winch_friction.discrepancy.result import Effect
+from winch_friction.discrepancy.ripple import Ripple, angle_ripple
+from winch_friction.physics.friction import term_named
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch import Crane
+
+
+def find_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
+    """A ripple over the shaft's angle that is there for sure."""
+    found = angle_ripple(runs, prepared, crane)
+    return found if found is not None and found.found else None
+
+
+def without_ripple(run: PreparedRun, ripple: Ripple) -> PreparedRun:
+    """The run with the periodic part of its gap taken out; its phase is the run's own."""
+    static = run.drum_torque / run.gear_ratio
+    wave = static[:, None] * np.column_stack([np.sin(ripple.order * run.angle), np.cos(ripple.order * run.angle)])
+    if not run.moving.any() or not np.any(static):
+        return run
+    beta, *_ = np.linalg.lstsq(wave[run.moving], run.gap[run.moving], rcond=None)
+    return replace(run, gap=run.gap - wave @ beta)
+
+
+def ripple_effect(ripple: Ripple) -> Effect:
+    """The ripple as an entry of the result; its phase differs from record to record and is not given."""
+    parameters = {
+        "a_r": Estimate(ripple.amplitude, ripple.std, "1"),
+        "k_r": Estimate(ripple.order, 0.0, "1"),
+    }
+    gain = 1.0 - 1.0 / np.sqrt(max(ripple.prominence, 1.0))
+    return Effect(
+        "torque_ripple", (), f"{ripple.order:.3g} periods per revolution", term_named("torque_ripple").latex,
+        parameters, ripple.p_value, float(gain), 1.0, "over the shaft's angle",
+    )  # fmt: skip
+
+
+def leakage_effect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Effect | None:
+    """Speed lost in proportion to pressure over viscosity, where a command is logged."""
+    found = lost_speed(runs, prepared)
+    if found is None or not found.found:
+        return None
+    return Effect(
+        "slip_leakage", (), "per driving motor at 40 degC", r"\omega_{ref}-\omega = C\,\Delta p/(D\,\mu)",
+        {"C_leak": Estimate(found.leakage, found.std, "m^3/s/Pa")}, found.p_value, found.gain, 1.0,
+        "commanded against reached speed",
+    )  # fmt: skip

@@ -1,0 +1,83 @@
+"""What shows only just after a reversal: bristles that turn over with travel, and contacts that have grown while at rest.
+
+The moving regime names everything else first; here its explanation is the base, on samples whose travel since the reversal is
+certain but short. Samples at rest take no part: static friction is undetermined there.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Slot
+from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.discrepancy.linearise import Expansion, expand_around
+from winch_friction.discrepancy.problem import build_problem
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch import Crane
+
+SIGNIFICANCE = 0.005
+# of the held-out RMSE just after reversals, where every imperfection of timing looks like a little presliding
+LEAST_GAIN = {"presliding": 0.25, "dwell_stiction": 0.1}
+RIVALS = ("presliding", "dwell_stiction", "signal_delay", "stribeck", "coulomb", "viscous")
+FEWEST_BLOCKS = 200
+
+
+@dataclass(frozen=True)
+class TurningFinding:
+    """One effect of the turning regime: its slot in the regime's own problem, evidence and fit."""
+
+    slot: Slot
+    p_value: float
+    gain: float
+    cross: CrossFit
+    fitted: Explanation
+    expansion: Expansion
+
+
+def search_turning(
+    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], expansion: Expansion,
+    explanation: Explanation, candidates: Sequence[Candidate], train: Sequence[str], rng: np.random.Generator,
+) -> TurningFinding | None:  # fmt: skip
+    """The best effect just after reversals, if it is one that only shows there, surely and usefully."""
+    named = {slot.candidate.name for slot in explanation.slots}
+    tried = [each for each in candidates if each.name in (*RIVALS, *named)]
+    turning = expand_around(runs, crane, seed, loads, expansion, explanation, tried, turning=True)
+    chosen = [run for run in turning.runs if run.name in train and run.moving.any()]
+    if sum(int(run.moving.sum()) for run in chosen) < FEWEST_BLOCKS:
+        return None
+    cross = CrossFit(build_problem(chosen, turning.layout, "turning"))
+    kept = [_same_slot(cross, slot) for slot in explanation.slots]
+    base = cross.explain(kept)
+    trials = _trials(cross, base, named)
+    if not trials:
+        return None
+    p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
+    best = min(range(len(trials)), key=lambda k: trials[k].loss)
+    gain = 1.0 - np.sqrt(trials[best].loss / base.loss)
+    if p[best] > SIGNIFICANCE or gain < LEAST_GAIN.get(trials[best].slots[-1].candidate.name, 1.0):
+        return None
+    return TurningFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], turning)
+
+
+def _same_slot(cross: CrossFit, slot: Slot) -> Slot:
+    """The slot of the same effect and shape in another problem."""
+    return next(
+        each
+        for each in cross.problem.slots
+        if each.candidate.name == slot.candidate.name and each.variant.label == slot.variant.label
+    )
+
+
+def _trials(cross: CrossFit, base: Explanation, named: set[str]) -> list[Explanation]:
+    best: dict[str, tuple[float, Slot]] = {}
+    for slot in cross.problem.slots:
+        name = slot.candidate.name
+        if name in named:
+            continue
+        loss, _ = cross.train_loss((*base.slots, slot))
+        if name not in best or loss < best[name][0]:
+            best[name] = (loss, slot)
+    return [cross.explain((*base.slots, slot)) for _, slot in best.values()]

@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from winch_friction.simulation import load_scenario, simulate
+from winch_friction.simulation.hidden.catalogue import effect_names
+from winch_friction.simulation.scenario import scenario_from_content
 
 
 def closure(truth):
@@ -49,3 +53,27 @@ def test_sliding_friction_opposes_the_motion(cycle, crane, model):
     sliding = np.abs(truth["direction"]) > 0.999
     assert sliding.any()
     assert (truth["friction_torque"] * truth["motor_speed"])[sliding].min() > 0.0
+
+
+CIRCUMSTANCES = st.fixed_dictionaries(
+    {
+        "mode": st.sampled_from(["ahc", "normal"]),
+        "drive": st.sampled_from(["primary", "secondary"]),
+        "load": st.floats(2e3, 120e3),
+        "displacement": st.floats(1.2e-5, 3.4e-5),
+        "sea": st.builds(lambda h: {"kind": "jonswap", "significant_height": h}, st.floats(0.2, 3.0)),
+    }
+)
+ONE_SIGNED = ("presliding", "entrained_air", "line_pressure_drop", "slip_leakage")
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(CIRCUMSTANCES, st.sampled_from(effect_names()), st.floats(-1.0, 2.0), st.integers(0, 1000))
+def test_energy_closes_whatever_the_circumstances(crane, model, circumstances, effect, size, seed):
+    profile = {"plateaus": (30.0, 60.0), "hold": 4.0}
+    common = {"name": "any", "duration": 30.0, "profile": profile, "start_time": 1.71e9}
+    scenario = scenario_from_content(common | circumstances | {"oil_temperature": {"start": 25.0}})
+    hidden = [(effect, abs(size) if effect in ONE_SIGNED else size)]
+    truth = simulate(scenario, crane, model, seed, hidden).truth
+    assert all(np.isfinite(column).all() for column in truth.columns.values())
+    assert closure(truth) < 1e-6

@@ -1,15 +1,21 @@
 """The plant against what can be worked out by hand."""
 
+import ctypes
+
 import numpy as np
 import pytest
 from clean_sensors import CLEAN
 
+from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.friction.registry import registered_terms
 from winch_friction.physics.units import BAR, GRAVITY
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.winch.operating_point import operating_point, run_drum_torque, run_operating_points
 from winch_friction.physics.winch.torque_balance import run_drive_torque
 from winch_friction.simulation import Simulator, simulate
 from winch_friction.simulation.plant.friction_kernel import friction_kernel
+
+CONSTANTS = {"max_displacement": 3.42e-5, "gear_ratio": 250.0}
 
 
 def position(scenario, crane, model, **changes):
@@ -69,27 +75,37 @@ def test_wire_stretches_by_the_tension(ahc, crane, model):
     assert truth["tension"].mean() == pytest.approx(static, rel=1e-3)
 
 
-def test_kernel_is_the_model(cycle, crane, model):
-    """The address that the plant calls gives the model's own torque."""
-    import ctypes
-
-    kernel = friction_kernel(model)
+def by_address(model, point, states):
+    """Torque of the function at the address that the plant calls."""
     double = ctypes.POINTER(ctypes.c_double)
-    function = ctypes.CFUNCTYPE(ctypes.c_double, double, double, double)(kernel.torque_address)
-    run = simulate(cycle, crane, model).run
-    x = run_operating_points(run, crane, drum_torque=run_drum_torque(run, crane))
-    expected = model.torque(x)
-    theta = np.array(model.values)
-    empty = np.zeros(1)
-    for row in (500, 1200, 2000):
-        point = np.array([np.broadcast_to(column, len(run))[row] for column in x] + [0.0, 0.0, 0.0, 3e-5])
-        value = function(*(array.ctypes.data_as(double) for array in (point, theta, empty)))
-        assert value == pytest.approx(expected[row], rel=1e-12)
+    function = ctypes.CFUNCTYPE(ctypes.c_double, double, double, double)(friction_kernel(model).torque_address)
+    arrays = np.asarray(point, float), np.asarray(model.values, float), np.asarray([*states, 0.0], float)
+    return function(*(array.ctypes.data_as(double) for array in arrays))
+
+
+@pytest.mark.slow
+def test_the_kernel_is_the_model_for_every_declared_term():
+    terms = tuple(registered_terms().values())
+    parameters = unique_parameters(terms)
+    everything = FrictionModel("everything", terms, tuple(p.typical for p in parameters), constants=CONSTANTS)
+    states = everything.compile(2).initial_states
+    for speed in (-150.0, -0.3, 0.4, 80.0):
+        point = operating_point(
+            direction=np.tanh(speed), speed=speed, drum_torque=6e5, motor_total=11.0, acceleration=20.0,
+            oil_temperature=31.0, time=1.7e9, shaft_angle=3.3, wire_layer=4.0, wire_out=70.0,
+            groups=[(3.0, 60e5, 110e5, 3.4e-5), (8.0, 275e5, 325e5, 1.1e-5)],
+        )  # fmt: skip
+        assert by_address(everything, point, states) == pytest.approx(everything.torque(point, states), rel=1e-12)
+
+
+def test_a_winch_without_passive_motors_has_a_group_of_none(model):
+    common = {"direction": 1.0, "speed": 50.0, "drum_torque": 6e5, "motor_total": 11.0}
+    one = operating_point(**common, groups=[(11.0, 90e5, 140e5, 3.4e-5)])
+    two = operating_point(**common, groups=[(11.0, 90e5, 140e5, 3.4e-5), (0.0, 0.0, 0.0, 3.4e-5)])
+    assert by_address(model, two, ()) == pytest.approx(float(model.torque(one)), rel=1e-12)
 
 
 def test_memory_of_the_models_own_terms_is_carried(ahc, crane, model):
-    from winch_friction.physics.friction.registry import registered_terms
-
     stateful = [term for term in registered_terms().values() if term.state is not None]
     if not stateful:
         pytest.skip("no term with memory is declared")

@@ -28,7 +28,7 @@ class CompensatorConfig:
     )
     lead: float = option(0.0, lower=0.0, upper=0.5, unit="s", doc="how far ahead the speed is extrapolated")
     reversal_time: float = option(0.05, lower=0.0, upper=1.0, unit="s", doc="the sign change is spread over this time")
-    reversal_speed: float = option(3.0, lower=0.01, upper=200.0, unit="rad/s", doc="... and over at least this speed")
+    reversal_speed: float = option(3.0, lower=1e-4, upper=200.0, unit="rad/s", doc="... and over at least this speed")
     jerk_filter: float = option(0.1, lower=0.0, upper=2.0, unit="s", doc="time constant of the extrapolation's jerk")
     acceleration_filter: float = option(
         0.0,

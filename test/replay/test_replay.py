@@ -1,0 +1,156 @@
+"""Replay: over a run, over its bag and live, the same samples give the same outputs."""
+
+import json
+
+import numpy as np
+import pytest
+
+from winch_friction.cli import main
+from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
+from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.hold import InputHold
+from winch_friction.records.bag_write import MESSAGES, BagWriter
+from winch_friction.records.model_file import model_to_text
+from winch_friction.records.paths import config_directory
+from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.topics import crane_topics, joint_state, stamp_header
+from winch_friction.replay.compensator import replay_compensator
+from winch_friction.replay.estimator import replay_estimator
+from winch_friction.replay.outputs import write_outputs
+from winch_friction.replay.recording import replay_recording
+from winch_friction.replay.settings import Phase, ReplaySettings, settings_from_file, settings_from_metadata
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import simulate
+
+SETTINGS = ReplaySettings(phases=(Phase(config=CompensatorConfig(ramp_time=0.2)),))
+
+
+@pytest.fixture(scope="module")
+def run(crane_150t, crane2_model):
+    scenario = load_scenario("ahc_irregular").override({"duration": 12.0})
+    return simulate(scenario, crane_150t, crane2_model, seed=11).run
+
+
+@pytest.fixture(scope="module")
+def bag(run, tmp_path_factory):
+    return write_run(run, tmp_path_factory.mktemp("replay") / "bag")
+
+
+def test_replay_is_the_nodes_own_step(run, crane_150t, crane2_model):
+    replayed = replay_compensator(run, FeedforwardCompensator(crane_150t, crane2_model, CompensatorConfig()))
+    again = FeedforwardCompensator(crane_150t, crane2_model, CompensatorConfig())
+    by_hand = [again.step(sample).friction_torque for sample in InputHold(run.groups).samples(run)]
+    assert replayed["friction_torque"].tolist() == by_hand
+    assert np.abs(replayed["friction_torque"]).max() > 100.0
+
+
+def test_a_bag_replays_like_its_run(run, bag, crane_150t, crane2_model):
+    fresh = FeedforwardCompensator(crane_150t, crane2_model, SETTINGS.phases[0].config)
+    direct = replay_compensator(read_run(bag, crane_150t), fresh)
+    replayed = replay_recording(bag, crane_150t, crane2_model, SETTINGS, learn=False)
+    np.testing.assert_allclose(replayed.compensator["friction_torque"], direct["friction_torque"], rtol=1e-9, atol=1e-9)
+
+
+def test_the_estimator_replays_too(run, bag, crane_150t, crane2_model):
+    direct = replay_estimator(read_run(bag, crane_150t), FrictionEstimator(crane_150t, crane2_model, EstimatorConfig()))
+    replayed = replay_recording(bag, crane_150t, crane2_model, SETTINGS)
+    np.testing.assert_allclose(replayed.estimator["innovation"], direct["innovation"], rtol=1e-9, equal_nan=True)
+    assert replayed.estimator["C4"][-1] == replayed.model.value("C4") == pytest.approx(direct["C4"][-1], rel=1e-9)
+    assert replayed.estimator["K2_std"][0] >= replayed.estimator["K2_std"][-1] > 0.0
+
+
+@pytest.fixture(scope="module")
+def heard(bag, crane_150t):
+    """The run as messages carry it: to the nanosecond."""
+    return read_run(bag, crane_150t)
+
+
+def live_recording(path, run, crane, model, settings, order=None):
+    """A bag as the nodes leave it: inputs, a model, outputs a little late; `order` shuffles the inputs of a scan."""
+    topics = crane_topics(crane, run.groups)
+    compensator = FeedforwardCompensator(crane, model, settings.phases[0].config)
+    compensator.load_model(model)
+    hold = InputHold(run.groups)
+    with BagWriter(
+        path, metadata={"phases": [{"start": 0.0, "name": "all", "compensator": {"ramp_time": 0.2}}]}
+    ) as bag:
+        bag.write("/friction_model", MESSAGES.make("std_msgs/msg/String", data=model_to_text(model)), 0.0)
+        for sample in hold.samples(run):
+            messages = topics.encode(sample, MESSAGES)
+            others = messages[:-1] if order is None else [messages[k] for k in order.permutation(len(messages) - 1)]
+            for topic, message in (*others, messages[-1]):
+                bag.write(f"/{topic}", message, sample.time)
+            torque = compensator.step(sample).friction_torque
+            answer = joint_state(MESSAGES, stamp_header(sample.time, MESSAGES), "winch_motor", effort=torque)
+            bag.write("/compensator/friction_torque", answer, sample.time + 0.004)
+    return path
+
+
+@pytest.mark.parametrize("shuffled", [False, True])
+def test_the_replay_of_a_live_recording_equals_it(tmp_path, heard, crane_150t, crane2_model, shuffled):
+    order = np.random.default_rng(1) if shuffled else None
+    path = live_recording(tmp_path / "live", heard, crane_150t, crane2_model, SETTINGS, order)
+    replayed = replay_recording(path, crane_150t, crane2_model)  # the settings come from the recording
+    (live,) = replayed.live
+    assert live.node == "compensator"
+    assert live.compared == len(replayed.compensator)
+    assert live.missing == 0
+    assert live.largest < 1e-9
+    assert live.equal
+
+
+def test_another_seed_is_seen_to_differ(tmp_path, heard, crane_150t, crane2_model):
+    path = live_recording(tmp_path / "live", heard, crane_150t, crane2_model, SETTINGS)
+    other = crane2_model.with_values({"C6": 1.05 * crane2_model.value("C6")})
+    (live,) = replay_recording(path, crane_150t, other, learn=False).live
+    assert not live.equal
+
+
+def test_phases_begin_afresh(bag, run, crane_150t, crane2_model):
+    config = SETTINGS.phases[0].config
+    middle = float(run.time[len(run) // 2])
+    settings = ReplaySettings((Phase(config=config), Phase(start=middle, config=config, enabled=False)))
+    replayed = replay_recording(bag, crane_150t, crane2_model, settings, learn=False).compensator
+    assert (replayed.aside["state"][replayed.time >= middle] == "disabled").all()
+    assert not replayed["friction_torque"][replayed.time >= middle].any()
+    assert replayed["friction_torque"][replayed.time < middle].any()
+
+
+def test_settings_come_from_the_nodes_own_files(tmp_path):
+    settings = settings_from_file(config_directory() / "nodes" / "crane.yaml")
+    assert isinstance(settings.phases[0].config, CompensatorConfig)
+    broken = tmp_path / "p.yaml"
+    broken.write_text("/**/compensator:\n  ros__parameters:\n    scale: 7.0\n")
+    with pytest.raises(InputError, match="scale"):
+        settings_from_file(broken)
+    with pytest.raises(InputError, match="speed"):
+        settings_from_metadata({"phases": [{"start": 0, "compensator": {"speed": 1}}]}, "bag")
+
+
+def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
+    replayed = replay_recording(bag, crane_150t, crane2_model, SETTINGS)
+    parts = (replayed.compensator, replayed.estimator, replayed.model)
+    table = read_run(write_outputs(tmp_path / "o.parquet", *parts), complete=False)
+    np.testing.assert_array_equal(table.aside["friction_torque"], replayed.compensator["friction_torque"])
+    assert {"estimator.C4", "estimator.C4_std", "state"} <= set(table.aside)
+    written = read_run(
+        write_outputs(tmp_path / "o", *parts),
+        complete=False,
+        remap={"winch/joint_states": "/compensator/friction_torque"},
+    )
+    np.testing.assert_array_equal(written["motor_torque"], replayed.compensator["friction_torque"])
+
+
+def test_the_verb(tmp_path, bag, capsys):
+    arguments = ["replay", str(bag), "--crane", "crane_150t", "--model", "a6vm215_crane2"]
+    files = ["--out", str(tmp_path / "o.csv"), "--picture", str(tmp_path / "o.png")]
+    assert main.run([*arguments, *files, "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["samples"] > 500
+    assert {each["parameter"] for each in content["parameters"]} >= {"K1", "C6"}
+    assert (tmp_path / "o.png").read_bytes()[:4] == b"\x89PNG"
+    assert main.run([*arguments, "--model", "nonsense"]) == 2
+    assert main.run(["replay", str(tmp_path / "nothing"), *arguments[2:]]) == 2
+    assert main.run([*arguments, "--remap", "x"]) == 2
+    assert "Traceback" not in capsys.readouterr().err

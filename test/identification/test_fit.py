@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
 
+from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
 from winch_friction.identification.fit import clustered_covariance, condition_number, fit
 from winch_friction.identification.fit_data import CountedModel
 from winch_friction.identification.motor_identification import identify_motor, motor_seed

@@ -20,7 +20,7 @@ LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
 _SMOOTHING = 0.2  # s, window of the winch's acceleration
 _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judgement
-STANDSTILL = 3.0  # rad/s; below it friction lies anywhere within the break-away level, for any model without presliding
+STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
 
 
 @dataclass(frozen=True)

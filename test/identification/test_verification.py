@@ -1,0 +1,99 @@
+"""Predicted pressures against a plant that is written down here: balance, direction, wire, standstill."""
+
+import numpy as np
+import pytest
+from cycles import cycle
+
+from winch_friction.identification.verification import inertia_torque, pressure_check
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Run
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.winch import operating_point
+
+
+def ahc_run(model, crane, active=215.0, load=55e3, tare=0.0):
+    """Slow heave compensation: 3 active motors, 8 passive at 70 cm^3/rev and 275 bar; rigid torque balance."""
+    time = np.arange(0.0, 60.0, 0.02)
+    speed = 120.0 * np.tanh(3 * np.sin(2 * np.pi * time / 30.0))
+    acceleration = np.gradient(speed, time)
+    count = np.ones_like(time)
+    passive, displacement = 275 * BAR * count, active * CM3_PER_REV
+    torque = crane.drum_torque(load)
+    inertia = (crane.inertia + crane.load_inertia(load)) * acceleration
+    drop = 0.0 * count
+    for _ in range(20):
+        x = operating_point(
+            direction=np.sign(speed), speed=speed, drum_torque=torque * count, motor_total=11.0 * count,
+            groups=[(3.0 * count, np.abs(drop), count, displacement * count),
+                    (8.0 * count, passive, count, 70 * CM3_PER_REV * count)],
+        )  # fmt: skip
+        carried = torque / 250 + inertia + model.torque(x) - 8 * 70 * CM3_PER_REV * passive
+        drop = carried / (3 * displacement)
+    return Run(
+        "ahc",
+        {
+            "time": time, "motor_speed": speed, "hook_load": load * count,
+            "active.pressure_a": 25 * BAR + drop + tare, "active.pressure_b": 25 * BAR * count,
+            "active.displacement": displacement * count, "passive.pressure_a": 300 * BAR * count,
+            "passive.pressure_b": 25 * BAR * count, "passive.displacement": 70 * CM3_PER_REV * count,
+        },
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("active", [215.0, 160.0])
+def test_the_active_group_carries_all_the_friction(truth, crane, active):
+    check = pressure_check(ahc_run(truth, crane, active), crane, truth)
+    assert check.group == "active"
+    assert check.moving_rms < 0.6 * BAR
+    assert np.ptp(check.measured) > 80 * BAR
+
+
+def test_a_friction_error_has_opposite_signs_and_a_tare_error_one(truth, crane):
+    weak = truth.with_values({"K4": 0.8 * truth.value("K4")}).with_covariance(None)
+    check = pressure_check(ahc_run(truth, crane), crane, weak)
+    assert check.mean_error(+1) == pytest.approx(-check.mean_error(-1), rel=0.1)
+    assert check.mean_error(+1) < -2 * BAR
+    tared = pressure_check(ahc_run(truth, crane, tare=3 * BAR), crane, truth)
+    assert tared.mean_error(+1) == pytest.approx(-3 * BAR, abs=0.3 * BAR)
+    assert tared.mean_error(-1) == pytest.approx(-3 * BAR, abs=0.3 * BAR)
+
+
+def test_a_known_displacement_error_is_taken_out(truth, crane):
+    run = ahc_run(truth, crane)
+    wrong = {name: values * (1.02 if "displacement" in name else 1.0) for name, values in run.columns.items()}
+    biased = Run("ahc", wrong)
+    assert pressure_check(biased, crane, truth).moving_rms > 2 * BAR
+    assert pressure_check(biased, crane, truth, 0.02).moving_rms < 0.6 * BAR
+
+
+def test_normal_mode_plateaus(truth, crane):
+    run = cycle(truth, crane, "t", 215, 79, noise=0.0)
+    check = pressure_check(run, crane, truth)
+    still = np.abs(np.gradient(run["motor_speed"], run.time)) < 1e-6
+    moving = still & (np.abs(run["motor_speed"]) > 15 * RPM)
+    inner = np.convolve(moving, np.ones(25), mode="same") > 24.5  # not beside a ramp
+    assert np.abs(check.predicted - check.measured)[inner].max() < 0.05 * BAR
+
+
+def test_the_load_swings_on_its_wire(crane):
+    """Far below the wire's resonance the load follows; at half of it, it overshoots by 1 / (1 - 1/4)."""
+    load, length = 55e3, 50.0
+    natural = np.sqrt(crane.wire_stiffness / length / load)
+    gains = []
+    for frequency in (0.05 * natural, 0.5 * natural):
+        time = np.arange(0.0, 200.0, 0.02)
+        speed = 10.0 * np.sin(frequency * time)
+        columns = {"time": time, "motor_speed": speed, "hook_load": np.full_like(time, load),
+                   "wire_out": np.full_like(time, length), "main.displacement": np.full_like(time, 3e-5)}  # fmt: skip
+        torque, acceleration = inertia_torque(Run("swing", columns), crane)
+        of_load = torque - crane.inertia * acceleration
+        gains.append(np.abs(of_load[5000:]).max() / (crane.load_inertia(load) * 10.0 * frequency))
+    assert gains[0] == pytest.approx(1.0, rel=0.02)
+    assert gains[1] == pytest.approx(4 / 3, rel=0.05)
+
+
+def test_a_winch_that_never_turns(truth, crane):
+    run = ahc_run(truth, crane)
+    still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})
+    with pytest.raises(InputError, match="still: the winch never turns"):
+        pressure_check(still, crane, truth)

@@ -100,10 +100,10 @@ def test_the_replay_of_a_live_recording_equals_it(tmp_path, heard, crane_150t, c
     assert live.equal
 
 
-def test_another_seed_is_seen_to_differ(tmp_path, heard, crane_150t, crane2_model):
+def test_other_settings_are_seen_to_differ(tmp_path, heard, crane_150t, crane2_model):
     path = live_recording(tmp_path / "live", heard, crane_150t, crane2_model, SETTINGS)
-    other = crane2_model.with_values({"C6": 1.05 * crane2_model.value("C6")})
-    (live,) = replay_recording(path, crane_150t, other, learn=False).live
+    other = ReplaySettings(phases=(Phase(config=CompensatorConfig(ramp_time=0.2, lead=0.001)),))
+    (live,) = replay_recording(path, crane_150t, crane2_model, other).live
     assert not live.equal
 
 

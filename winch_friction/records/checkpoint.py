@@ -1,5 +1,6 @@
-"""Checkpoints of the estimator: JSON, written atomically, versioned, refused when it is not one."""
+"""Checkpoints of the estimator: JSON, written atomically, versioned, with a digest; refused when they are not whole."""
 
+import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,23 +14,26 @@ SCHEMA = "winch_friction.checkpoint/1"
 
 def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
     """Write an estimator's snapshot (plain types, keyed by crane and seed): a crash leaves the old or the new."""
-    content = {"schema": SCHEMA, "snapshot": dict(snapshot)}
+    content = {"schema": SCHEMA, "sha256": _digest(snapshot), "snapshot": dict(snapshot)}
     return write_text(Path(path), json.dumps(content, indent=1, allow_nan=False))
 
 
 def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
-    """The snapshot, or None when there is no file yet; raises `InputError` for a file that is not a checkpoint."""
+    """The snapshot, or None when there is no file yet; raises `InputError` for a file that is not a whole checkpoint."""
     path = Path(path)
     if not path.exists():
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, ValueError) as error:
+    except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
         raise InputError(f"{path}: not a checkpoint ({error}); delete it to start over") from error
-    if (
-        not isinstance(content, dict)
-        or content.get("schema") != SCHEMA
-        or not isinstance(content.get("snapshot"), dict)
-    ):
+    snapshot = content.get("snapshot") if isinstance(content, dict) else None
+    if not isinstance(snapshot, dict) or content.get("schema") != SCHEMA:
         raise InputError(f"{path}: not a checkpoint of schema '{SCHEMA}'; delete it to start over")
-    return content["snapshot"]
+    if content.get("sha256") != _digest(snapshot):
+        raise InputError(f"{path}: not a checkpoint as it was written (its digest differs); delete it to start over")
+    return snapshot
+
+
+def _digest(snapshot: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(dict(snapshot), sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,137 @@
+"""Checkpoints survive what happens to machines: a killed writer, a broken file, another crane's file."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, write_checkpoint
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+KILLS = 12
+FUZZ = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+WRITER = """
+import sys
+from winch_friction.records.checkpoint import write_checkpoint
+number = int(sys.argv[2])
+print("ready", flush=True)
+while True:
+    number += 1
+    write_checkpoint(sys.argv[1], {"number": number, "filling": [float(number)] * 4000})
+"""
+
+
+def samples(count=200):
+    for k in range(count):
+        speed = 100.0 * np.sin(0.02 * k)
+        group = GroupSample(1.5e7 + 2e6 * np.tanh(speed), 2.5e6, 3.4e-5)
+        yield Sample(0.02 * k, float(speed), groups={"main": group}, hook_load=55e3)
+
+
+@pytest.fixture(scope="module")
+def learned():
+    estimator = FrictionEstimator(load_crane("crane_150t"), load_model("a6vm215_crane2"), EstimatorConfig())
+    for sample in samples():
+        estimator.step(sample)
+    return estimator
+
+
+def fresh(crane="crane_150t", model="a6vm215_crane2"):
+    return FrictionEstimator(load_crane(crane), load_model(model), EstimatorConfig())
+
+
+def test_what_was_learned_comes_back(tmp_path, learned):
+    path = write_checkpoint(tmp_path / "c.json", learned.snapshot())
+    again = fresh()
+    again.restore(read_checkpoint(path))
+    assert again.model().values == pytest.approx(learned.model().values, rel=1e-9)
+    np.testing.assert_allclose(again.model().covariance, learned.model().covariance, rtol=1e-9, atol=1e-300)
+
+
+def test_no_file_yet_is_no_error(tmp_path):
+    assert read_checkpoint(tmp_path / "none.json") is None
+
+
+def test_another_cranes_or_seeds_checkpoint_is_refused_and_changes_nothing(tmp_path, learned):
+    path = write_checkpoint(tmp_path / "c.json", learned.snapshot())
+    for other in (fresh(model="a6vm215_crane1"), fresh(model="a6vm215")):
+        before = other.model().values
+        with pytest.raises(InputError):
+            other.restore(read_checkpoint(path))
+        assert other.model().values == before
+        assert np.isfinite([other.step(sample).drum_torque for sample in samples(5)]).all()
+
+
+@pytest.mark.slow
+def test_a_writer_killed_at_any_moment_leaves_a_whole_checkpoint(tmp_path):
+    path, number, rng = tmp_path / "c.json", 0, np.random.default_rng(0)
+    for _ in range(KILLS):
+        with subprocess.Popen(
+            [sys.executable, "-c", WRITER, str(path), str(number)], stdout=subprocess.PIPE, text=True
+        ) as writer:
+            writer.stdout.readline()
+            time.sleep(0.02 + 0.06 * rng.random())
+            os.kill(writer.pid, signal.SIGKILL)
+        snapshot = read_checkpoint(path)
+        assert snapshot is not None
+        assert snapshot["filling"] == [float(snapshot["number"])] * 4000
+        assert snapshot["number"] >= number
+        number = snapshot["number"]
+    assert number > KILLS
+
+
+@FUZZ
+@given(cut=st.integers(0, 10_000), byte=st.integers(0, 255), mode=st.sampled_from(["truncate", "flip", "garbage"]))
+def test_a_damaged_checkpoint_is_refused_or_whole(tmp_path, learned, cut, byte, mode):
+    path = write_checkpoint(tmp_path / "c.json", learned.snapshot())
+    content = path.read_bytes()
+    at = cut % len(content)
+    damaged = {
+        "truncate": content[:at],
+        "flip": content[:at] + bytes([byte]) + content[at + 1 :],
+        "garbage": bytes([byte]) * at,
+    }[mode]
+    path.write_bytes(damaged)
+    estimator = fresh()
+    said = restored(estimator, path)
+    values = estimator.seed.values if said else learned.model().values
+    assert estimator.model().values == pytest.approx(values, rel=1e-9)
+    assert "\n" not in said
+    assert np.isfinite([estimator.step(sample).drum_torque for sample in samples(5)]).all()
+
+
+def restored(estimator, path):
+    """Restore as the node does; what it says when it starts from the seed instead."""
+    try:
+        estimator.restore(read_checkpoint(path))
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        [],
+        {"schema": "winch_friction.checkpoint/0", "snapshot": {}},
+        {"schema": SCHEMA, "snapshot": {}},
+        {"schema": SCHEMA, "snapshot": 3},
+        None,
+    ],
+)
+def test_other_json_is_refused(tmp_path, content):
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="not a checkpoint"):
+        read_checkpoint(path)

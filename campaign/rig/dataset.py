@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
+from zlib import crc32
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from campaign.rig.truth import (
     PUMP_FLOW,
     RADII,
     RPM,
+    WIRE_STIFFNESS,
     Friction,
     draw_friction,
 )
@@ -48,6 +50,8 @@ class RunPlant(NamedTuple):
     modulus: float
     pump_lag: float
     position_gain: float
+    wire_stiffness: float  # N/m, 0: rigid
+    wire_damping: float  # N s/m
     date: float  # 0 at the first run, 1 at the last
 
 
@@ -92,7 +96,7 @@ def make_dataset(
     Raises KeyError for an unknown flavour or effect.
     """
     style = FLAVOURS[flavour]
-    rng = np.random.default_rng([seed, sorted(FLAVOURS).index(flavour)])
+    rng = np.random.default_rng([seed, crc32(flavour.encode())])
     truth = truth or draw_friction(rng, style.uniform_truth)
     # a stream of its own, so that the same seed without the effect is the same crane in the same sea
     hidden = Hidden(**strengths(list(effects), np.random.default_rng([seed, 7, 7]), truth))
@@ -135,7 +139,7 @@ def _run(
     ahead = np.append(reference[lead:], np.zeros(lead))
     out = new_output(steps)
     acceleration = np.gradient(tip, STEP)
-    simulate(truth, hidden, plant, ahead, acceleration, celsius, relative_viscosity(celsius), out)
+    simulate(truth, hidden, plant, ahead, tip, acceleration, celsius, relative_viscosity(celsius), out)
     return _log(plan, style, plant, hidden, out, (reference, tip, celsius), rng)
 
 
@@ -144,12 +148,14 @@ def _plant(plan: Plan, style: Flavour, hidden: Hidden, rng: np.random.Generator)
     gas = style.gas_pressure * BAR * rng.uniform(0.97, 1.03)
     motors, passive_motors = (3.0, 8.0) if plan.ahc else (11.0, 0.0)
     passive = plan.load * GRAVITY * radius / GEAR / (8 * (gas - plan.boost)) if plan.ahc else 0.0
+    wire_out = rng.uniform(50, 400) + 250 * (6 - plan.layer)
     return RunPlant(
         motors, plan.displacement, passive_motors, min(passive, MAX_DISPLACEMENT), plan.load,
         radius * (1 + hidden.radius_step * (max(style.layers) - plan.layer)), float(plan.layer),
-        rng.uniform(50, 400) + 250 * (6 - plan.layer), INERTIA, plan.boost, gas,
+        wire_out, INERTIA, plan.boost, gas,
         motors * 5e-12 * rng.uniform(0.5, 2.0), 1.0e9 * rng.uniform(0.9, 1.1), style.pump_lag,
-        0.5 if plan.ahc else 0.0, plan.date,
+        0.5 if plan.ahc else 0.0, WIRE_STIFFNESS / wire_out if style.wire_damping else 0.0, style.wire_damping,
+        plan.date,
     )  # fmt: skip
 
 

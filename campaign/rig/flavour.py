@@ -34,6 +34,7 @@ class Flavour:
     gas_pressure: float = 300.0  # bar
     gas_is_calculated: bool = False  # the log holds the PLC's polytropic law for the passive pressure
     pressure_is_late: bool = False  # signal_delay sits in the pressures, not in the speed
+    wire_damping: float = 0.0  # N s/m of an elastic wire; 0: the load is rigidly coupled
     units: str = "plant"  # plant: rpm, bar, cm^3/rev; si: no brackets
 
 
@@ -79,6 +80,18 @@ FLAVOURS = {
             (50, 50, 80, 25), (215, 170, 215, 200), False, False,
             0.25, 0.2, 0.1, 4096, 0.05, (25, 30, 20), (24, 56), 30.0, (5, 6), ALL, gas_pressure=280.0,
             gas_is_calculated=True, units="si",
+        ),
+        Flavour(
+            "elastic_still", (2, 55, 107, 77, 30, 15, 107, 55), (215, 215, 215, 164, 164, 120, 146, 102),
+            (0.1, -0.1, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0, 0.05, -0.05), 5.0, True, 2000,
+            (55, 30, 77, 55), (215, 160, 215, 190), False, False,
+            0.3, 0.4, 0.15, 2048, 0.05, (25, 30), (25, 52), 30.0, (5, 6), ALL, wire_damping=1.2e5,
+        ),
+        Flavour(
+            "elastic_sea", (5, 60, 100, 80, 35, 107, 20, 70), (215, 164, 215, 146, 130, 200, 215, 180),
+            (1.0, -1.0, 0.5, -0.5, 0.2, -0.2, 0.08, -0.08, 0.75, -0.75), 4.0, True, 2100,
+            (60, 20, 90, 55), (215, 215, 180, 160), True, True,
+            0.35, 0.6, 0.15, 4096, 0.1, (25, 18, 32), (22, 56), 45.0, (6,), ALL, wire_damping=2.0e5, jitter=0.002,
         ),
     )
 }  # fmt: skip

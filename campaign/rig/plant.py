@@ -66,7 +66,7 @@ def _compliance(h, p, modulus):
 
 
 @njit(cache=True)
-def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
+def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, out):
     """Fill `out` (rows: speed, angle, p_a, p_b, gas pressure; one column per step) for one run `r`."""
     n_total = r.drive_motors + r.passive_motors
     active = r.drive_motors * r.drive_displacement
@@ -74,8 +74,11 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
     drum_torque = (r.load + h.tare + h.tare_wire * 24.5 * r.wire_out) * 9.80665 * r.radius
     static = drum_torque / GEAR
     load_inertia = (r.load + h.tare) * (r.radius / GEAR) ** 2
-    inertia = r.inertia + h.inertia + load_inertia
-    heave_gain = (r.load + h.tare) * r.radius / GEAR
+    mass = r.load + h.tare
+    elastic = r.wire_stiffness > 0.0  # else the load is rigidly coupled to the shaft
+    inertia = r.inertia + h.inertia + (0.0 if elastic else load_inertia)
+    heave_gain = mass * r.radius / GEAR
+    stretch, load_speed = 0.0, 0.0  # beyond the static stretch; m/s, up
     drift = 1.0 + h.coulomb_drift * r.date
     speed, angle, a = 0.0, 0.0, 0.0  # a: the acceleration that is asked for
     gas = r.gas_pressure * (1.0 + h.gas_warm)
@@ -114,7 +117,15 @@ def simulate(f, h, r, reference, heave_acceleration, celsius, viscosity, out):
         loss *= 1.0 + h.dwell_gain * (1.0 - exp(-h.dwell_rate * age))
         loss = max(loss, 0.0)
         age = age * exp(-w * STEP / h.dwell_angle) + STEP
-        drive = active * dp_motor + passive * dp_passive - static - heave_gain * heave_acceleration[k]
+        drive = active * dp_motor + passive * dp_passive - static
+        if elastic:
+            tip = speed * r.radius / GEAR + heave[k]
+            dynamic = r.wire_stiffness * stretch + r.wire_damping * (tip - load_speed)
+            load_speed += STEP / mass * dynamic
+            stretch += STEP * (tip - load_speed)
+            drive -= dynamic * r.radius / GEAR
+        else:
+            drive -= heave_gain * heave_acceleration[k]
         drive -= h.ripple * static * sin(h.ripple_order * angle)
         if h.presliding_angle > 0.0:
             s = 1.0 if speed >= 0.0 else -1.0

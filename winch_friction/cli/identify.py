@@ -10,6 +10,7 @@ app = typer.Typer(help="Supplier tables and logged tests become a friction model
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
 Seed = Annotated[int, typer.Option(help="Seed of the complex method and of the bootstrap.")]
 Restarts = Annotated[int, typer.Option(min=1, help="Restarts of the complex method.")]
+Evaluations = Annotated[int, typer.Option(min=100, help="Most evaluations of the complex method per restart.")]
 
 
 def _range(text: str, unit: float, name: str) -> tuple[float, float]:
@@ -37,6 +38,7 @@ def motor(
     weighting: Annotated[str, typer.Option(help="nominal, equal or column.")] = "nominal",
     use_complex: Annotated[bool, typer.Option("--complex/--no-complex", help="Box's method beside it.")] = True,
     restarts: Restarts = 3,
+    evaluations: Evaluations = 20000,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -69,7 +71,7 @@ def motor(
         with_complex=use_complex,
         seed=seed,
         progress=progress,
-        complex_options={"restarts": restarts},
+        complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
     fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
     save_model(fitted, out)
@@ -130,6 +132,7 @@ def system(
     held_out: Annotated[list[Path] | None, typer.Option(help="Test kept out of the fit; repeat.")] = None,
     resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
     restarts: Restarts = 3,
+    evaluations: Evaluations = 20000,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -153,7 +156,7 @@ def system(
         held_out=read_runs(held_out or [], known),
         resamples=resamples,
         seed=seed,
-        complex_options={"restarts": restarts},
+        complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
     hashes = {path.name: _hash(path) for path in (*runs, *(held_out or ())) if path.is_file()}
     model = winch_seed(found, known, out.stem, {"data_sha256": hashes, "motor": motor})
@@ -202,6 +205,7 @@ def practice(
     out: Annotated[Path, typer.Option(help="Folder for report.html, seed.yaml and motor.yaml.")],
     resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
     restarts: Restarts = 2,
+    evaluations: Evaluations = 20000,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -216,7 +220,11 @@ def practice(
 
     folder = read_practice(_example(example))
     done = run_practice(
-        folder, resamples=resamples, seed=seed, progress=progress, complex_options={"restarts": restarts}
+        folder,
+        resamples=resamples,
+        seed=seed,
+        progress=progress,
+        complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
     write_practice_report(done, out / "report.html")
     save_model(done.motor_seed, out / "motor.yaml")

@@ -18,7 +18,12 @@ from winch_friction.identification.motor_models import MOTOR_MODELS
 from winch_friction.identification.prior import UnitSpread, load_unit_spread
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import SupplierTable
-from winch_friction.identification.system_identification import SystemIdentification, identify_system, winch_seed
+from winch_friction.identification.system_identification import (
+    SystemIdentification,
+    identify_system,
+    read_test,
+    winch_seed,
+)
 from winch_friction.identification.verification import PressureCheck, TestError, pressure_check, test_errors
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -128,6 +133,8 @@ def run_practice(
 ) -> Practice:
     """All four steps, the second loop, the joint fit and the verification."""
     spread = spread or load_unit_spread()
+    for run in (*folder.tests, *folder.held_out):
+        read_test(run, folder.crane)  # an unusable log is said before the long fits
     provenance: dict[str, Any] = {"data_sha256": dict(folder.hashes)}
     motor = identify_motor(
         folder.table,

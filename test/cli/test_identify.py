@@ -1,0 +1,199 @@
+"""`winch-friction identify`: the shipped example end to end, and bad input that leaves good files alone."""
+
+import json
+import re
+import shutil
+
+import pytest
+
+from winch_friction.cli.main import run
+from winch_friction.records.model_file import load_model
+from winch_friction.records.paths import config_directory
+
+EXAMPLE = config_directory() / "examples" / "practice_150t"
+QUICK = ["--restarts", "1", "--evaluations", "300"]
+
+
+@pytest.fixture(scope="module")
+def practice(tmp_path_factory):
+    """The shipped example, once, with its JSON."""
+    import contextlib
+    import io
+
+    out = tmp_path_factory.mktemp("practice")
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        status = run(["identify", "practice", "practice_150t", "--out", str(out), "--resamples", "4", "--json", *QUICK])
+    assert status == 0
+    return out, json.loads(said.getvalue())
+
+
+def test_practice_writes_report_and_seeds(practice):
+    out, said = practice
+    assert sorted(path.name for path in out.iterdir()) == ["motor.yaml", "report.html", "seed.yaml"]
+    seed = load_model(out / "seed.yaml")
+    assert set(seed.as_dict()) == {"K1", "K2", "K3", "K4", "K5", "C1", "C3", "C4", "C5", "C6"}
+    assert (seed.std > 0).all()
+    assert len(seed.provenance["data_sha256"]) == 15
+    assert said["seed"]["parameters"]["K2"]["value"] == pytest.approx(seed.value("K2"))
+    assert load_model(out / "motor.yaml").covariance is not None
+
+
+def test_the_seed_holds_the_truth(practice):
+    out, _ = practice
+    seed, truth = load_model(out / "seed.yaml"), load_model("a6vm215_crane2")
+    for name, std in zip(seed.parameter_names, seed.std, strict=True):
+        assert abs(seed.value(name) - truth.value(name)) < 3.5 * std, name
+
+
+def test_the_summary_states_errors_within_the_papers(practice):
+    _, said = practice
+    text = " ".join(said["summary"])
+    above, below = map(
+        float, re.search(r"5 held-out tests: within ([\d.]+) % .* above 250 rpm, ([\d.]+) %", text).groups()
+    )
+    assert above < 1.0
+    assert below < 2.0
+    for bar in re.findall(r"within ([\d.]+) bar RMS", text):
+        assert float(bar) < 5.0
+    assert "K3" in text
+
+
+def test_the_report_is_one_page_with_the_papers_tables(practice):
+    out, _ = practice
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert not re.search(r"(src|href)=.https?://", page)
+    for expected in ("paper 2 Table 3", "paper 2 Table 4", "paper 2 Tables 2 and 5", "C4 [rev/min]",
+                     "Huhtala: a reconstruction", "paper 1 Fig 6 and 7", "GENERATED, not measured",
+                     "K1 and C5 (cosine 1.00000)"):  # fmt: skip
+        assert expected in page, expected
+    for figure in (3, 6, 7, 8, 10, 13, 16, 17):
+        assert f"paper 2 Fig {figure}" in page, figure
+    for figures in ("paper 2 Fig 11, 12, 14", "paper 2 Fig 18 and 19", "paper 2 Fig 15, 20-23"):
+        assert figures in page
+    assert page.count("<figure>") >= 14
+    assert "nan" not in re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL).lower().split()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A copy of the example to break."""
+    return shutil.copytree(EXAMPLE, tmp_path / "example")
+
+
+@pytest.fixture
+def good(tmp_path):
+    """An output folder with good results."""
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in ("seed.yaml", "motor.yaml", "report.html"):
+        (out / name).write_text("good")
+    return out
+
+
+def remove_test(folder):
+    (folder / "test_05.parquet").unlink()
+
+
+def efficiency_above_one(folder):
+    path = folder / "supplier.csv"
+    lines = path.read_text().splitlines()
+    lines[40] = lines[40].rpartition(",")[0] + ",101.5"
+    path.write_text("\n".join(lines))
+
+
+def no_table(folder):
+    (folder / "supplier.csv").unlink()
+
+
+def misspelt_key(folder):
+    path = folder / "practice.yaml"
+    path.write_text(path.read_text().replace("motor_model:", "motor_modell:"))
+
+
+def one_direction(folder):
+    import numpy as np
+
+    from winch_friction.records.runs import read_run, write_run
+
+    run_ = read_run(folder / "test_03.parquet")
+    columns = dict(run_.columns) | {"motor_speed": np.abs(run_["motor_speed"])}
+    from dataclasses import replace
+
+    write_run(replace(run_, columns=columns), folder / "test_03.parquet")
+
+
+def nan_in_a_log(folder):
+    from dataclasses import replace
+
+    from winch_friction.records.runs import read_run, write_run
+
+    run_ = read_run(folder / "test_02.parquet")
+    pressure = run_["main.pressure_a"].copy()
+    pressure[99] = float("nan")
+    write_run(replace(run_, columns={**run_.columns, "main.pressure_a": pressure}), folder / "test_02.parquet")
+
+
+BROKEN = {
+    remove_test: r"test_05.parquet: no such file",
+    efficiency_above_one: r"supplier.csv row 41: column 'efficiency' = 101.5 is above 1",
+    no_table: r"supplier.csv: cannot be read",
+    misspelt_key: r"practice.yaml: unknown key 'motor_modell'",
+    one_direction: r"test_03.parquet: no lowering at constant speed",
+    nan_in_a_log: r"test_02.parquet row 1\d\d: column 'main.pressure_a' is not a finite number",
+}
+
+
+@pytest.mark.parametrize("damage", BROKEN, ids=lambda damage: damage.__name__)
+def test_a_broken_folder_is_one_line_and_good_results_stay(damage, folder, good, capsys):
+    damage(folder)
+    assert run(["identify", "practice", str(folder), "--out", str(good), *QUICK[:2], "--evaluations", "100"]) == 2
+    said = capsys.readouterr().err.strip().splitlines()
+    assert len([line for line in said if line.startswith("winch-friction:")]) == 1
+    assert re.search(BROKEN[damage], said[-1]), said
+    assert {path.read_text() for path in good.iterdir()} == {"good"}
+
+
+def test_a_folder_without_practice_file(tmp_path, capsys):
+    assert run(["identify", "practice", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
+    assert "'practice.yaml' is missing" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_motor_by_shipped_name(tmp_path, capsys):
+    out = tmp_path / "seed.yaml"
+    arguments = ["identify", "motor", "a6vm280_generated", "--out", str(out), "--model", "mj3", "--model", "mj4"]
+    assert run([*arguments, "--json", *QUICK]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert [score["model"] for score in said["scores"]] == ["mj4", "mj3"]
+    assert said["scores"][0]["cost"] <= said["scores"][0]["cost_complex"]
+    assert load_model(out).value("K2") == pytest.approx(2.58e10, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--speed", "2500-400"], r"--speed '2500-400': the first number must be below the second"),
+        (["--pressure", "all"], r"--pressure 'all': give two numbers with a dash"),
+        (["--model", "dorey"], r"motor model 'dorey' is not known"),
+        (["--weighting", "both"], r"weighting 'both' is not known"),
+        (["--speed", "1-2"], r"no row lies inside the range"),
+    ],
+)
+def test_bad_options_leave_the_seed_alone(tmp_path, capsys, options, message):
+    out = tmp_path / "seed.yaml"
+    out.write_text("good")
+    assert run(["identify", "motor", "a6vm280_generated", "--out", str(out), "--no-complex", *options]) == 2
+    assert re.search(message, capsys.readouterr().err)
+    assert out.read_text() == "good"
+
+
+def test_system_on_the_examples_logs(tmp_path, capsys):
+    out = tmp_path / "crane.yaml"
+    tests = [str(EXAMPLE / f"test_0{k}.parquet") for k in range(1, 7)]
+    arguments = ["identify", "system", *tests, "--motor", "a6vm215", "--out", str(out), "--resamples", "0"]
+    assert run([*arguments, "--held-out", str(EXAMPLE / "test_09.parquet"), "--json", *QUICK]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["errors_percent_of_nominal"]["test_09.parquet"]["above_250_rpm"] < 1.0
+    assert "K1 = C5" in said["tied"]
+    assert load_model(out).value("C1") == pytest.approx(155e-7, rel=0.05)

@@ -17,6 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 from winch_friction.nodes.messages import diagnostic_array, diagnostic_status
 from winch_friction.nodes.options import FIXED, NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.nodes.polling import Polled
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
@@ -70,6 +71,7 @@ class WinchNode(LifecycleNode):
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
+        self._unwatched = Polled()  # every publisher's events would be waited for at every wake-up
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.add_on_set_parameters_callback(self._on_set)
         self.add_post_set_parameters_callback(self._on_post_set)
@@ -164,7 +166,7 @@ class WinchNode(LifecycleNode):
     # -- building blocks
     def publisher(self, message_type: Any, topic: str, qos: Any, **arguments: Any) -> Any:
         """A publisher that is silent unless the node is active, gone after cleanup."""
-        made = self.create_lifecycle_publisher(message_type, topic, qos, **arguments)
+        made = self.create_lifecycle_publisher(message_type, topic, qos, callback_group=self._unwatched, **arguments)
         self._publishers_made.append(made)
         return made
 

@@ -26,7 +26,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.model_file import load_model, model_from_text
 from winch_friction.records.topics import joint_state, stamp_header
 
-WATCHDOG_PERIOD = 0.02  # s
+WATCHDOG_SHARE, LONGEST_WATCH = 0.2, 0.5  # of the timeout, s
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class CompensatorNode(WinchNode):
             String, "friction_model", self._on_model, LATCHED, qos_overriding_options=overridable()
         )
         self.while_active(models)
-        self.every(WATCHDOG_PERIOD, self._watch)
+        self.every(min(WATCHDOG_SHARE * self.options.watchdog_timeout, LONGEST_WATCH), self._watch)
 
     def stop(self) -> None:
         """Shut the inputs out."""

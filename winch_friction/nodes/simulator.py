@@ -85,8 +85,8 @@ class SimulatorNode(WinchNode):
         """Listen to the answers and begin."""
         for topic in {"compensator/friction_torque", *self.answers.topics}:
             self.while_active(self.create_subscription(JointState, topic, self._answer_taker(topic), OUTPUT))
-        sample_period = 1.0 / self.voyage.scenario.sensors.rate
-        self.every(min(LONGEST_PAUSE, sample_period / (self.own.rate or 1.0)), self._tick)
+        scans = self.own.rate * self.voyage.scenario.sensors.rate  # per second; 0: the answers set the pace
+        self.every(min(LONGEST_PAUSE, 1.0 / scans) if scans else LONGEST_PAUSE, self._tick)
         self._begin()
 
     def _begin(self) -> str:

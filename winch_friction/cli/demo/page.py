@@ -41,9 +41,9 @@ _CAPTION = (
 
 def _story(plan: DemoPlan) -> str:
     words = (
-        f"A simulated 150 t crane ({plan.scenario}, sea {plan.sea}) compensates heave against its friction: the plant's "
-        f"gears and drum turn {plan.friction_factor:g} times as hard as the seed model says, and nobody tells the "
-        "nodes. Simulator, compensator and estimator are three processes that talk over DDS in lockstep. "
+        f"A simulated 150 t crane ({plan.scenario}, sea {plan.sea}) compensates heave against its friction. Its gears "
+        f"and drum turn {plan.friction_factor:g} times as hard as the seed model says, and nobody tells the nodes. "
+        "Simulator, compensator and estimator are three processes that talk over DDS in lockstep. "
         f"The same {plan.duration:g} s of sea were sailed four times; the estimator learned all along. "
         "All figures were measured from the recorded bag, the first 20 s of each phase left out."
     )

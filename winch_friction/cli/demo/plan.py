@@ -87,8 +87,8 @@ class DemoPlan:
         }  # fmt: skip
         own = {
             "/**": {**shared, "watchdog_timeout": PATIENCE},
-            "/**/compensator": {"use_sim_time": True, "autostart": False},
-            "/**/estimator": {"use_sim_time": True, "checkpoint": str(self.out / "estimator.json")},
+            "/**/compensator": {"autostart": False},
+            "/**/estimator": {"checkpoint": str(self.out / "estimator.json")},
             "/**/simulator": simulator,
         }
         return {name: {"ros__parameters": parameters} for name, parameters in own.items()}

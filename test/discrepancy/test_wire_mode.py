@@ -1,0 +1,49 @@
+"""The load on its elastic wire."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from winch_friction.discrepancy.wire_mode import on_the_wire, swinging_load, wire_stiffnesses
+
+DT, MASS, LEVER = 0.02, 55e3, 1.136 / 250
+TIME = np.arange(0.0, 120.0, DT)
+
+
+def motion(time):
+    """Acceleration of the wire's top: a wave with a kick at every reversal."""
+    return 0.6 * np.sin(0.7 * time) + 0.8 * np.exp(-(((time % 4.5) - 2.0) ** 2) / 0.01)
+
+
+def test_the_mode_is_the_oscillators():
+    frequency, ratio = 7.0, 0.08
+
+    def oscillator(t, y):  # relative to the top of the wire
+        return [y[1], -motion(t) - 2 * ratio * frequency * y[1] - frequency**2 * y[0]]
+
+    exact = solve_ivp(oscillator, (0, TIME[-1]), [0.0, 0.0], t_eval=TIME, max_step=0.01, rtol=1e-8)
+    expected = -2 * ratio * frequency * exact.y[1] - frequency**2 * exact.y[0]
+    found = on_the_wire(motion(TIME), DT, frequency, ratio)
+    assert np.abs(found - expected)[500:].std() < 0.04 * expected.std()
+
+
+@pytest.mark.parametrize("length", [50.0, None])
+def test_the_swing_is_found_and_taken_out(length):
+    stiffness = 3e8 / 50.0
+    load = on_the_wire(motion(TIME), DT, np.sqrt(stiffness / MASS), 0.06)
+    noise = 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
+    gap = MASS * LEVER * (load - motion(TIME)) + 30.0 * np.sign(np.cos(0.7 * TIME)) + noise
+    tried = wire_stiffnesses(3e8, None if length is None else np.full(len(TIME), length))
+    swing = swinging_load(gap, np.ones(len(TIME), bool), motion(TIME), DT, MASS, np.full(len(TIME), LEVER), tried)
+    assert swing.frequency == pytest.approx(np.sqrt(stiffness / MASS), rel=0.02)
+    assert 0.03 <= swing.damping <= 0.1
+    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * np.sign(np.cos(0.7 * TIME))
+    assert left[500:].std() < 0.25 * (gap - 30.0 * np.sign(np.cos(0.7 * TIME)))[500:].std()
+
+
+def test_a_rigid_wire_stays_rigid():
+    gap = 5.0 * np.random.default_rng(2).standard_normal(len(TIME))
+    rigid = motion(TIME)
+    swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (6e6,))
+    assert swing.damping == 0.0
+    assert np.array_equal(swing.acceleration, rigid)

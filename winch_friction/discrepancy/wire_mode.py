@@ -1,7 +1,7 @@
 """The load on its elastic wire: the acceleration that the pressures feel, from the one that a rigid wire would give.
 
-(m s^2 + c s + k) x_load = (c s + k) x_rigid. Stiffness k = EA / wire_out is known where the crane file and the log say so; the
-damping is nobody's datum and is chosen by what leaves least swinging in the gap.
+(m s^2 + c s + k) x_load = (c s + k) x_rigid. Stiffness k = EA / wire_out is known where the crane file and the log say
+so; the damping is nobody's datum and is chosen by what leaves least swinging in the gap.
 """
 
 from collections.abc import Iterable, Sequence
@@ -39,8 +39,8 @@ def swinging_load(
 ) -> Swing:
     """The wire's mode that leaves least swinging in the gap.
 
-    `gap` N m was made with the `rigid` acceleration m/s^2 of the load; `counts` marks the samples to judge by; `lever` m is
-    drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft.
+    `gap` N m was made with the `rigid` acceleration m/s^2 of the load; `counts` marks the samples to judge by; `lever`
+    m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft.
     """
     best, swing = np.inf, Swing(rigid, 0.0, 0.0)
     for frequency in _frequencies(stiffnesses, mass, dt):

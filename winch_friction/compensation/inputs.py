@@ -4,6 +4,7 @@ import math
 from collections.abc import Set
 
 from winch_friction.compensation.config import CompensatorConfig
+from winch_friction.physics.plausible import plausible
 from winch_friction.physics.signals import GROUP_CHANNELS, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.torque_balance import pressure_feedforward
@@ -14,7 +15,7 @@ def missing_inputs(sample: Sample, crane: Crane, reads: Set[str], source: str, l
     needed = {"speed_reference" if source == "reference" else "motor_speed"}
     if "oil_temperature" in reads:
         needed.add("oil_temperature")
-    lost = [name for name in sorted(needed) if not math.isfinite(getattr(sample, name))]
+    lost = [name for name in sorted(needed) if not plausible(name, getattr(sample, name))]
     if crane.electric:
         return (*lost, *_missing_torque(sample, reads, load_known))
     return (*lost, *_missing_groups(sample))
@@ -32,7 +33,7 @@ def _missing_groups(sample: Sample) -> tuple[str, ...]:
         f"{name}.{channel}"
         for name, group in sample.groups.items()
         for channel in GROUP_CHANNELS
-        if not math.isfinite(getattr(group, channel))
+        if not plausible(channel, getattr(group, channel))
     )
 
 

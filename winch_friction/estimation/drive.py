@@ -3,18 +3,19 @@
 import math
 
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.physics.plausible import plausible
 from winch_friction.physics.signals import GROUP_CHANNELS, Sample
 from winch_friction.physics.winch.crane import Crane
 
 
 def usable(sample: Sample, crane: Crane) -> bool:
-    """Whether the sample has finite time, speed and drive."""
-    if not (math.isfinite(sample.time) and math.isfinite(sample.motor_speed)):
+    """Whether the sample has a time and plausible speed and drive."""
+    if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
         return False
     if crane.electric:
-        return math.isfinite(sample.motor_torque)
-    channels = [getattr(group, channel) for group in sample.groups.values() for channel in GROUP_CHANNELS]
-    return bool(channels) and all(map(math.isfinite, channels))
+        return plausible("motor_torque", sample.motor_torque)
+    channels = [(channel, getattr(group, channel)) for group in sample.groups.values() for channel in GROUP_CHANNELS]
+    return bool(channels) and all(plausible(channel, value) for channel, value in channels)
 
 
 def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:

@@ -121,7 +121,7 @@ class FrictionEstimator:
         self._predict(step, learning=not reason)
         measured, noise = sample.motor_speed, self._speed_variance
         innovation, variance = self._filter.innovation(measured, noise)
-        if not abs(innovation) <= self.config.gate * math.sqrt(variance):
+        if not (variance > 0.0 and abs(innovation) <= self.config.gate * math.sqrt(variance)):
             self._filter.x, self._filter.P, self._load.mass = kept
             return self._rejected(sample, innovation, variance)
         self._correct(measured, noise, learning=not reason)

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from winch_friction.physics.plausible import plausible
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, GroupSample, Run, Sample
 
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
@@ -36,9 +37,9 @@ class InputHold:
         self._held: dict[str, deque[tuple[float, float]]] = {}
 
     def put(self, column: str, time: float, value: float) -> bool:
-        """Take a value with its stamp in s; False when it is not finite or older than what is held, and so ignored."""
+        """Take a value with its stamp in s; False when it is implausible or older than what is held, and so ignored."""
         held = self._held.get(column)
-        if not (math.isfinite(value) and math.isfinite(time)) or (held and time < held[-1][0]):
+        if not (plausible(column, value) and math.isfinite(time)) or (held and time < held[-1][0]):
             return False
         if held is None:
             held = self._held[column] = deque(maxlen=DEPTH)
@@ -102,5 +103,5 @@ class InputHold:
 
 def _keep(own: Any, held: Any, name: str) -> None:
     value = getattr(own, name)
-    if math.isfinite(value):
+    if plausible(name, value):
         setattr(held, name, value)

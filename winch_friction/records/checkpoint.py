@@ -19,7 +19,7 @@ def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
 
 
 def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
-    """The snapshot, or None when there is no file yet; raises `InputError` for a file that is not a whole checkpoint."""
+    """The snapshot, or None when there is no file yet; raises `InputError` for what is not a whole checkpoint."""
     path = Path(path)
     if not path.exists():
         return None

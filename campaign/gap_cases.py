@@ -65,9 +65,9 @@ def _nulls(count: int, seeds: Iterator[int]) -> list[Case]:
 
 def _singles(size: float, count: int, seeds: Iterator[int]) -> list[Case]:
     return [
-        Case("single", ((effect, size),), _flavour([effect], k), next(seeds))
+        Case("single", ((effect, size),), _flavour([effect], k + offset), next(seeds))
         for k in range(count)
-        for effect in CATALOGUE
+        for offset, effect in enumerate(CATALOGUE)
     ]
 
 
@@ -82,9 +82,9 @@ def _outside(count: int, seeds: Iterator[int]) -> list[Case]:
 def _pairs(pairs: int, count: int, seeds: Iterator[int]) -> list[Case]:
     chosen = list(itertools.islice(_pair_names(), pairs))
     return [
-        Case("pair", tuple((name, 1.0) for name in pair), _flavour(list(pair), k), next(seeds))
+        Case("pair", tuple((name, 1.0) for name in pair), _flavour(list(pair), k + offset), next(seeds))
         for k in range(count)
-        for pair in chosen
+        for offset, pair in enumerate(chosen)
     ]
 
 

@@ -79,7 +79,8 @@ def suitable_flavours(effect: str) -> list[str]:
         "weeks": lambda f: f.days > 14,
     }
     test = tests.get(need, lambda f: need in f.channels)
-    return [name for name, flavour in FLAVOURS.items() if test(flavour)]
+    full = {name: flavour for name, flavour in FLAVOURS.items() if flavour.channels}
+    return [name for name, flavour in full.items() if test(flavour)]
 
 
 def make_dataset(

@@ -6,7 +6,7 @@ Numba itself notices changes of the file that a function stands in, not of the f
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -41,10 +41,22 @@ def _cache_directory(path: str) -> Iterator[None]:
 
 @lru_cache(maxsize=1)
 def _directory() -> str:
+    own = sorted(Path(__file__).parent.rglob("*.py"))
+    return str(cache_root() / source_digest([*own, Path(str(symbols.__file__)), Path(str(units.__file__))]))
+
+
+def cache_root() -> Path:
+    """Where compiled code is kept: the user's cache, or the temporary directory where that cannot be written."""
     root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "winch_friction" / "numba"
-    if not _writable(root):
-        root = Path(tempfile.gettempdir()) / f"winch_friction_numba_{os.getuid()}"
-    return str(root / _digest())
+    return root if _writable(root) else Path(tempfile.gettempdir()) / f"winch_friction_numba_{os.getuid()}"
+
+
+def source_digest(sources: Iterable[Path]) -> str:
+    """A key that changes with any of these files and with numba itself."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sources:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _writable(folder: Path) -> bool:
@@ -53,11 +65,3 @@ def _writable(folder: Path) -> bool:
     except OSError:
         return False
     return os.access(folder, os.W_OK)
-
-
-def _digest() -> str:
-    sources = sorted(Path(__file__).parent.rglob("*.py"))
-    digest = hashlib.sha256(numba.__version__.encode())
-    for path in [*sources, Path(str(symbols.__file__)), Path(str(units.__file__))]:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]

@@ -37,6 +37,7 @@ class Blocks:
     weight: FloatArray
     features: dict[str, FloatArray]
     direction: FloatArray
+    position: np.ndarray  # of the block on its run's grid
 
 
 def segment_length(runs: Sequence[PreparedRun]) -> float:

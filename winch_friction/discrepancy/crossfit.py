@@ -45,7 +45,7 @@ class CrossFit:
         self.total_y2 = float(g.y2.sum())
         self.sums = []
         for k in np.unique(self.fold):
-            own = self.fold == k
+            own = np.flatnonzero(self.fold == k)
             self.sums.append((own, self.total_g - g.g[own].sum(axis=0), self.total_b - g.b[own].sum(axis=0)))
 
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
@@ -64,8 +64,8 @@ class CrossFit:
         g = self.problem.grams
         for own, sum_g, sum_b in self.sums:
             beta = self.problem.fit(sum_g, sum_b, columns)
-            part = g.g[own][:, index[:, None], index]
-            losses[own] = g.y2[own] - 2.0 * g.b[own][:, index] @ beta + np.einsum("i,sij,j->s", beta, part, beta)
+            part = g.g[np.ix_(own, index, index)]
+            losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ beta + (part @ beta) @ beta
         loss, beta = self.train_loss(slots)
         return Explanation(tuple(slots), losses, beta, loss)
 

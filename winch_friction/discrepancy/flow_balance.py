@@ -6,6 +6,7 @@ pressure over viscosity, in both directions alike, while a wrong speed scale cha
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.ndimage import minimum_filter1d
@@ -92,6 +93,7 @@ def _per_leakage(prepared: PreparedRun) -> FloatArray:
     return driving.pressure / driving.displacement * thinness
 
 
+@cache
 def _table() -> tuple[FloatArray, FloatArray]:
     """log10 log10 (nu + 0.7) of the reference oil over temperature."""
     celsius = np.linspace(-20.0, 120.0, 71)

@@ -12,13 +12,13 @@ import numpy as np
 
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
 from winch_friction.discrepancy.travel import resolution, travel_of
+from winch_friction.discrepancy.wire_bounce import wire_bounce
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR, GRAVITY
 from winch_friction.physics.winch import Crane, operating_point
-from winch_friction.physics.winch.operating_point import run_drum_torque
 
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
 FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
@@ -61,6 +61,7 @@ class PreparedRun:
     groups: tuple[GroupSignals, ...]
     point: tuple[Any, ...]
     gap: FloatArray
+    bounce: FloatArray  # torque of an elastic wire beyond a rigid one, N m, a column per damping
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     jacobian: FloatArray
@@ -138,6 +139,7 @@ def prepare(
         name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
+        bounce=wire_bounce(columns, crane, mass, radius / crane.gear_ratio, load_acceleration, dt),
         load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
@@ -205,9 +207,11 @@ def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: i
     steady = np.median(mass)
     # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant
     mass = np.full(size, steady) if np.std(mass) <= 0.05 * abs(steady) else smooth(mass, 5 * window)
-    layers = np.rint(columns["wire_layer"]) if "wire_layer" in columns else np.full(size, np.nan)
-    unit = Run(run.name, {"time": columns["time"], "hook_load": np.ones(size), "wire_layer": layers})
-    radius = run_drum_torque(unit, crane) / GRAVITY
+    radius = np.full(size, crane.drum.radius(float("nan")))
+    if "wire_layer" in columns:
+        layers = np.rint(columns["wire_layer"])
+        for layer in np.unique(layers):
+            radius[layers == layer] = crane.drum.radius(float(layer))
     load_acceleration = radius / crane.gear_ratio * acceleration
     if "heave_velocity" in columns:
         load_acceleration = load_acceleration + np.gradient(smooth(columns["heave_velocity"], window), dt)

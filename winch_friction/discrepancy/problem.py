@@ -17,7 +17,7 @@ from winch_friction.discrepancy.blocks import (
 )
 from winch_friction.discrepancy.bounded_fit import bounded_fit
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.candidates.signals import delay_columns
+from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.noise import noise_of_run
 from winch_friction.discrepancy.prepare import PreparedRun
 from winch_friction.physics.friction import FrictionModel
@@ -30,11 +30,13 @@ DEFAULT_RELATIVE_STD = 0.2  # for a model without covariance
 TINY = 1e-9
 UNBOUNDED = 1e9
 PLAIN_TERMS = ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "stribeck")
-# what every measurement is off by without being wrong: (name, one sigma); bounded like the parameters
+# what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
-    ("weight", 5e-4),  # relative: local gravity alone varies by 0.25 %, a calibrated load cell by less
-    ("inertia", 5e-3),  # relative
-    ("timing", 0.5),  # samples between speed and pressure, besides the half sample of a counting encoder
+    ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
+    ("inertia", 5e-3, -1e-2, 1e-2),  # relative
+    ("timing", 0.3, -0.35, 0.85),  # samples that speed comes late: a counting encoder's mean is half a sample old
+    ("wire, hardly damped", 0.5, 0.0, 1.1),  # share of an elastic wire's bounce
+    ("wire, well damped", 0.5, 0.0, 1.1),
 )
 
 
@@ -97,12 +99,12 @@ def base_of(model: FrictionModel, expanded: FrictionModel) -> Base:
     upper = np.minimum(PRIOR_BOUND - shift, (bounds[:, 1] - at) / scale)
     extra = len(TOLERANCES)
     return Base(
-        names=model.parameter_names + tuple(name for name, _ in TOLERANCES),
+        names=model.parameter_names + tuple(name for name, *_ in TOLERANCES),
         parameters=len(seed),
-        scale=np.concatenate([scale, [sigma for _, sigma in TOLERANCES]]),
+        scale=np.concatenate([scale, [sigma for _, sigma, *_ in TOLERANCES]]),
         shift=np.concatenate([shift, np.zeros(extra)]),
-        lower=np.concatenate([np.minimum(lower, 0.0), np.full(extra, -PRIOR_BOUND)]),
-        upper=np.concatenate([np.maximum(upper, 0.0), np.full(extra, PRIOR_BOUND)]),
+        lower=np.concatenate([np.minimum(lower, 0.0), [low / sigma for _, sigma, low, _ in TOLERANCES]]),
+        upper=np.concatenate([np.maximum(upper, 0.0), [high / sigma for _, sigma, _, high in TOLERANCES]]),
     )
 
 
@@ -110,8 +112,8 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance, shape (samples, tolerances)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration
-    timing = delay_columns(run, {})[:, 0] * run.dt
-    return np.column_stack([weight, inertia, timing])
+    timing = delay_columns(run, SMALL_DELAY)[:, 0] * run.dt
+    return np.column_stack([weight, inertia, timing, run.bounce])
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,17 @@ class Layout:
     scales: FloatArray
     lower: FloatArray
     upper: FloatArray
+
+    def only(self, slots: Sequence[Slot]) -> "tuple[Layout, tuple[Slot, ...]]":
+        """The layout of the base and of these effects alone, and the effects' places in it."""
+        count = len(self.base.names)
+        own = list(range(count)) + [c for slot in slots for c in slot.columns]
+        placed, at = [], count
+        for slot in slots:
+            placed.append(replace(slot, columns=tuple(range(at, at + len(slot.columns)))))
+            at += len(slot.columns)
+        small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own])
+        return small, tuple(placed)
 
     def regressors(self, run: PreparedRun) -> FloatArray:
         """All scaled columns of one run, N m, shape (samples, columns)."""
@@ -146,8 +159,9 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
             for parameter in candidate.linear:
                 columns.append(len(scales))
                 scales.append(parameter.typical)
-                lower.append(-most if parameter.lower < 0.0 or present else 0.0)
-                upper.append(most)
+                low, high = variant.bounds or (-most if parameter.lower < 0.0 or present else 0.0, most)
+                lower.append(low)
+                upper.append(high)
             slots.append(Slot(candidate, variant, tuple(columns)))
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
 
@@ -163,6 +177,27 @@ def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "mo
             table if "hook_load" in run.present or not run.groups else _weightless(table, layout.base.parameters)
         )
     noise = {k: noise_of_run(t.y, t.contiguous) for k, t in enumerate(tables)}
+    first = _problem(layout, tables, noise, runs)
+    # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
+    columns = np.asarray(first.base_columns)
+    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), columns)
+    again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.contiguous)) for k, t in enumerate(tables)}
+    return _reweighted(first, again)
+
+
+def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
+    """The same problem for another noise of each run."""
+    ratio = np.array([problem.noise[k] / noise[k] for k in range(len(noise))])
+    blocks = replace(problem.blocks, weight=problem.blocks.weight * ratio[problem.blocks.run])
+    g = problem.grams
+    factor = ratio[g.run] ** 2
+    grams_again = Grams(g.g * factor[:, None, None], g.b * factor[:, None], g.y2 * factor, g.count, g.run)
+    return replace(problem, blocks=blocks, grams=grams_again, noise=noise)
+
+
+def _problem(
+    layout: Layout, tables: Sequence[RunBlocks], noise: dict[int, float], runs: Sequence[PreparedRun]
+) -> Problem:
     blocks = _joined(tables, noise)
     return Problem(
         layout.base, layout.slots, blocks, grams(blocks), layout.scales, layout.lower, layout.upper, noise,
@@ -194,4 +229,5 @@ def _joined(tables: Sequence[RunBlocks], noise: dict[int, float]) -> Blocks:
         weight=np.concatenate([np.full(len(t.y), 1.0 / noise[k]) for k, t in enumerate(tables)]),
         features=features,
         direction=np.concatenate([t.direction for t in tables]),
+        position=np.concatenate([t.contiguous for t in tables]),
     )

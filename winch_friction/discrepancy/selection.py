@@ -11,7 +11,7 @@ from winch_friction.physics.signals import FloatArray
 
 SIGNIFICANCE = 0.01  # family-wise over all candidates
 LEAST_GAIN = 0.02  # of the held-out RMSE
-LEAST_SHARE = 2e-3  # of what is explained already
+LEAST_SHARE = 5e-3  # of what is explained already
 MOST_EFFECTS = 4
 RIVAL_P = 0.05
 RIVAL_SHARE = 0.03  # a rival within this share of the effect's own gain does as well for any purpose

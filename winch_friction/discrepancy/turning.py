@@ -11,6 +11,7 @@ import numpy as np
 
 from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.friction import SHAPES
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.linearise import Expansion, expand_around
 from winch_friction.discrepancy.problem import build_problem
@@ -20,7 +21,7 @@ from winch_friction.physics.winch import Crane
 
 SIGNIFICANCE = 0.005
 # of the held-out RMSE just after reversals, where every imperfection of timing looks like a little presliding
-LEAST_GAIN = {"presliding": 0.25, "dwell_stiction": 0.1}
+LEAST_GAIN = {"presliding": 0.3, "dwell_stiction": 0.1}
 RIVALS = ("presliding", "dwell_stiction", "signal_delay", "stribeck", "coulomb", "viscous")
 FEWEST_BLOCKS = 200
 
@@ -44,6 +45,8 @@ def search_turning(
     """The best effect just after reversals, if it is one that only shows there, surely and usefully."""
     named = {slot.candidate.name for slot in explanation.slots}
     tried = [each for each in candidates if each.name in (*RIVALS, *named)]
+    if "signal_delay" in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
+        return None
     turning = expand_around(runs, crane, seed, loads, expansion, explanation, tried, turning=True)
     chosen = [run for run in turning.runs if run.name in train and run.moving.any()]
     if sum(int(run.moving.sum()) for run in chosen) < FEWEST_BLOCKS:
@@ -57,6 +60,9 @@ def search_turning(
     p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = 1.0 - np.sqrt(trials[best].loss / base.loss)
+    shape = trials[best].slots[-1].variant.shape
+    if shape.get("d_z", 1.0) <= min(SHAPES["d_z"]):  # so short a travel is within the timing's own blur
+        return None
     if p[best] > SIGNIFICANCE or gain < LEAST_GAIN.get(trials[best].slots[-1].candidate.name, 1.0):
         return None
     return TurningFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], turning)

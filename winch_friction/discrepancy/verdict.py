@@ -49,12 +49,10 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) ->
 
 def _at_bound(cross: CrossFit, selection: Selection, found: Found) -> bool:
     columns = list(cross.problem.columns(selection.final.slots))
-    for column in found.slot.columns:
-        value = selection.final.beta[columns.index(column)]
-        lower, upper = cross.problem.lower[column], cross.problem.upper[column]
-        if value >= 0.999 * upper or (lower < 0.0 and value <= 0.999 * lower):
-            return True
-    return False
+    most = found.slot.candidate.plausible
+    if _plain_term(cross, found):
+        return False
+    return any(abs(selection.final.beta[columns.index(c)]) >= 0.999 * most for c in found.slot.columns)
 
 
 def _plain_term(cross: CrossFit, found: Found) -> bool:

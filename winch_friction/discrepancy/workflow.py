@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Blocks
+from winch_friction.discrepancy.blocks import Blocks, Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.holdout import Split, lock_holdout, rms_with_interval
 from winch_friction.discrepancy.linearise import Expansion, expand_around, expand_at_seed
 from winch_friction.discrepancy.loads import estimated_loads
+from winch_friction.discrepancy.noise import noise_of_run
 from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence, dependences, remainder
 from winch_friction.discrepancy.problem import Problem, base_of, build_problem, layout_of
 from winch_friction.discrepancy.regions import find_regions
@@ -180,12 +181,12 @@ def _unweighted(cross: CrossFit, explanation: Explanation) -> FloatArray:
 def _side(
     at_seed: Expansion, expansion: Expansion, names: Sequence[str], explanation: Explanation, rng: np.random.Generator
 ) -> Side:
-    given = _problem(at_seed, names)
-    around = _problem(expansion, names)
-    after = around.blocks.y - around.blocks.x[:, list(around.columns(explanation.slots))] @ explanation.beta
+    given = _problem(at_seed, names, ())
+    around = _problem(expansion, names, explanation.slots)
+    after = around.blocks.y - around.blocks.x @ explanation.beta
     before = given.blocks.y
     torque = _measured(at_seed, given.blocks, names)
-    floor = np.sqrt(np.mean([around.noise[k] ** 2 for k in around.blocks.run]))
+    floor = np.sqrt(np.mean(_noise_per_run(after, around.blocks)[around.blocks.run] ** 2))
     return Side(
         runs=tuple(run for run in expansion.runs if run.name in names), blocks=around.blocks, before=before, after=after,
         size_before=rms_with_interval(before, given.blocks.segment, rng),
@@ -194,8 +195,16 @@ def _side(
     )  # fmt: skip
 
 
-def _problem(expansion: Expansion, names: Sequence[str]) -> Problem:
-    return build_problem([run for run in expansion.runs if run.name in names], expansion.layout)
+def _noise_per_run(residual: FloatArray, blocks: Blocks) -> FloatArray:
+    """Independent noise of each run, in the residual's unit."""
+    runs = range(int(blocks.run.max()) + 1)
+    own = [blocks.run == k for k in runs]
+    return np.array([noise_of_run(residual[k], blocks.position[k]) if k.any() else 0.0 for k in own])
+
+
+def _problem(expansion: Expansion, names: Sequence[str], slots: Sequence[Slot]) -> Problem:
+    layout, _ = expansion.layout.only(slots)
+    return build_problem([run for run in expansion.runs if run.name in names], layout)
 
 
 def _measured(expansion: Expansion, blocks: Blocks, names: Sequence[str]) -> FloatArray:

@@ -18,6 +18,7 @@ class Variant:
 
     label: str
     shape: Shape = field(default_factory=dict)
+    bounds: tuple[float, float] | None = None  # of the amplitude in typical sizes, where the shape holds only there
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,14 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Variant, single_shape
+from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Variant
 from winch_friction.discrepancy.prepare import GroupSignals, PreparedRun
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
-DELAY_STEP = 0.06  # s, half the width of the difference that stands for a derivative
+DELAYS = (0.05, 0.1)  # s
+SMALL_DELAY = {"ahead": 0.03, "behind": 0.03}  # s
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 
 _GroupLaw = Callable[[GroupSignals], FloatArray]
@@ -74,11 +75,24 @@ def _swivel(g: GroupSignals) -> FloatArray:
     return g.count * g.pressure
 
 
-def delay_columns(run: PreparedRun, _: Shape) -> FloatArray:
-    """Rate of change of the predicted drive torque: a speed that comes late makes the pressures come early, N m/s."""
-    ahead = np.interp(run.time + DELAY_STEP, run.time, run.predicted)
-    behind = np.interp(run.time - DELAY_STEP, run.time, run.predicted)
-    return ((ahead - behind) / (2.0 * DELAY_STEP))[:, None]
+def delay_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+    """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come early.
+
+    A difference over the delay itself, since friction turns over faster than a derivative could follow.
+    """
+    ahead = np.interp(run.time + shape["ahead"], run.time, run.predicted)
+    behind = np.interp(run.time - shape["behind"], run.time, run.predicted)
+    return ((ahead - behind) / (shape["ahead"] + shape["behind"]))[:, None]
+
+
+def _delay_shapes(_: Sequence[PreparedRun]) -> list[Variant]:
+    shapes = [Variant("small", SMALL_DELAY, (-0.8, 0.8))]
+    for step in DELAYS:
+        near, far = 0.6 * step / tau.typical, 1.6 * step / tau.typical
+        shapes.append(Variant(f"speed late, about {1e3 * step:g} ms", {"ahead": step, "behind": 0.0}, (near, far)))
+        early = {"ahead": 0.0, "behind": step}
+        shapes.append(Variant(f"pressures late, about {1e3 * step:g} ms", early, (-far, -near)))
+    return shapes
 
 
 def signal_candidates() -> list[Candidate]:
@@ -88,7 +102,7 @@ def signal_candidates() -> list[Candidate]:
         _in_groups("pressure_offset", r"\sum_g n_g D_g\,p_0", p_0, partial(group_columns, _offset), group_shapes),
         _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes),
         _in_groups("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", D_0, partial(group_columns, _swivel), group_shapes),
-        Candidate("signal_delay", delay, (tau,), delay_columns, single_shape, kind="signal"),
+        Candidate("signal_delay", delay, (tau,), delay_columns, _delay_shapes, kind="signal"),
     ]
 
 

@@ -152,12 +152,18 @@ def control_record(scenario: Scenario, crane: Crane, plant: PlantFile, nominal: 
         compressibility=0.5 * p["line_volume"] / p["bulk_modulus"],
         pump_flow=p["pump_flow"],
         torque_limit=p["torque_limit"],
-        drive_lag=scenario.control.drive_lag or (plant.torque_lag if secondary else plant.pump.lag),
+        drive_lag=scenario.control.drive_lag or (plant.torque_lag if secondary else _pump_lag(plant)),
         jerk_filter=0.05,
         lead=scenario.control.lead,
         feedforward_ticks=round(1.0 / (scenario.sensors.rate * scenario.control_period)),
         **gains,
     )
+
+
+def _pump_lag(plant: PlantFile) -> float:
+    """The first-order part of the pump's inverse, s."""
+    pump = plant.pump
+    return 2.0 * pump.damping / pump.bandwidth if pump.bandwidth > 0.0 else pump.lag
 
 
 def prescribed_motion(scenario: Scenario, crane: Crane, time: FloatArray, seed: int, full_speed: float) -> Motion:

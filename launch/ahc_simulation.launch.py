@@ -1,6 +1,6 @@
 """The whole loop: a simulated 150 t crane in a sea, its compensator and its estimator.
 
-ros2 launch winch_friction ahc_simulation.launch.py scenario:=ahc_55t rate:=1.0
+ros2 launch winch_friction ahc_simulation.launch.py scenario:=ahc_irregular rate:=1.0
 """
 
 from launch.actions import DeclareLaunchArgument
@@ -30,7 +30,7 @@ def arguments() -> list[DeclareLaunchArgument]:
         DeclareLaunchArgument("namespace", default_value="", description="Namespace, one per crane"),
         DeclareLaunchArgument("use_sim_time", default_value="true", description="Take the time from the simulator"),
         DeclareLaunchArgument("autostart", default_value="true", description="Configure and activate at start"),
-        DeclareLaunchArgument("scenario", default_value="ahc_55t_215", description="Shipped scenario, or a file"),
+        DeclareLaunchArgument("scenario", default_value="ahc_irregular", description="Shipped scenario, or a file"),
         DeclareLaunchArgument("rate", default_value="1.0", description="Simulated seconds per second"),
         DeclareLaunchArgument("seed", default_value="1", description="Which sea"),
         DeclareLaunchArgument("log_level", default_value="info", description="Least severity that is logged"),

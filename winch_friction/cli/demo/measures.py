@@ -45,7 +45,7 @@ class PhaseFigures:
 
 def bin_label(speeds: tuple[float, float]) -> str:
     """A speed bin in rpm."""
-    return f"{speeds[0]:g}-{speeds[1]:g} rpm" if speeds[1] < BINS[-1][1] else f"above {speeds[0]:g} rpm"
+    return f"{speeds[0]:g}-{speeds[1]:g} rpm" if speeds[1] < BINS[-1][1] else f">{speeds[0]:g} rpm"
 
 
 def measure(plan: DemoPlan, recording: Recording) -> list[PhaseFigures]:

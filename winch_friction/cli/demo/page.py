@@ -64,10 +64,12 @@ def error_table(rows: list[PhaseFigures]) -> str:
     """Friction-torque error by phase and bin."""
     labels = [bin_label(each) for each in BINS]
     body = [(row.title, *map(_error, row.friction_error, row.friction_error_share)) for row in rows]
-    caption = (
-        "RMS error in N m, and as a share of the true friction, of the model behind the feedforward (sent / scale)"
+    caption = "RMS error in N m and as a share of the true friction, of the model behind the feedforward (sent / scale)"
+    reversal = (
+        "Below 50 rpm no model can be right: the feedforward spreads the change of sign over time on purpose, and at "
+        "rest friction is whatever holds the load."
     )
-    return table_html(("feedforward", *labels), body, caption)
+    return table_html(("feedforward", *labels), body, caption) + paragraph(reversal, "faint")
 
 
 def _error(error: float, share: float) -> str:

@@ -98,10 +98,10 @@ def make_plan(out: Path, scenario: str, duration: float, sea: int, factor: float
     """The demo's plan: no feedforward, constant efficiency factor, seed model, learned model."""
     seed = "a6vm215_crane2"
     phases = (
-        Phase("none", "no feedforward", seed, SCALE, enabled=False),
-        Phase("efficiency", f"constant efficiency {EFFICIENCY:g}", str(out / "efficiency.yaml"), 1.0),
-        Phase("seed", f"seed model x {SCALE:g}", seed, SCALE),
-        Phase("learned", f"learned model x {SCALE:g}", seed, SCALE, follow=True),
+        Phase("none", "none", seed, SCALE, enabled=False),
+        Phase("efficiency", f"efficiency {EFFICIENCY:g}", str(out / "efficiency.yaml"), 1.0),
+        Phase("seed", f"seed x {SCALE:g}", seed, SCALE),
+        Phase("learned", f"learned x {SCALE:g}", seed, SCALE, follow=True),
     )
     return DemoPlan(out, "crane_150t", seed, scenario, duration, sea, factor, phases)
 

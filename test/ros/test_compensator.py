@@ -1,0 +1,139 @@
+"""The compensator node against a probe that publishes a swell."""
+
+import math
+from pathlib import Path
+
+import pytest
+from conftest import Bench, diagnostics, efforts, stamps
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import String
+
+from winch_friction.nodes.qos import LATCHED
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Sample
+from winch_friction.records.model_file import load_model, model_to_text, save_model
+
+NAN = float("nan")
+
+
+@pytest.fixture
+def fed(bench: Bench) -> tuple[Bench, list]:
+    """A compensator that has faded in."""
+    bench.start("compensator", ramp_time=0.3, diagnostics_period=0.2)
+    torque = bench.listen("compensator/friction_torque")
+    bench.announce()
+    bench.drive(1.0)
+    return bench, torque
+
+
+def test_stale_inputs_ramp_to_zero_and_back_without_a_bump(fed: tuple[Bench, list]) -> None:
+    bench, torque = fed
+    seen = bench.listen("/diagnostics", DiagnosticArray, 10)
+    assert abs(efforts(torque)[-1]) > 100.0
+    bench.spin(0.8)
+    bench.time += 0.8
+    silent = efforts(torque)
+    assert silent[-1] == 0.0
+    assert diagnostics(seen, "feedforward")["state"] == "stale"
+    largest = max(abs(b - a) for a, b in zip(silent[-20:-1], silent[-19:], strict=True))
+    assert largest < 0.6 * max(map(abs, silent))  # a ramp, not a step
+    before = len(torque)
+    bench.drive(1.0)
+    back = efforts(torque)[before:]
+    assert abs(back[-1]) > 100.0
+    assert max(abs(b - a) for a, b in zip(back[:-1], back[1:], strict=True)) < 150.0
+    assert diagnostics(seen, "feedforward")["state"] in ("active", "fading")
+
+
+def test_a_lost_pressure_alone_ramps_to_zero(fed: tuple[Bench, list]) -> None:
+    bench, torque = fed
+
+    def lose(sample: Sample) -> None:
+        sample.groups["active"].pressure_a = NAN  # NaN stays out: the topic falls silent
+
+    bench.drive(0.8, lose)
+    assert efforts(torque)[-1] == 0.0
+    bench.drive(0.8)
+    assert abs(efforts(torque)[-1]) > 0.0
+
+
+def test_nan_never_leaves_the_node(fed: tuple[Bench, list]) -> None:
+    bench, torque = fed
+
+    def poison(sample: Sample) -> None:
+        sample.motor_speed = NAN
+
+    bench.drive(0.2, poison)
+    message = bench.node.create_publisher(type(torque[0]), "winch/reference", 10)
+    message.publish(type(torque[0])(name=["winch_motor"], velocity=[]))  # an array shorter than its names
+    bench.drive(0.4)
+    assert all(map(math.isfinite, efforts(torque)))
+    assert abs(efforts(torque)[-1]) > 0.0
+
+
+def test_outputs_are_stamped_as_their_measurement(fed: tuple[Bench, list]) -> None:
+    bench, torque = fed
+    before = len(torque)
+    bench.drive(0.2)
+    bench.spin(0.2)
+    sent = [round(bench.time - k * 0.02, 6) for k in range(9, -1, -1)]
+    assert [round(each, 6) for each in stamps(torque)[before:]][:10] == sent
+    last = torque[-1]
+    assert list(last.name) == ["winch_motor"]
+    assert len(last.position) == len(last.velocity) == len(last.effort) == 1
+
+
+def test_models_are_swapped_by_service_and_by_topic(fed: tuple[Bench, list], tmp_path: Path) -> None:
+    bench, torque = fed
+    seed = load_model("a6vm215_crane2")
+    harder = seed.with_values({name: 1.3 * seed.value(name) for name in ("C1", "C5", "C6", "K4")})
+    node, seen = bench.remote("compensator"), bench.listen("/diagnostics", DiagnosticArray, 10)
+    node.set({"model_file": str(save_model(harder, tmp_path / "harder.yaml"))})
+    assert "in use" in node.trigger("load_model")
+    bench.drive(0.5)
+    softer = seed.with_values({name: 0.7 * seed.value(name) for name in ("C1", "C5", "C6", "K4")})
+    models = bench.node.create_publisher(String, "friction_model", LATCHED)
+    models.publish(String(data=model_to_text(softer)))
+    bench.drive(0.8)
+    assert diagnostics(seen, "feedforward")["accepted_models"] == "2"
+    assert max(map(abs, efforts(torque)[-20:])) > 0.0
+
+
+def test_a_wrong_model_is_refused_and_the_last_good_one_kept(fed: tuple[Bench, list], tmp_path: Path) -> None:
+    bench, _ = fed
+    seed = load_model("a6vm215_crane2")
+    node, seen = bench.remote("compensator"), bench.listen("/diagnostics", DiagnosticArray, 10)
+    node.set({"model_file": str(save_model(seed.with_values({"C6": 2 * seed.value("C6")}), tmp_path / "wrong.yaml"))})
+    with pytest.raises(InputError, match="outside"):
+        node.trigger("load_model")
+    models = bench.node.create_publisher(String, "friction_model", LATCHED)
+    models.publish(String(data="schema: nonsense"))
+    bench.drive(0.5)
+    status = diagnostics(seen, "feedforward")
+    assert status["model"] == seed.name
+    assert status["accepted_models"] == "0"
+    assert "model refused" in bench.log("compensator")
+
+
+def test_enable_and_reset(fed: tuple[Bench, list]) -> None:
+    bench, torque = fed
+    node = bench.remote("compensator")
+    node.switch("enable", False)
+    bench.drive(0.6)
+    assert efforts(torque)[-1] == 0.0
+    node.switch("enable", True)
+    bench.drive(0.6)
+    assert abs(efforts(torque)[-1]) > 0.0
+    assert "anew" in node.trigger("reset")
+
+
+def test_two_cranes_in_two_namespaces(bench: Bench) -> None:
+    for crane in ("north", "south"):
+        bench.start("compensator", "-r", f"__ns:=/{crane}", name=crane, ramp_time=0.1)
+    north, south = (bench.listen(f"{crane}/compensator/friction_torque") for crane in ("north", "south"))
+    for crane in ("north", "south"):
+        bench.announce(crane)
+    bench.drive(0.5, namespace="north")
+    bench.spin(0.2)
+    assert len(north) >= 20
+    assert south == []

@@ -1,0 +1,81 @@
+"""Lifecycle, autostart, parameters and the end of a process."""
+
+import subprocess
+import sys
+
+import pytest
+from conftest import Bench
+
+from winch_friction.nodes.remote import RemoteNode
+from winch_friction.physics.errors import InputError
+
+
+def test_transitions_gate_the_output(bench: Bench) -> None:
+    bench.start("compensator", autostart=False)
+    node, torque = bench.remote("compensator"), bench.listen("compensator/friction_torque")
+    assert node.state() == "unconfigured"
+    node.change("configure")
+    assert node.state() == "inactive"
+    bench.drive(0.3)
+    assert torque == []
+    node.change("activate")
+    bench.announce()
+    bench.drive(0.5)
+    heard = len(torque)
+    assert heard >= 20
+    node.change("deactivate")
+    bench.spin(0.3)
+    heard = len(torque)
+    bench.drive(0.4)
+    assert len(torque) == heard
+    node.change("cleanup", "configure", "activate")
+    bench.announce()
+    bench.drive(0.3)
+    assert len(torque) > heard
+    assert bench.stop("compensator") == 0
+
+
+def test_a_bad_model_leaves_the_node_unconfigured(bench: Bench) -> None:
+    bench.start("compensator", autostart=False, model_file="no_such_model")
+    node = bench.remote("compensator")
+    with pytest.raises(InputError, match="refused to configure"):
+        node.change("configure")
+    assert node.state() == "unconfigured"
+    assert "'no_such_model' is neither a file nor a shipped name" in bench.log("compensator")
+    node.set({"model_file": "a6vm215_crane1"})
+    node.change("configure")
+    assert node.state() == "inactive"
+
+
+def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -> None:
+    bench.start("compensator")
+    node: RemoteNode = bench.remote("compensator")
+    with pytest.raises(InputError, match="out of range"):
+        node.set({"scale": 3.0})
+    with pytest.raises(InputError, match="cycle at reversal"):
+        node.set({"drive": "torque"}) or node.set({"velocity_source": "measured"})
+    with pytest.raises(InputError, match=r"read.only"):
+        node.set({"groups": ["main"]})
+    node.set({"scale": 0.5})
+    assert node.get("scale").double_value == 0.5
+    assert node.get("velocity_source").string_value == "reference"
+
+
+@pytest.mark.parametrize(
+    ("executable", "override", "said"),
+    [
+        ("compensator", "scale:=7.0", "scale"),
+        ("compensator", "scale:=much", "scale"),
+        ("estimator", "crane:=no_such_crane", "no_such_crane"),
+        ("simulator", "scenario:=no_such_sea", "no_such_sea"),
+        ("estimator", "pressure_reference:=relative", "gauge, absolute"),
+    ],
+)
+def test_bad_parameters_are_one_line_and_status_2(executable: str, override: str, said: str) -> None:
+    command = [sys.executable, "-m", f"winch_friction.nodes.{executable}", "--ros-args", "-p", override]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0)
+    assert ended.returncode == 2
+    lines = [line for line in ended.stderr.splitlines() if "error" in line.lower()]
+    assert len(lines) == 1
+    assert said in lines[0]
+    assert "Traceback" not in ended.stderr

@@ -16,7 +16,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "N
 
 from campaign.identification_crane import study  # noqa: E402
 from campaign.identification_motors import LOSSES, MOTORS, fitters, held_out, recovery  # noqa: E402
-from campaign.identification_table import page  # noqa: E402
+from campaign.identification_table import commit, page  # noqa: E402
 from winch_friction.records.atomic import write_text  # noqa: E402
 
 FIRST_SEED = 5000
@@ -29,6 +29,7 @@ def main() -> None:
     restarts, limit = (1, 2000) if options.quick else (3, 20000)
     tables = list(LOSSES)[:1] if options.quick else list(LOSSES)
     results: dict[str, Any] = {
+        "commit": commit(),
         "recovery": [recovery(motor) for motor in MOTORS],
         "fitters": [row for loss in tables for motor in MOTORS for row in fitters(motor, loss, restarts, limit)],
         "held_out": {motor: held_out(motor) for motor in MOTORS},

@@ -16,8 +16,8 @@ def page(results: dict[str, Any]) -> str:
     """The whole page as Markdown."""
     parts = [
         "# Identification campaign",
-        f"`{results['command']}` · commit {_commit()} · {datetime.now(UTC):%Y-%m-%d} · {results['seconds']:.0f} s on "
-        f"one core · {len(results['cranes'])} cranes (seeds {results['cranes'][0]['seed']} and following, not used in "
+        f"`{results['command']}` · commit {results['commit']} · {datetime.now(UTC):%Y-%m-%d} · "
+        f"{results['seconds']:.0f} s on one core · {len(results['cranes'])} cranes (seeds {results['cranes'][0]['seed']} and following, not used in "
         "development)",
         "A crane of its own per seed: every parameter of crane 2 "
         "moved by the spread between units, sensors with systematic errors (displacement 1 %, pressure 0.25 % and "
@@ -37,7 +37,8 @@ def page(results: dict[str, Any]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _commit() -> str:
+def commit() -> str:
+    """The commit that runs."""
     found = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
     return found.stdout.strip() or "unknown"
 

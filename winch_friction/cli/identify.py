@@ -178,6 +178,7 @@ def _show_system(found: Any, model: Any, errors: Any, out: Path, json: bool) -> 
                 "held_out_costs": found.held_out_costs,
                 "fits": {k: {"cost": r.cost, "evaluations": r.evaluations, **r.model.as_dict()}
                          for k, r in found.fits.items()},
+                "bootstrap_std": _bootstrap(found),
                 "tied": tied,
                 "not_determined": unseen,
                 "errors_percent_of_nominal": {
@@ -192,11 +193,20 @@ def _show_system(found: Any, model: Any, errors: Any, out: Path, json: bool) -> 
         [[x.number, x.cost, h] for x, h in zip(found.loops, held, strict=True)],
     )
     _show_parameters(model, "joint fit")
+    spread = _bootstrap(found)
+    rows = [[name, std, spread[name]] for name, std in zip(model.parameter_names, model.std, strict=True) if spread]
+    show_table("uncertainty", ("parameter", "std, linearised", "std, bootstrap over tests"), rows)
     rows = [[e.test, e.worst(True), e.worst(False)] for e in errors]
     show_table("error, % of nominal torque", ("test", "above 250 rpm", "below 250 rpm"), rows)
     stdout.print(f"act alike: {'; '.join(tied) or 'none'}")
     stdout.print(f"not determined by these tests: {'; '.join(unseen) or 'nothing'}; wrote {out}")
     return None
+
+
+def _bootstrap(found: Any) -> dict[str, float]:
+    if found.bootstrap is None:
+        return {}
+    return dict(zip(found.bootstrap.names, found.bootstrap.std.tolist(), strict=True))
 
 
 @app.command()

@@ -20,6 +20,7 @@ LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
 _SMOOTHING = 0.2  # s, window of the winch's acceleration
 _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judgement
+_STICKING = 0.5  # rad/s of the smoothed speed; a winch that creeps faster has the friction of its direction
 STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
 
 
@@ -108,7 +109,7 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     """
     run = _with_true_displacement(run, displacement_scale)
     group = "active" if "active" in run.groups else run.groups[0]
-    if not np.any(np.abs(run["motor_speed"]) > STANDSTILL):
+    if not np.any(np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING):
         raise InputError(f"{run.name}: the winch never turns; there is no friction to verify")
     drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}
     drum_torque = run_drum_torque(run, crane)
@@ -116,7 +117,7 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
     capacity = crane.motor_count(group) * run[f"{group}.displacement"]
     predicted = held / capacity
-    moving = np.abs(run["motor_speed"]) > STANDSTILL
+    moving = np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING
     for _ in range(4):  # the driving group's friction depends on its own pressure, weakly
         points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
         friction = np.asarray(model.torque(points))

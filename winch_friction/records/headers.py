@@ -34,7 +34,7 @@ class Header:
         expected = column_unit(self.name) or "1"
         if self.unit in ("", expected):
             return values
-        scale, offset = _conversion(self.unit, expected, f"{where}: column '{self.text}'")
+        scale, offset = conversion_to_si(self.unit, expected, f"{where}: column '{self.text}'")
         return values * scale + offset if offset else values * scale
 
 
@@ -55,8 +55,8 @@ def header_text(column: str) -> str:
 
 
 @lru_cache(maxsize=256)
-def _conversion(unit: str, expected: str, where: str) -> tuple[float, float]:
-    """Scale and offset to SI."""
+def conversion_to_si(unit: str, expected: str, where: str) -> tuple[float, float]:
+    """Scale and offset that take values in `unit` to `expected`; raises `InputError` for a unit that does not fit."""
     registry = _registry()
     try:
         at = [registry.Quantity(np.float64(value), unit).to(expected).magnitude for value in (0.0, 1.0)]

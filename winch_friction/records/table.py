@@ -11,6 +11,8 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
+from winch_friction.records.atomic import write_text
+from winch_friction.records.headers import conversion_to_si, parse_header
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Table:
 
     path: Path
     cells: Mapping[str, tuple[str, ...]]
-    units: Mapping[str, str | None]
+    units: Mapping[str, str]
     rows: tuple[int, ...]
 
     @property
@@ -85,52 +87,22 @@ def _table(path: Path, records: list[list[str]], rows: list[int]) -> Table:
     return Table(path, cells, dict(headers), tuple(rows[1:]))
 
 
-def _header(text: str, path: Path) -> tuple[str, str | None]:
-    name, bracket, rest = text.strip().partition("[")
-    if bracket and not rest.rstrip().endswith("]"):
-        raise InputError(f"{path}: header '{text}' lacks the closing bracket of its unit")
-    return name.strip().lower().replace(" ", "_"), rest.rstrip().removesuffix("]").strip() if bracket else None
+def _header(text: str, path: Path) -> tuple[str, str]:
+    header = parse_header(text, str(path))
+    return header.name.lower().replace(" ", "_"), header.unit
 
 
-def _factor(unit: str | None, si_unit: str, where: str) -> float:
+def _factor(unit: str, si_unit: str, where: str) -> float:
     """Factor from a header's unit to SI; no bracket means SI already."""
-    if unit is None or unit == si_unit:
-        return 1.0
-    import pint
-
-    registry = _registry()
-    try:
-        given = registry.Quantity(1.0, _spelled(unit))
-        return float(given.to(_spelled(si_unit)).magnitude)
-    except (pint.UndefinedUnitError, pint.DimensionalityError, AttributeError, TypeError, ValueError) as error:
-        raise InputError(f"{where}: unit '{unit}' cannot be read as {si_unit} ({error})".replace("\n", " ")) from error
-    except Exception as error:  # pint's parser raises tokenizer errors of many kinds
-        raise InputError(f"{where}: unit '{unit}' is not a unit") from error
+    return 1.0 if unit in ("", si_unit) else conversion_to_si(_spelled(unit), _spelled(si_unit), where)[0]
 
 
 def _spelled(unit: str) -> str:
     return {"%": "percent", "-": "dimensionless", "1": "dimensionless"}.get(unit, unit)
 
 
-_REGISTRIES: list[Any] = []
-
-
-def _registry() -> Any:
-    if not _REGISTRIES:
-        import pint
-
-        registry: Any = pint.UnitRegistry(on_redefinition="ignore")
-        # angle is a dimension of its own: cm^3 alone would leave open whether a revolution or a radian is meant
-        for definition in ("radian = [angle] = rad", "revolution = 2 * pi * radian = rev", "rpm = rev / minute"):
-            registry.define(definition)
-        _REGISTRIES.append(registry)
-    return _REGISTRIES[0]
-
-
 def write_table(path: Path, columns: Mapping[str, Iterable[Any]], comments: Iterable[str] = ()) -> Path:
     """Write a CSV table atomically; the keys are whole headers, `speed [rpm]`."""
-    from winch_friction.records.atomic import write_text
-
     rows = zip(*columns.values(), strict=True)
     body = [",".join(str(cell) for cell in row) for row in rows]
     head = [f"# {comment}" for comment in comments]

@@ -13,6 +13,8 @@ from winch_friction.report.practice_look import below_legend, colour
 from winch_friction.report.practice_system import name
 from winch_friction.report.tables import paragraph, table_html
 
+_SHORT = {"first loop": "1st", "second loop": "2nd", "joint fit": "joint"}
+
 
 def verification_sections(practice: Practice) -> list[TextSection]:
     """Friction per test, normal mode, heave compensation."""
@@ -28,7 +30,7 @@ def verification_sections(practice: Practice) -> list[TextSection]:
 def _friction_html(practice: Practice) -> str:
     names = list(practice.errors)
     columns = ["test", "use", "nominal N·m"]
-    columns += [f"{model.split()[0]} {where}250" for model in names for where in ("≥", "<")]
+    columns += [f"{_SHORT.get(model, model)} {where}250" for model in names for where in ("≥", "<")]
     fitted = len(practice.system.tests)
     rows: list[list[Any]] = []
     for k, error in enumerate(practice.errors[names[0]]):
@@ -98,7 +100,7 @@ _COLUMNS = ("run", "model", "RMS turning, bar", "RMS all, bar", "mean hoisting, 
 def _normal_html(practice: Practice) -> str:
     checks = {model: [check] for model, check in practice.normal_mode.items()}
     return table_html(_COLUMNS, _check_rows(checks), digits=3) + figure_html(
-        pressure_figure(practice.normal_mode["joint fit"], practice.normal_mode["first loop"]),
+        pressure_figure(practice.normal_mode),
         "Speed, and measured and predicted pressure drop in normal mode; paper 2 Fig 18 and 19.",
     )
 
@@ -106,11 +108,11 @@ def _normal_html(practice: Practice) -> str:
 def _ahc_html(practice: Practice) -> str:
     figures = "".join(
         figure_html(
-            pressure_figure(joint, first),
-            f"{name(joint.run)}: speed, and measured and predicted active pressure drop with the supplier's motor "
-            "(first loop) and the joint fit; paper 2 Fig 15, 20-23.",
+            pressure_figure({model: checks[k] for model, checks in practice.ahc.items()}),
+            f"{name(run.name)}: speed, and measured and predicted active pressure drop by each winch model; paper 2 "
+            "Fig 15, 20-23.",
         )
-        for joint, first in zip(practice.ahc["joint fit"], practice.ahc["first loop"], strict=True)
+        for k, run in enumerate(practice.folder.ahc)
     )
     return (
         paragraph(
@@ -124,14 +126,17 @@ def _ahc_html(practice: Practice) -> str:
     )
 
 
-def pressure_figure(check: PressureCheck, other: PressureCheck) -> Any:
-    """Speed above, measured and predicted pressure drop below."""
-    figure, (above, below) = new_figure(2, 1, height=2.3, sharex=True)
-    above.plot(check.time, check.speed / RPM, lw=0.8)
-    below.plot(check.time, check.measured / BAR, lw=1.2, color=colour(0), label="measured")
-    below.plot(other.time, other.predicted / BAR, lw=0.8, color=colour(2), label="first loop")
-    below.plot(check.time, check.predicted / BAR, lw=0.8, color=colour(1), label="joint fit")
-    above.set(ylabel="motor speed [rpm]", title=name(check.run))
-    below.set(ylabel="Δp [bar]", xlabel="time [s]")
-    below_legend(below, 3)
+def pressure_figure(checks: dict[str, PressureCheck]) -> Any:
+    """Speed above, measured and predicted pressure drop in the middle, the errors below."""
+    figure, (above, middle, below) = new_figure(3, 1, height=1.9, sharex=True)
+    first = next(iter(checks.values()))
+    above.plot(first.time, first.speed / RPM, lw=0.8)
+    middle.plot(first.time, first.measured / BAR, lw=1.4, color=colour(0), label="measured")
+    for k, (model, check) in enumerate(checks.items(), start=1):
+        middle.plot(check.time, check.predicted / BAR, lw=0.8, color=colour(k), label=model)
+        below.plot(check.time, (check.predicted - check.measured) / BAR, lw=0.7, color=colour(k))
+    above.set(ylabel="motor speed [rpm]", title=name(first.run))
+    middle.set(ylabel="Δp [bar]")
+    below.set(ylabel="error [bar]", xlabel="time [s]")
+    middle.legend(ncols=4, loc="upper right", fontsize=8)
     return figure

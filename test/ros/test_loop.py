@@ -1,0 +1,128 @@
+"""The whole loop over DDS on a short sea: learned, latched, recorded, replayed, kept."""
+
+import os
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Bench
+from std_msgs.msg import String
+
+from winch_friction.cli.demo.measures import measure
+from winch_friction.cli.demo.plan import DemoPlan, make_plan
+from winch_friction.cli.demo.processes import events, running_nodes, running_stage
+from winch_friction.cli.demo.recording import Recording, read_recording
+from winch_friction.cli.demo.verify import verify
+from winch_friction.nodes.qos import LATCHED
+from winch_friction.records.model_file import model_from_text
+
+POLICIES = Path(__file__).resolve().parents[2] / "config" / "sros2" / "policies.xml"
+NODES = ("compensator", "estimator", "simulator")
+
+
+@dataclass(frozen=True)
+class Voyage:
+    """What a run of two phases left: seed model, then the learned one."""
+
+    plan: DemoPlan
+    recording: Recording
+    recorded: dict[str, int]
+    late_models: list[Any]
+    names: dict[str, dict[str, set[str]]]
+
+
+@pytest.fixture(scope="module")
+def voyage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Voyage]:
+    out = tmp_path_factory.mktemp("voyage")
+    bench = Bench(out)
+    os.environ["ROS_DOMAIN_ID"] = str(bench.domain)
+    try:
+        plan = make_plan(out, "ahc_irregular", 50.0, 11, 1.3)
+        plan = replace(plan, phases=plan.phases[2:])
+        parameter_file, plan_file = plan.write()
+        with running_nodes(parameter_file, out / "logs") as nodes, running_stage(plan_file) as stage:
+            said = list(events(stage, nodes, out / "logs"))
+            models = bench.listen("friction_model", String, LATCHED)
+            assert bench.spin(10.0, lambda: bool(models)), "the late joiner got no model"
+            names = {name: _names(bench, name) for name in NODES}
+        yield Voyage(plan, read_recording(plan), said[-1]["messages"], models, names)
+    finally:
+        del os.environ["ROS_DOMAIN_ID"]
+        bench.close()
+
+
+def _names(bench: Bench, node: str) -> dict[str, set[str]]:
+    """What a running node publishes, subscribes to and serves."""
+    ask = {
+        "publish": bench.node.get_publisher_names_and_types_by_node,
+        "subscribe": bench.node.get_subscriber_names_and_types_by_node,
+        "reply": bench.node.get_service_names_and_types_by_node,
+    }
+    return {kind: {name for name, _ in get(node, "/")} for kind, get in ask.items()}
+
+
+def test_no_sample_is_lost(voyage: Voyage) -> None:
+    samples = voyage.recorded["/winch/joint_states"]
+    assert samples == 2 * (50 * 50 + 1)
+    assert voyage.recorded["/compensator/friction_torque"] == samples
+    assert voyage.recorded["/estimator/friction_torque"] == samples
+
+
+def test_live_equals_replay(voyage: Voyage) -> None:
+    agreements = verify(voyage.plan, voyage.recording)
+    assert [(each.what, each.difference) for each in agreements if not each.holds] == []
+    assert len(agreements) == 3
+
+
+def test_the_learned_model_compensates_better(voyage: Voyage) -> None:
+    seed, learned = measure(voyage.plan, voyage.recording)
+    assert learned.residual < seed.residual
+    visited = [share for share in learned.friction_error_share[1:] if np.isfinite(share)]
+    assert len(visited) >= 2
+    assert max(visited) < 0.05
+
+
+def test_a_late_joiner_gets_the_latest_model(voyage: Voyage) -> None:
+    (message,) = voyage.late_models
+    late, last = model_from_text(message.data), voyage.recording.models[-1]
+    assert late.values == last.values
+    assert late.provenance["learned_at"] == last.provenance["learned_at"]
+    assert late.provenance["seed"] == voyage.plan.seed.name
+
+
+def test_the_estimator_continues_from_its_checkpoint(voyage: Voyage, bench: Bench) -> None:
+    checkpoint = voyage.plan.out / "estimator.json"
+    bench.start("estimator", checkpoint=checkpoint, model_period=1.0)
+    models = bench.listen("friction_model", String, LATCHED)
+    bench.announce()
+    bench.drive(0.5)
+    assert bench.spin(5.0, lambda: bool(models))
+    assert "continues from" in bench.log("estimator")
+    kept, learned = model_from_text(models[0].data), voyage.recording.models[-1]
+    assert kept.value("C6") != voyage.plan.seed.value("C6")
+    assert kept.value("C6") == pytest.approx(learned.value("C6"), rel=0.02)
+    assert bench.stop("estimator") == 0
+
+
+def test_a_checkpoint_of_another_seed_is_refused(voyage: Voyage, bench: Bench) -> None:
+    bench.start("estimator", checkpoint=voyage.plan.out / "estimator.json", model_file="a6vm215_crane1")
+    assert bench.remote("estimator").state() == "active"
+    bench.spin(0.5)
+    assert "starts from the seed" in bench.log("estimator")
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_the_security_policies_cover_every_name(voyage: Voyage, node: str) -> None:
+    profile = next(p for p in ElementTree.parse(POLICIES).iter("profile") if p.get("node") == node)
+    for kind, used in voyage.names[node].items():
+        allowed = {_absolute(each.text, node) for group in profile if group.get(kind) == "ALLOW" for each in group}
+        assert used <= allowed, f"{kind}: not covered"
+
+
+def _absolute(name: str | None, node: str) -> str:
+    name = name or ""
+    return name.replace("~", f"/{node}") if name.startswith("~") else f"/{name.lstrip('/')}"

@@ -12,7 +12,7 @@ from winch_friction.discrepancy.selection import Found, Selection
 
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
 LEAST_UNEXPLAINED = 0.08  # share of the remainder that one signal must predict when no effect was found
-LEFT_OVER = 0.08  # share of the excess over the noise floor that a named effect may leave
+LEFT_OVER = 0.15  # share of the excess over the noise floor that a named effect may leave
 LEAST_EXCESS = 0.35  # of the noise variance: less than that above the floor is nobody's effect
 OBVIOUS_EXCESS = 1.5
 MOST_NAMED = 2  # besides base terms that the model simply lacks

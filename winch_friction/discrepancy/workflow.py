@@ -14,6 +14,7 @@ from winch_friction.discrepancy.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.holdout import Split, lock_holdout, rms_with_interval
 from winch_friction.discrepancy.linearise import Expansion, expand_around, expand_at_seed
 from winch_friction.discrepancy.loads import estimated_loads
+from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.noise import noise_of_run
 from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence, dependences, remainder
 from winch_friction.discrepancy.problem import Problem, base_of, build_problem, layout_of
@@ -24,7 +25,7 @@ from winch_friction.discrepancy.ripple import Ripple
 from winch_friction.discrepancy.selection import Found, Selection, select
 from winch_friction.discrepancy.side_findings import find_ripple, leakage_effect, ripple_effect, without_ripple
 from winch_friction.discrepancy.turning import TurningFinding, search_turning
-from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
@@ -40,6 +41,7 @@ class GapOptions:
     holdout: float = 0.25
     seed: int = 0
     effects_file: Path | None = None
+    plan: bool = True  # look for the experiment that separates rivals
     candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given
 
 
@@ -128,6 +130,7 @@ def _assemble(
     if search.turning is not None:
         final_model, parameters = with_turning(repaired.model, search.turning)
         effects.append(_turning_effect(search.turning, parameters))
+    experiment = _experiment(crane, search, options) if options.plan else None
     train = _side(search.at_seed, search.expansion, split.train, explanation, rng)
     holdout = _side(search.at_seed, search.expansion, split.holdout, explanation, rng)
     unexplained = verdict.kind == UNEXPLAINED
@@ -137,8 +140,19 @@ def _assemble(
         unit="N*m" if crane.electric else "bar", train=train, holdout=holdout,
         depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
-        untestable=search.untestable, model=final_model, seed_model=model, notes=_notes(split.runs, search.loads),
+        untestable=search.untestable, model=final_model, seed_model=model,
+        next_experiment=experiment.content() if experiment else None, next_scenario=experiment.text if experiment else "",
+        notes=_notes(split.runs, search.loads),
     )  # fmt: skip
+
+
+def _experiment(crane: Crane, search: _Search, options: GapOptions) -> NextExperiment | None:
+    """For the first effect that has rivals; an electric drive has no scenario family."""
+    if search.verdict.kind != AMBIGUOUS or crane.electric:
+        return None
+    own = next(each for each in search.selection.found if each.rivals)
+    fitted = search.selection.final
+    return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 
 def _effect(found: Found, parameters: Mapping[str, Mapping[str, Estimate]]) -> Effect:

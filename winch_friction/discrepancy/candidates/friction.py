@@ -21,7 +21,7 @@ SHAPES: dict[str, tuple[float, ...]] = {
     "b_g": (0.0,),
     "d_z": (0.009, 0.02, 0.04, 0.09),
     "g_dw": (0.4,),
-    "d_dw": (1.0, 5.0, 30.0),
+    "d_dw": (1.0, 5.0),
 }
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 SHIPPED = (

@@ -1,0 +1,105 @@
+"""The experiment that would separate rivals best: T-optimality (Atkinson and Fedorov 1975) over feasible scenarios.
+
+Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size is the
+truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together. What the
+rival cannot imitate, in standard deviations of the measurement, is the expected separation.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.blocks import Slot
+from winch_friction.discrepancy.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.linearise import Expansion
+from winch_friction.discrepancy.prepare import prepare
+from winch_friction.discrepancy.problem import PRIOR_WEIGHT, build_problem
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.winch import Crane
+from winch_friction.records.paths import shipped
+
+EXPERIMENTS = (
+    "experiment_zero_check", "experiment_loads", "experiment_displacement_sweep", "experiment_boost_step",
+    "experiment_heave_6s", "experiment_heave_30s", "experiment_slow_ramps", "experiment_hold_times", "warm_up",
+    "test_03", "test_10", "ahc_55t_160",
+)  # fmt: skip
+ENOUGH = 3.0  # standard deviations that tell two effects apart
+
+
+@dataclass(frozen=True)
+class NextExperiment:
+    """A scenario by shipped name and as a file's text, the rivals, and their expected separation in sigma."""
+
+    name: str
+    text: str
+    separates: tuple[str, str]
+    expected_z: float
+    alternatives: Mapping[str, float]
+
+    @property
+    def file(self) -> str:
+        """Name of the scenario file beside gap.json."""
+        return f"{self.name}.yaml"
+
+    def content(self) -> dict[str, Any]:
+        """The entry of gap.json."""
+        note = "" if self.expected_z >= ENOUGH else "tied in every scenario of the family: another channel must decide"
+        return {
+            "scenario": self.file, "separates": list(self.separates), "expected_z": self.expected_z, "note": note,
+            "considered": dict(self.alternatives),
+        }  # fmt: skip
+
+
+def plan_experiment(
+    crane: Crane,
+    expansion: Expansion,
+    cross: CrossFit,
+    fitted: Explanation,
+    own: Slot,
+    rivals: Sequence[Slot],
+    seed: int,
+) -> NextExperiment | None:
+    """The scenario in which the nearest rival of `own` stays farthest away; None where none of them can be run."""
+    others = tuple(slot for slot in fitted.slots if slot is not own)
+    separation: dict[str, tuple[float, Slot]] = {}
+    for name in EXPERIMENTS:
+        try:
+            new = _simulated(name, crane, expansion, seed)
+        except InputError:
+            continue
+        z = [(_separation(cross, new, fitted, (*others, rival)), rival) for rival in rivals]
+        separation[name] = min(z, key=lambda pair: pair[0])
+    if not separation:
+        return None
+    best = max(separation, key=lambda name: separation[name][0])
+    z_best, rival = separation[best]
+    return NextExperiment(
+        best, shipped("scenarios", best).read_text(encoding="utf-8"), (own.candidate.name, rival.candidate.name), z_best,
+        {name: round(pair[0], 2) for name, pair in sorted(separation.items(), key=lambda item: -item[1][0])},
+    )  # fmt: skip
+
+
+def _simulated(name: str, crane: Crane, expansion: Expansion, seed: int) -> CrossFit:
+    from winch_friction.simulation import load_scenario, simulate
+
+    measured = simulate(load_scenario(name), crane, expansion.model, seed=seed).run
+    prepared = prepare(measured, crane, expansion.model)
+    return CrossFit(build_problem([prepared], expansion.layout))
+
+
+def _separation(cross: CrossFit, new: CrossFit, truth: Explanation, rival: Sequence[Slot]) -> float:
+    """Sigma by which the rival's best fit to old and new runs misses what the truth predicts for both."""
+    true_columns = np.asarray(cross.problem.columns(truth.slots))
+    columns = np.asarray(cross.problem.columns(rival))
+    g = cross.total_g + new.total_g
+    b = g[:, true_columns] @ truth.beta
+    y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
+    beta = cross.problem.fit(g, b, columns)
+    return float(np.sqrt(max(_loss(g, b, y2, columns, beta), 0.0) / PRIOR_WEIGHT))
+
+
+def _loss(g: FloatArray, b: FloatArray, y2: float, columns: np.ndarray, beta: FloatArray) -> float:
+    return float(y2 - 2.0 * b[columns] @ beta + beta @ g[np.ix_(columns, columns)] @ beta)

@@ -146,7 +146,7 @@ class Scenario(Strict):
     schema_: str = Field(default=SCHEMA, alias="schema", pattern=r"^winch_friction\.scenario/1$")
     name: str
     description: str = ""
-    duration: Seconds = Field(gt=0.0, le=36000.0)
+    duration: Seconds = Field(gt=0.0, le=14400.0)
     mode: Literal["normal", "ahc"]
     drive: Literal["primary", "secondary"] = "primary"
     load: Kilograms = Field(gt=0.0, le=400000.0)

@@ -1,6 +1,6 @@
 """How fast the simulated crane runs: times real time per core, cold start, and the cost of one step from Python.
 
-    python bench/simulator.py [--json]
+python bench/simulator.py [--json]
 """
 
 import json

@@ -22,8 +22,9 @@ LOWEST_ORDER, HIGHEST_ORDER = 0.1, 20.0  # periods per revolution of the motor s
 LONGEST_SPECTRUM = 1 << 18
 NEIGHBOURHOOD = 401  # lines whose median is the background
 WINDOW = 15  # samples; slower than this is friction, not ripple
-MOST_OF_ONE_RUN = 10.0  # of a line's power over its background
-SIGNIFICANT = 1e-8  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+SPEED_CLASSES = 3  # parts of a run
+MOST_OF_ONE_PART = 5.0  # of a line's power over its background
+SIGNIFICANT = 1e-4  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
 
 
@@ -57,23 +58,30 @@ def _search(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, 
     tables = [table for table in tables if len(table[0]) > 200 and np.any(table[2])]
     if not tables:
         return None
-    bins = max(float(np.ptp(angle)) for angle, _, _ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
+    bins = max(float(np.ptp(angle)) for angle, *_ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
     size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
     orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
     use = (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
-    power = np.zeros(use.sum())
-    for angle, torque, static in tables:
-        line = _power(angle, torque * static, size)[use]
-        background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
-        # an encoder's steps beat with the sampling in one run at one speed: no single run may decide
-        power += np.minimum(line / background, MOST_OF_ONE_RUN)
-    return _strongest(orders[use], power, tables)
+    power, parts = np.zeros(use.sum()), 0
+    for angle, torque, static, speed in tables:
+        for part in _speed_classes(speed):
+            line = _power(angle[part], (torque * static)[part], size)[use]
+            background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
+            # an encoder's steps beat with the sampling at one speed, in every run that has it: no part may decide alone
+            power += np.minimum(line / background, MOST_OF_ONE_PART)
+            parts += 1
+    return _strongest(orders[use], power, parts, [table[:3] for table in tables])
+
+
+def _speed_classes(speed: FloatArray) -> list[np.ndarray]:
+    """Indices of the slow, middle and fast thirds of a run; a ripple of the shaft is in all of them."""
+    return np.array_split(np.argsort(np.abs(speed), kind="stable"), SPEED_CLASSES)
 
 
 def _moving(
     run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Angle, fast part of the drive torque and T_d/i of the moving samples."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Angle, fast part of the drive torque, T_d/i and speed of the moving samples."""
     good = np.isfinite(run["time"])
     time = run.time[good]
     torque = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good])
@@ -85,7 +93,7 @@ def _moving(
         inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
         torque = torque - inertia * np.gradient(_speed(run, crane)[good], time)
     fast = torque - smooth(torque, WINDOW)
-    return angle[moving], fast[moving], static[moving]
+    return angle[moving], fast[moving], static[moving], np.interp(time, grid, prepared.speed)[moving]
 
 
 def _speed(run: Run, crane: Crane) -> FloatArray:
@@ -101,13 +109,13 @@ def _power(angle: FloatArray, torque: FloatArray, size: int) -> FloatArray:
 
 
 def _strongest(
-    orders: FloatArray, power: FloatArray, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]
+    orders: FloatArray, power: FloatArray, parts: int, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]
 ) -> Ripple:
     best = int(np.argmax(power))
-    alone = gamma.sf(power[best], len(tables))
+    alone = gamma.sf(power[best], parts)
     order = float(orders[best])
     amplitude, std = _amplitude(order, tables)
-    prominence = float(power[best] / len(tables))
+    prominence = float(power[best] / parts)
     return Ripple(order, amplitude, std, float(min(1.0, 2 * alone * len(orders))), prominence)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
 from winch_friction.discrepancy.travel import resolution, travel_of
-from winch_friction.discrepancy.wire_bounce import wire_bounce
+from winch_friction.discrepancy.wire_mode import on_the_wire, swinging_load, wire_stiffnesses
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -61,7 +61,7 @@ class PreparedRun:
     groups: tuple[GroupSignals, ...]
     point: tuple[Any, ...]
     gap: FloatArray
-    bounce: FloatArray  # torque of an elastic wire beyond a rigid one, N m, a column per damping
+    wire_mode: tuple[float, float]  # frequency rad/s and damping ratio of the load on its wire; 0: rigid
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     jacobian: FloatArray
@@ -87,12 +87,14 @@ def prepare(
     load: float = float("nan"),
     missing_torque: FloatArray | float = 0.0,
     turning: bool = False,
+    mode: tuple[float, float] | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
     `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that the predicted
     pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples just after
-    reversals instead of the moving ones.
+    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is known already;
+    otherwise it is looked for.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     columns, dt, valid = _uniform(run)
@@ -115,22 +117,24 @@ def prepare(
         direction, state_speed, moving = _just_reversed(angle, raw_speed, speed, guard, dt)
     static, load_side = _load(run, columns, crane, load, acceleration, window, dt, size)
     mass, radius, drum_torque, load_acceleration = load_side
-    inertial = crane.inertia * acceleration + mass * radius / crane.gear_ratio * load_acceleration
+    lever = radius / crane.gear_ratio
     extra = _optional(columns, angle, run.time[0], size)
-    measured, groups, point, predicted, jacobian, unit = _balance(
-        columns,
-        run,
-        crane,
-        model,
-        state_speed,
-        direction,
-        acceleration,
-        drum_torque,
-        static + inertial,
-        extra,
-        window,
-        missing_torque,
-    )
+
+    def balance(of_load: FloatArray) -> Any:
+        inertial = crane.inertia * acceleration + mass * lever * of_load
+        return _balance(
+            columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra, window,
+            missing_torque,
+        )  # fmt: skip
+
+    if mode is None:
+        measured, _, _, predicted, _, _ = balance(load_acceleration)
+        mode = _wire_mode(
+            smooth(measured, window) - predicted, moving, load_acceleration, dt, mass, lever, columns, crane
+        )
+    if mode[1] > 0.0:
+        load_acceleration = on_the_wire(load_acceleration, dt, *mode)
+    measured, groups, point, predicted, jacobian, unit = balance(load_acceleration)
     # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
     # remain in the pressures
     measured = smooth(measured, window)
@@ -139,7 +143,7 @@ def prepare(
         name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
-        bounce=wire_bounce(columns, crane, mass, radius / crane.gear_ratio, load_acceleration, dt),
+        wire_mode=mode,
         load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
@@ -217,6 +221,16 @@ def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: i
         load_acceleration = load_acceleration + np.gradient(smooth(columns["heave_velocity"], window), dt)
     drum_torque = mass * GRAVITY * radius
     return drum_torque / crane.gear_ratio, (mass, radius, drum_torque, load_acceleration)
+
+
+def _wire_mode(gap, moving, rigid, dt, mass, lever, columns, crane):  # type: ignore[no-untyped-def]
+    """Frequency and damping of the load's swinging, where stiffness and length of the wire are known."""
+    load = float(np.median(mass))
+    if "wire_out" not in columns or not np.isfinite(crane.wire_stiffness) or load <= 0.0 or moving.sum() < MIN_SAMPLES:
+        return 0.0, 0.0
+    stiffnesses = wire_stiffnesses(crane.wire_stiffness, columns["wire_out"])
+    swing = swinging_load(gap, np.flatnonzero(moving), rigid, dt, load, lever, stiffnesses)
+    return swing.frequency, swing.damping
 
 
 def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float, size: int) -> dict[str, Any]:

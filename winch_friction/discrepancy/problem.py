@@ -35,8 +35,6 @@ TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
     ("inertia", 5e-3, -1e-2, 1e-2),  # relative
     ("timing", 0.3, -0.35, 0.85),  # samples that speed comes late: a counting encoder's mean is half a sample old
-    ("wire, hardly damped", 0.5, 0.0, 1.1),  # share of an elastic wire's bounce
-    ("wire, well damped", 0.5, 0.0, 1.1),
 )
 
 
@@ -113,7 +111,7 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration
     timing = delay_columns(run, SMALL_DELAY)[:, 0] * run.dt
-    return np.column_stack([weight, inertia, timing, run.bounce])
+    return np.column_stack([weight, inertia, timing])
 
 
 @dataclass(frozen=True)

@@ -67,10 +67,10 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
         worthy = (p <= SIGNIFICANCE) & (relative >= LEAST_GAIN) & (worth >= least)
         order = np.argsort([each.loss for each in trials])
-        considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k]) for k in order]
+        best = next((int(k) for k in order if worthy[k]), -1)
+        considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
             break
-        best = next(int(k) for k in order if worthy[k])
         p_values[trials[best].slots[-1].candidate.name] = float(p[best])
         current = _exchanged(cross, trials[best])
     current = _with_company(cross, _pruned(cross, current, rng))
@@ -78,14 +78,18 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
     return Selection(base, current, found, tuple(considered))
 
 
-def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool) -> Considered:
+def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool, best: bool) -> Considered:
     own = trial.slots[-1]
-    if worthy:
-        verdict = "significant and useful"
+    if best:
+        verdict = "taken"
+    elif worthy:
+        verdict = "significant and useful, but outdone in held-out loss by the one taken"
     elif p > SIGNIFICANCE:
         verdict = f"not significant on held-out segments (p = {p:.2g})"
-    else:
+    elif gain < LEAST_GAIN:
         verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
+    else:
+        verdict = f"explains less than {100 * LEAST_SHARE:g} % of what the first effect did: its own second order"
     return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)
 
 

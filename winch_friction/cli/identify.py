@@ -1,7 +1,7 @@
 """`winch-friction identify motor | system | practice`: from supplier tables and logged tests to a friction model."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -23,6 +23,12 @@ def _range(text: str, unit: float, name: str) -> tuple[float, float]:
     if not 0.0 <= lower < upper:
         raise InputError(f"--{name} '{text}': the first number must be below the second")
     return lower * unit, upper * unit
+
+
+def _hash(path: Path) -> str:
+    import hashlib
+
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
 @app.command()
@@ -47,6 +53,7 @@ def motor(
     Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
     """
     from winch_friction.cli.console import progress
+    from winch_friction.cli.identify_output import show_motor
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
     from winch_friction.identification.supplier_file import read_supplier_table
@@ -75,52 +82,7 @@ def motor(
     )
     fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
     save_model(fitted, out)
-    _show_motor(found, fitted, out, json)
-
-
-def _hash(path: Path) -> str:
-    import hashlib
-
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-
-
-def _show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
-    from winch_friction.cli.console import show_json, show_table, stdout
-
-    rows = []
-    for score in found.scores:
-        other = found.by_complex.get(score.name)
-        rows.append(
-            [score.name, score.fitted.parameter_count, score.fitted.rms, score.held_out, score.bic, score.fitted.cost,
-             other.cost if other else float("nan"), score.fitted.evaluations, other.evaluations if other else 0]
-        )  # fmt: skip
-    if json:
-        keys = ("model", "parameters", "rms", "held_out", "bic", "cost", "cost_complex", "evaluations",
-                "evaluations_complex")  # fmt: skip
-        scores = [dict(zip(keys, row, strict=True)) for row in rows]
-        return show_json({"scores": scores, "recommended": found.recommended, "seed": _seed_json(fitted, out),
-                          "condition": found.chosen.fitted.condition})  # fmt: skip
-    columns = ("model", "parameters", "RMS N·m", "held-out RMS", "BIC", "cost LS", "cost complex", "evaluations LS",
-               "evaluations complex")  # fmt: skip
-    show_table(f"{found.table.name}: {len(found.table)} rows", columns, rows)
-    _show_parameters(fitted, f"{found.chosen.name}, condition {found.chosen.fitted.condition:.3g}")
-    stdout.print(f"recommended by held-out displacement: {found.recommended}; wrote {out}")
-    return None
-
-
-def _seed_json(model: Any, out: Path) -> dict[str, Any]:
-    values = zip(model.parameters, model.values, model.std, strict=True)
-    return {"file": str(out), "parameters": {p.name: {"value": v, "std": s, "unit": p.unit} for p, v, s in values}}
-
-
-def _show_parameters(model: Any, title: str) -> None:
-    from winch_friction.cli.console import show_table
-
-    rows = [
-        [p.name, f"{value:.5g}", f"{std:.2g}", p.unit, p.doc]
-        for p, value, std in zip(model.parameters, model.values, model.std, strict=True)
-    ]
-    show_table(title, ("parameter", "value", "std", "unit", "meaning"), rows)
+    show_motor(found, fitted, out, json)
 
 
 @app.command()
@@ -140,6 +102,7 @@ def system(
 
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
+    from winch_friction.cli.identify_output import show_system
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
@@ -162,51 +125,7 @@ def system(
     model = winch_seed(found, known, out.stem, {"data_sha256": hashes, "motor": motor})
     errors = test_errors(found.joint.model, [test.curve for test in (*found.tests, *found.held_out)])
     save_model(model, out)
-    _show_system(found, model, errors, out, json)
-
-
-def _show_system(found: Any, model: Any, errors: Any, out: Path, json: bool) -> None:
-    from winch_friction.cli.console import show_json, show_table, stdout
-
-    unseen = [str(direction) for direction in found.unseen]
-    tied = [f"{tie.first} = {tie.second}" for tie in found.ties]
-    if json:
-        return show_json(
-            {
-                "seed": _seed_json(model, out),
-                "loops": [{"number": loop.number, "cost": loop.cost} for loop in found.loops],
-                "held_out_costs": found.held_out_costs,
-                "fits": {k: {"cost": r.cost, "evaluations": r.evaluations, **r.model.as_dict()}
-                         for k, r in found.fits.items()},
-                "bootstrap_std": _bootstrap(found),
-                "tied": tied,
-                "not_determined": unseen,
-                "errors_percent_of_nominal": {
-                    e.test: {"above_250_rpm": e.worst(True), "below_250_rpm": e.worst(False)} for e in errors},
-            }
-        )  # fmt: skip
-    show_table("eq 7-10", ("fit", "E", "evaluations"), [[k, r.cost, r.evaluations] for k, r in found.fits.items()])
-    held = list(found.held_out_costs) or [float("nan")] * len(found.loops)
-    show_table(
-        "loops",
-        ("loop", "E", "E held out"),
-        [[x.number, x.cost, h] for x, h in zip(found.loops, held, strict=True)],
-    )
-    _show_parameters(model, "joint fit")
-    spread = _bootstrap(found)
-    rows = [[name, std, spread[name]] for name, std in zip(model.parameter_names, model.std, strict=True) if spread]
-    show_table("uncertainty", ("parameter", "std, linearised", "std, bootstrap over tests"), rows)
-    rows = [[e.test, e.worst(True), e.worst(False)] for e in errors]
-    show_table("error, % of nominal torque", ("test", "above 250 rpm", "below 250 rpm"), rows)
-    stdout.print(f"act alike: {'; '.join(tied) or 'none'}")
-    stdout.print(f"not determined by these tests: {'; '.join(unseen) or 'nothing'}; wrote {out}")
-    return None
-
-
-def _bootstrap(found: Any) -> dict[str, float]:
-    if found.bootstrap is None:
-        return {}
-    return dict(zip(found.bootstrap.names, found.bootstrap.std.tolist(), strict=True))
+    show_system(found, model, errors, out, json)
 
 
 @app.command()
@@ -224,6 +143,7 @@ def practice(
     Example: winch-friction identify practice practice_150t --out practice/
     """
     from winch_friction.cli.console import progress, show_json, stdout
+    from winch_friction.cli.identify_output import seed_json, show_parameters
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
@@ -240,8 +160,8 @@ def practice(
     save_model(done.motor_seed, out / "motor.yaml")
     save_model(done.seed, out / "seed.yaml")
     if json:
-        return show_json({"summary": summary_lines(done), "seed": _seed_json(done.seed, out / "seed.yaml")})
-    _show_parameters(done.seed, "seed (joint fit)")
+        return show_json({"summary": summary_lines(done), "seed": seed_json(done.seed, out / "seed.yaml")})
+    show_parameters(done.seed, "seed (joint fit)")
     for line in summary_lines(done):
         stdout.print(line)
     stdout.print(f"wrote {out / 'report.html'}, {out / 'motor.yaml'}, {out / 'seed.yaml'}")

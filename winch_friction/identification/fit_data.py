@@ -8,6 +8,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray
 
 
@@ -84,8 +85,6 @@ class CountedModel:
 
 
 def _groups(points: tuple[Any, ...]) -> int:
-    from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
-
     return (len(points) - len(WINCH_SIGNALS)) // len(GROUP_SIGNALS)
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import least_squares
 from winch_friction.identification.friction_curve import winch_points
 from winch_friction.identification.plateaus import Plateau
 from winch_friction.identification.prior import UnitSpread
+from winch_friction.identification.system_fit import combined
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
@@ -185,8 +186,6 @@ def _root_information(prior: FrictionModel, scale: FloatArray) -> FloatArray:
 
 def winch_prior(motor: FrictionModel, system: FrictionModel, name: str) -> FrictionModel:
     """The supplier's motor with its covariance and the system's terms left free: the prior of a joint fit."""
-    from winch_friction.identification.system_fit import combined
-
     whole = combined(motor.with_covariance(None), system.with_covariance(None), name)
     size, count = len(whole.values), len(motor.values)
     covariance = np.zeros((size, size))

@@ -31,10 +31,6 @@ class MotorIdentification:
     recommended: str
     chosen: ModelScore
 
-    def score(self, name: str) -> ModelScore:
-        """The score of one model."""
-        return next(each for each in self.scores if each.name == name)
-
 
 def identify_motor(
     table: SupplierTable,

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from scipy.linalg import block_diag
+
 from winch_friction.identification.fit import FitResult, fit
 from winch_friction.identification.fit_data import FitData
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -37,8 +39,6 @@ def combined(motor: FrictionModel, system: FrictionModel, name: str) -> Friction
     """Motor and system in one model; covariances side by side, without correlation between them."""
     covariance = None
     if motor.covariance is not None and system.covariance is not None:
-        from scipy.linalg import block_diag
-
         covariance = block_diag(motor.covariance, system.covariance)
     return replace(
         motor,

@@ -14,7 +14,7 @@ from winch_friction.identification.friction_curve import FrictionCurve, curve_da
 from winch_friction.identification.joint_fit import JointFit, joint_fit, observations, winch_prior
 from winch_friction.identification.plateaus import Plateau, PlateauRule, find_plateaus
 from winch_friction.identification.prior import UnitSpread, supplier_prior
-from winch_friction.identification.system_fit import EQUATION_8, EQUATION_10, Loop, combined, fit_system, second_loop
+from winch_friction.identification.system_fit import EQUATION_8, EQUATION_10, Loop, fit_system, second_loop
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -141,8 +141,3 @@ def winch_seed(found: SystemIdentification, crane: Crane, name: str, provenance:
     }
     constants = {"gear_ratio": crane.gear_ratio, **joint.model.constants}
     return replace(joint.model, name=name, constants=constants, provenance=said)
-
-
-def first_loop_model(motor: FrictionModel, system: FrictionModel) -> FrictionModel:
-    """The papers' winch model of a first loop."""
-    return combined(motor, system, "first loop")

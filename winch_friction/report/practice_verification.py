@@ -9,8 +9,7 @@ from winch_friction.identification.verification import STANDSTILL, PressureCheck
 from winch_friction.physics.units import BAR, RPM
 from winch_friction.report.base import TextSection
 from winch_friction.report.figures import figure_html, new_figure
-from winch_friction.report.practice_look import below_legend, colour
-from winch_friction.report.practice_system import name
+from winch_friction.report.practice_look import below_legend, colour, name
 from winch_friction.report.tables import paragraph, table_html
 
 _SHORT = {"first loop": "1st", "second loop": "2nd", "joint fit": "joint"}

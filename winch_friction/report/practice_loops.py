@@ -1,0 +1,129 @@
+"""Report of the practice: what the second loop and those after it change."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from winch_friction.identification.fit_data import modelled
+from winch_friction.identification.friction_curve import FrictionCurve, curve_data
+from winch_friction.identification.practice import Practice
+from winch_friction.identification.supplier_table import motor_points
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.report.figures import figure_html, new_figure
+from winch_friction.report.practice_look import (
+    MOTOR,
+    SYSTEM,
+    below_legend,
+    colour,
+    curve_label,
+    label,
+    shown,
+)
+from winch_friction.report.tables import paragraph, table_html
+
+
+def loop_html(practice: Practice) -> str:
+    """Table 4, the motor before and after, derived system friction, map against model."""
+    system = practice.system
+    loops = system.loops
+    columns = ["model", *(f"loop {loop.number}" for loop in loops)]
+    rows: list[list[Any]] = [
+        [label(p), *(shown(loop.model, p) for loop in loops)]
+        for p in (*MOTOR, *SYSTEM)
+        if p in loops[0].model.as_dict() or p in SYSTEM
+    ]
+    rows.append(["E", *(loop.cost for loop in loops)])
+    if system.held_out_costs:
+        rows.append(["E on held-out tests", *system.held_out_costs])
+    return (
+        paragraph(_loop_verdict(practice), "verdict")
+        + table_html(columns, rows, "Optimized friction parameters (paper 2 Table 4)")
+        + figure_html(motor_change_figure(practice), "Motor loss before and after the loops; paper 2 Fig 10.")
+        + figure_html(
+            derived_figure(practice),
+            "System friction derived from the measurements by subtracting the motor: equal loads should coincide; "
+            "paper 2 Fig 11, 12, 14.",
+        )
+        + figure_html(
+            map_derived_figure(practice), "System friction derived with the model and with the map; paper 2 Fig 13."
+        )
+    )
+
+
+def _loop_verdict(practice: Practice) -> str:
+    costs, held = [loop.cost for loop in practice.system.loops], practice.system.held_out_costs
+    gain = 100.0 * (1.0 - costs[-1] / costs[0])
+    said = f"{len(costs)} loops lower E by {gain:.0f} % on the fitted tests"
+    if held:
+        change = 100.0 * (1.0 - held[-1] / held[0])
+        word = "lower" if change > 0 else "raise"
+        said += f" and {word} it by {abs(change):.0f} % on the held-out ones"
+        said += " (no over-fit)" if change > 0.0 else " (over-fit)"
+    return said + "."
+
+
+def motor_change_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 10: motor loss with old and new parameters."""
+    figure, axes = new_figure(height=3.2)
+    speed = np.linspace(50, 2000, 79) * RPM
+    first, last = practice.system.loops[0].motor, practice.system.loops[-1].motor
+    for k, cm3 in enumerate((215.0, 145.0, 70.0)):
+        points = motor_points(speed, np.full_like(speed, 200 * BAR), np.full_like(speed, cm3 * CM3_PER_REV))
+        axes.plot(speed / RPM, first.torque(points), color=colour(k), label=f"{cm3:.0f} cm³/rev")
+        axes.plot(speed / RPM, last.torque(points), color=colour(k), ls="--")
+    axes.set(xlabel="motor speed [rpm]", ylabel="torque loss [N·m]", title="200 bar; dashed: after the loops")
+    axes.legend()
+    return figure
+
+
+def _derived(curves: Sequence[FrictionCurve], motor: FrictionModel) -> list[np.ndarray]:
+    return [curve.friction_torque - modelled(motor, curve_data([curve])) for curve in curves]
+
+
+def derived_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 11, 12, 14: derived system friction by load, first loop (solid) and last (dashed)."""
+    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    loads = sorted({round(curve.drum_torque, -3) for curve in curves})
+    figure, axes = new_figure(1, len(loads), height=3.4, squeeze=False)
+    for axis, load in zip(axes[0], loads, strict=True):
+        chosen = [curve for curve in curves if round(curve.drum_torque, -3) == load]
+        first = _derived(chosen, practice.system.loops[0].motor)
+        last = _derived(chosen, practice.system.loops[-1].motor)
+        for k, (curve, before, after) in enumerate(zip(chosen, first, last, strict=True)):
+            axis.plot(curve.speed / RPM, before * curve.motors, color=colour(k), label=_short(curve))
+            axis.plot(curve.speed / RPM, after * curve.motors, color=colour(k), ls="--")
+        axis.set(xlabel="motor speed [rpm]", title=f"T_d = {load / 1e3:.0f} kN·m")
+        below_legend(axis, 2)
+    axes[0][0].set(ylabel="T_fs, all motors [N·m]")
+    return figure
+
+
+def _short(curve: FrictionCurve) -> str:
+    return f"{curve.displacement / CM3_PER_REV:.0f} cm³/rev"
+
+
+def map_derived_figure(practice: Practice) -> Any:
+    """Paper 2 Fig 13: derived system friction with the parametric model and with the black-box map."""
+    figure, axes = new_figure(height=3.4)
+    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    for k, curve in enumerate(_extremes(curves)):
+        displacement = np.full_like(curve.speed, curve.displacement)
+        sides = [
+            practice.map.torque_loss(curve.speed, side, displacement)
+            for side in (curve.pressure_up, curve.pressure_down)
+        ]
+        by_model = _derived([curve], practice.system.loops[0].motor)[0]
+        by_map = curve.friction_torque - 0.5 * (sides[0] + sides[1])
+        axes.plot(curve.speed / RPM, by_model * curve.motors, color=colour(k), label=curve_label(curve))
+        axes.plot(curve.speed / RPM, by_map * curve.motors, color=colour(k), ls=":")
+    axes.set(xlabel="motor speed [rpm]", ylabel="T_fs, all motors [N·m]", title="solid: model; dotted: map")
+    below_legend(axes, 2)
+    return figure
+
+
+def _extremes(curves: Sequence[FrictionCurve]) -> list[FrictionCurve]:
+    """The lightest and the heaviest test at the largest and the smallest displacement."""
+    ordered = sorted(curves, key=lambda curve: (round(curve.drum_torque, -3), curve.displacement))
+    return list({id(each): each for each in (ordered[0], ordered[-1], *ordered[1:4:2], *ordered[-3:-1:2])}.values())[:5]

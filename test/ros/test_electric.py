@@ -10,8 +10,9 @@ from winch_friction.physics.signals import Sample
 
 
 def test_an_electric_drive_is_compensated_and_learned(bench: Bench) -> None:
+    narrow = {"reversal_speed": 0.01, "reversal_time": 0.0}
     common = {"crane": "emps", "model_file": "emps_viscous"}
-    bench.start("compensator", velocity_source="measured", load=0.0, ramp_time=0.1, absolute_limit=100.0, **common)
+    bench.start("compensator", velocity_source="measured", load=0.0, ramp_time=0.1, **narrow, **common)
     bench.start("estimator", excitation_speed=0.05, stick_speed=0.005, **common)
     fed, learned = (bench.listen(f"{node}/friction_torque") for node in ("compensator", "estimator"))
     pressures = bench.listen("compensator/pressure_feedforward", FluidPressure)

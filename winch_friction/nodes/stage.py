@@ -116,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     plan = json.loads(path.read_text(encoding="utf-8"))
     rclpy.init(args=[])
     try:
-        with BagWriter(plan["bag"], metadata={"demo": path.name}) as writer:
+        with BagWriter(plan["bag"], metadata={"demo": path.name, "phases": plan["phases"]}) as writer:
             Stage(plan, writer).play()
     except InputError as error:
         say(event="error", message=str(error))

@@ -68,11 +68,13 @@ class DemoPlan:
         """Parameter file of the nodes and plan of the stage."""
         save_model(efficiency_model(self.crane, EFFICIENCY), self.out / "efficiency.yaml")
         nodes = yaml.safe_dump(self._node_parameters(), sort_keys=False)
+        phases = [phase.as_plan() for phase in self.phases]
         plan = {
             "bag": str(self.bag),
+            "metadata": {"source": "winch-friction demo", "phases": phases},  # what a replay needs to know
             "crane": self.crane_name,
             "groups": GROUPS,
-            "phases": [phase.as_plan() for phase in self.phases],
+            "phases": phases,
         }
         parameter_file = write_text(self.out / "nodes.yaml", f"# What the demo's nodes were told.\n{nodes}")
         return parameter_file, write_text(self.out / "plan.json", json.dumps(plan, indent=1))

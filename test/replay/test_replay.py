@@ -11,7 +11,7 @@ from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.hold import InputHold
 from winch_friction.records.bag_write import MESSAGES, BagWriter
-from winch_friction.records.model_file import model_to_text
+from winch_friction.records.model_file import load_model, model_to_text
 from winch_friction.records.paths import config_directory
 from winch_friction.records.runs import read_run, write_run
 from winch_friction.records.topics import crane_topics, joint_state, stamp_header
@@ -72,9 +72,7 @@ def live_recording(path, run, crane, model, settings, order=None):
     compensator = FeedforwardCompensator(crane, model, settings.phases[0].config)
     compensator.load_model(model)
     hold = InputHold(run.groups)
-    with BagWriter(
-        path, metadata={"phases": [{"start": 0.0, "name": "all", "compensator": {"ramp_time": 0.2}}]}
-    ) as bag:
+    with BagWriter(path, metadata={"phases": [{"start": 0.0, "name": "all", "parameters": {"ramp_time": 0.2}}]}) as bag:
         bag.write("/friction_model", MESSAGES.make("std_msgs/msg/String", data=model_to_text(model)), 0.0)
         for sample in hold.samples(run):
             messages = topics.encode(sample, MESSAGES)
@@ -125,7 +123,7 @@ def test_settings_come_from_the_nodes_own_files(tmp_path):
     with pytest.raises(InputError, match="scale"):
         settings_from_file(broken)
     with pytest.raises(InputError, match="speed"):
-        settings_from_metadata({"phases": [{"start": 0, "compensator": {"speed": 1}}]}, "bag")
+        settings_from_metadata({"phases": [{"parameters": {"speed": 1}}]}, "bag")
 
 
 def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
@@ -154,3 +152,27 @@ def test_the_verb(tmp_path, bag, capsys):
     assert main.run(["replay", str(tmp_path / "nothing"), *arguments[2:]]) == 2
     assert main.run([*arguments, "--remap", "x"]) == 2
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_phases_of_a_recording_begin_after_its_pauses(tmp_path, run, crane_150t, crane2_model):
+    shifts = (0.0, run.time[-1] + 2.0, 2.0 * (run.time[-1] + 2.0))
+    phases = [
+        {"name": "off", "enabled": False},
+        {"name": "half", "parameters": {"scale": 0.45, "follow_model_topic": False}},
+        {"name": "other", "parameters": {"model_file": "a6vm215_crane1", "scale": 0.9, "follow_model_topic": False}},
+    ]
+    topics = crane_topics(crane_150t, run.groups)
+    with BagWriter(tmp_path / "bag", metadata={"phases": phases}) as writer:
+        for shift in shifts:
+            for sample in run.samples():
+                sample.time += shift
+                for topic, message in topics.encode(sample, MESSAGES):
+                    writer.write(f"/{topic}", message, sample.time)
+    replayed = replay_recording(tmp_path / "bag", crane_150t, crane2_model).compensator
+    torques = np.split(replayed["friction_torque"], 3)
+    assert not torques[0].any()
+    for part, model, scale in ((1, crane2_model, 0.45), (2, load_model("a6vm215_crane1"), 0.9)):
+        alone = FeedforwardCompensator(crane_150t, model, CompensatorConfig(scale=scale))
+        np.testing.assert_allclose(
+            torques[part], replay_compensator(run, alone)["friction_torque"], rtol=1e-5, atol=1e-3
+        )

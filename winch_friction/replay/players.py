@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isfinite
 
 from winch_friction.compensation import Feedforward, FeedforwardCompensator
 from winch_friction.compensation.model_schedule import LEARNED_AT, ModelSchedule
@@ -16,6 +17,8 @@ from winch_friction.records.sample_stream import SampleStream
 from winch_friction.records.topics import TopicMap
 from winch_friction.replay.estimator import EstimateRecord
 from winch_friction.replay.settings import Phase, ReplaySettings
+
+PAUSE = 1.0  # s without a sample between one phase of a recording and the next
 
 
 class CompensatorPlayer:
@@ -33,7 +36,7 @@ class CompensatorPlayer:
     def _begin(self, phase: Phase) -> None:
         """A node configured anew: seed, settings, nothing held."""
         self._phase = phase
-        self.law = FeedforwardCompensator(self._crane, self._seed, phase.config)
+        self.law = FeedforwardCompensator(self._crane, phase.seed or self._seed, phase.config)
         self.law.set_enabled(phase.enabled)
         self.hold = InputHold(self._topics.groups, phase.config.max_age, dict(phase.config.max_ages))
         self._stream = SampleStream(self._topics, self.hold, self._restart)
@@ -53,11 +56,17 @@ class CompensatorPlayer:
 
     def take(self, each: Message) -> None:
         """One input message."""
-        if self._waiting and each.stamp >= self._waiting[0].start:
+        if self._waiting and self._begins(self._waiting[0], each.stamp):
             self._begin(self._waiting.pop(0))
         sample = self._stream.take(each.source, each.message, each.receipt)
         if sample is not None:
             self.step(sample)
+
+    def _begins(self, phase: Phase, stamp: float) -> bool:
+        if phase.start == phase.start:
+            return stamp >= phase.start
+        last = self._stream.last_stamp
+        return isfinite(last) and stamp - last > PAUSE
 
     def step(self, sample: Sample) -> None:
         """One sample."""

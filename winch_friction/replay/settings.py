@@ -8,19 +8,26 @@ from typing import Any
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.estimation import EstimatorConfig
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.options import from_mapping
+from winch_friction.records.model_file import load_model
 from winch_friction.records.strict_yaml import read_yaml
 
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of a recording in which the compensator ran unchanged: from the sample at `start` s, begun afresh."""
+    """A part of a recording in which the compensator ran unchanged, begun afresh.
+
+    It begins at `start` s, or, where that is NaN, after the next pause of the recording; `seed` replaces the model that
+    the replay is given.
+    """
 
     start: float = float("-inf")
     config: CompensatorConfig = field(default_factory=CompensatorConfig)
     enabled: bool = True
     follow_models: bool = True
     name: str = ""
+    seed: FrictionModel | None = None
 
 
 @dataclass(frozen=True)
@@ -35,22 +42,28 @@ class ReplaySettings:
 
 
 def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySettings | None:
-    """What a recording says of itself under `phases`, each with name, start, compensator, enabled, follow_models."""
-    if "phases" not in metadata:
+    """What a recording says of itself under `phases`: each with name, enabled and the compensator node's parameters.
+
+    A phase without `start` begins after a pause. Raises `InputError` for settings and models that are not there.
+    """
+    if not metadata.get("phases"):
         return None
-    phases = tuple(
-        Phase(
-            start=float(each["start"]),
-            config=from_mapping(CompensatorConfig, each.get("compensator", {}), f"{where}: phases: compensator"),
-            enabled=bool(each.get("enabled", True)),
-            follow_models=bool(each.get("follow_models", True)),
-            name=str(each.get("name", "")),
-        )
-        for each in metadata["phases"]
-    )
+    phases = [_phase(each, k, f"{where}: phases[{k + 1}]") for k, each in enumerate(metadata["phases"])]
     estimator = from_mapping(EstimatorConfig, metadata.get("estimator", {}), f"{where}: estimator")
-    own = {key: float(metadata[key]) for key in ("model_delay", "model_period", "estimator_max_age") if key in metadata}
-    return ReplaySettings(tuple(sorted(phases, key=lambda each: each.start)), estimator, **own)
+    return ReplaySettings(tuple(phases), estimator)
+
+
+def _phase(content: Mapping[str, Any], index: int, where: str) -> Phase:
+    parameters = dict(content.get("parameters", {}))
+    model, follow = parameters.pop("model_file", ""), bool(parameters.pop("follow_model_topic", True))
+    return Phase(
+        start=float(content.get("start", "nan" if index else "-inf")),
+        config=from_mapping(CompensatorConfig, parameters, where),
+        enabled=bool(content.get("enabled", True)),
+        follow_models=follow,
+        name=str(content.get("name", "")),
+        seed=load_model(model) if model else None,
+    )
 
 
 def settings_from_file(path: Path) -> ReplaySettings:

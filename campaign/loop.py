@@ -44,11 +44,13 @@ Key = tuple[str, float, str, str]  # drive, load, sea, row
 class Study:
     """All runs of one truth: scores by case and row, learned models, tuned efficiencies."""
 
-    def __init__(self, truth: FrictionModel, quick: bool, seeds: tuple[int, ...]) -> None:
+    def __init__(self, truth: FrictionModel, quick: bool, whole: bool) -> None:
         self.truth = truth
-        self.seeds = seeds[:1] if quick else seeds
-        self.loads = LOADS[1:2] if quick else LOADS
-        self.seas = (SEAS[1], SEAS[3]) if quick else SEAS
+        self.seeds = SEEDS if whole else FEWER_SEEDS
+        self.seas = SEAS if whole else (SEAS[1], SEAS[3])
+        self.loads = LOADS
+        if quick:
+            self.seeds, self.loads, self.seas = SEEDS[:1], LOADS[1:2], (SEAS[1], SEAS[3])
         self.scores: dict[Key, list[Score]] = defaultdict(list)
         self.learned: dict[tuple[str, float, str], Learned] = {}
         self.efficiencies: dict[str, float] = {}
@@ -166,12 +168,12 @@ def commit() -> str:
     return shown.stdout.strip() or "unknown"
 
 
-def report(studies: dict[str, Study], extra: str, command: str, seconds: float) -> str:
+def report(studies: dict[str, Study], extra: str, command: str, measured: str, seconds: float) -> str:
     """The whole Markdown page."""
     first, *others = studies.items()
     parts = [
         "# Closed loop: what friction feedforward gains heave compensation",
-        f"Command: `{command}` · commit `{commit()}` · {seconds / 60:.1f} min of processor time.",
+        f"Command: `{command}` · commit `{measured}` · {seconds / 60:.1f} min of processor time.",
         INTRODUCTION.format(seeds=len(first[1].seeds)),
         f"## Truth: {first[0]}",
         verdicts(first[1]),
@@ -186,7 +188,11 @@ def report(studies: dict[str, Study], extra: str, command: str, seconds: float) 
         learned_table(first[1]),
     ]
     for name, study in others:
-        parts += [f"## Truth: {name} (no bar, {len(study.seeds)} seeds)", pooled_table(study), SYSTEM_ONLY]
+        parts += [
+            f"## Truth: {name} (no bar; {len(study.seeds)} seeds, {len(study.seas)} seas)",
+            pooled_table(study),
+            SYSTEM_ONLY,
+        ]
         parts += ["### What was learned", learned_table(study)]
     return "\n\n".join([*parts, extra]) + "\n"
 
@@ -208,11 +214,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--quick", action="store_true", help="a smoke version: one load, two seas, one seed")
     parser.add_argument("--out", type=Path, default=None, help="default docs/campaign_loop.md (quick: standard output)")
     options = parser.parse_args(arguments)
-    begun = time.process_time()
+    begun, measured = time.process_time(), commit()
     studies = {}
-    for (name, truth), seeds in zip(TRUTHS.items(), (SEEDS, FEWER_SEEDS), strict=True):
+    for (name, truth), whole in zip(TRUTHS.items(), (True, False), strict=True):
         print(name, file=sys.stderr, flush=True)
-        studies[name] = Study(truth, options.quick, seeds).run()
+        studies[name] = Study(truth, options.quick, whole).run()
     command = "python -m campaign.loop" + (" --quick" if options.quick else "")
     page = report(
         studies, extras(next(iter(studies.values())).truth, options.quick), command, time.process_time() - begun

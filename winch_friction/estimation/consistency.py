@@ -19,7 +19,9 @@ def nis_band(samples: int) -> tuple[float, float]:
 class VarianceFactor:
     """A common factor of all noise variances that follows what the innovations show (covariance matching, Mehra 1970).
 
-    Noise figures are known to a factor at best; their ratios matter for the gain, their size for the sigmas.
+    Noise figures are known to a factor at best; their ratios matter for the gain, their size for the sigmas. The
+    check of
+    the NIS then tells whether that factor is steady over windows shorter than its time constant, not how large it is.
     """
 
     def __init__(self, time_constant: float) -> None:

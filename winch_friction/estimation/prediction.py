@@ -13,6 +13,8 @@ from winch_friction.physics.signals import FloatArray
 
 SPEED, STRETCH, LOAD_SPEED, LOAD, DISTURBANCE, ENCODER, ENCODER_CHANGE, FIRST_PARAMETER = range(8)
 
+STICK_IGNORANCE = 30.0  # times the friction level
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -72,10 +74,13 @@ def fading(duration: float, config: EstimatorConfig) -> float:
 def process_noise(size: int, step: Step, config: EstimatorConfig, factor: float, load_known: bool) -> FloatArray:
     """Process noise of all but the parameters, (n, n), its variances times `factor`; the parameters' is `forgotten`.
 
-    In stick the friction is anywhere within its level, so the step says nothing about torques.
+    In stick the friction is anywhere within its level and stays there as long as the winch does: taken as white noise
+    of
+    its own size it would average out over many steps and pull at the load, so that such steps count for next to
+    nothing.
     """
     noise = np.zeros((size, size))
-    unknown = step.friction.magnitude**2 if step.stick else 0.0
+    unknown = (STICK_IGNORANCE * step.friction.magnitude) ** 2 if step.stick else 0.0
     wire = step.wire
     noise[:LOAD, :LOAD] = (step.variance + unknown / factor) * np.outer(wire.by_torque, wire.by_torque)
     noise[:LOAD, :LOAD] += config.heave_noise**2 * np.outer(wire.by_heave, wire.by_heave)

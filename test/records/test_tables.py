@@ -67,10 +67,12 @@ def test_units_become_si(tmp_path):
     assert run["oil_temperature"] == pytest.approx([40.0] * 3)
 
 
-@pytest.mark.parametrize(("separator", "mark"), [(";", ""), ("\t", "\ufeff")])
-def test_other_separators_and_a_byte_order_mark(tmp_path, separator, mark):
-    run = read_run(table(tmp_path, mark + TABLE.replace(",", separator)))
+@pytest.mark.parametrize(("separator", "mark", "end"), [(";", "", "\r\n"), ("\t", "\ufeff", "\n"), (",", "", "\n\n\n")])
+def test_other_separators_line_ends_and_a_byte_order_mark(tmp_path, separator, mark, end):
+    text = TABLE.replace(",", separator).replace("\n", "\r\n" if end == "\r\n" else "\n")
+    run = read_run(table(tmp_path, mark + text + end))
     assert len(run) == 3
+    assert run["hook_load"] == pytest.approx([55e3] * 3)
 
 
 def test_drum_speed_is_converted_by_the_gear(tmp_path):

@@ -64,7 +64,7 @@ def _text(path: Path) -> str:
         raise InputError(f"{path}: not a text file (it holds zero bytes); expected CSV")
     if not text.strip():
         raise InputError(f"{path}: the file is empty; expected a header line with column names")
-    return text
+    return text.rstrip("\r\n") + "\n"  # blank lines at the end are nobody's data
 
 
 def _separator(text: str) -> str:

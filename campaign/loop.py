@@ -46,11 +46,9 @@ class Study:
 
     def __init__(self, truth: FrictionModel, quick: bool, whole: bool) -> None:
         self.truth = truth
-        self.seeds = SEEDS if whole else FEWER_SEEDS
-        self.seas = SEAS if whole else (SEAS[1], SEAS[3])
-        self.loads = LOADS
-        if quick:
-            self.seeds, self.loads, self.seas = SEEDS[:1], LOADS[1:2], (SEAS[1], SEAS[3])
+        self.seeds = SEEDS[:1] if quick else SEEDS if whole else FEWER_SEEDS
+        self.seas = SEAS if whole and not quick else (SEAS[1], SEAS[3])
+        self.loads: tuple[float, ...] = LOADS[1:2] if quick else LOADS
         self.scores: dict[Key, list[Score]] = defaultdict(list)
         self.learned: dict[tuple[str, float, str], Learned] = {}
         self.efficiencies: dict[str, float] = {}
@@ -220,9 +218,8 @@ def main(arguments: list[str] | None = None) -> None:
         print(name, file=sys.stderr, flush=True)
         studies[name] = Study(truth, options.quick, whole).run()
     command = "python -m campaign.loop" + (" --quick" if options.quick else "")
-    page = report(
-        studies, extras(next(iter(studies.values())).truth, options.quick), command, time.process_time() - begun
-    )
+    extra = extras(next(iter(studies.values())).truth, options.quick)
+    page = report(studies, extra, command, measured, time.process_time() - begun)
     out = options.out or (None if options.quick else Path("docs/campaign_loop.md"))
     print(page) if out is None else write_text(out, page)
 

@@ -32,7 +32,7 @@ class EstimatorConfig:
     )
     default_std: float = option(0.2, lower=0.0, upper=1.0, doc="relative sigma of a seed without covariance")
     adaptation_time: float = option(
-        15.0, lower=0.1, upper=1e12, unit="s", doc="the noises' common factor follows in this"
+        5.0, lower=0.1, upper=1e12, unit="s", doc="the noises' common factor follows in this"
     )
     # what is accepted
     gate: float = option(5.0, lower=1.0, upper=100.0, doc="innovations beyond this many sigma are rejected")

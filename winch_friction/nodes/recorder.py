@@ -36,8 +36,8 @@ def winch_topics(topics: TopicMap) -> dict[str, str]:
 class Recorder:
     """Writes what arrives on `topics` (topic -> type) to a `records.bag_write.BagWriter`.
 
-    Messages are collected by `collect`, put in the order in which they were sent, and dated by the clock that was sent
-    before them: `/clock` where there is one, else the sender's.
+    Messages are collected by `collect`, put in the order in which they were sent, and dated by the simulated clock that
+    was sent before them; what comes before its first word is not written.
     """
 
     def __init__(self, node: Node, writer: Any, topics: Mapping[str, str]) -> None:
@@ -63,13 +63,16 @@ class Recorder:
             for topic, subscription in self._subscriptions.items()
             for message, info in drain(subscription)
         ]
-        for sent, topic, message in sorted(waiting, key=lambda each: each[0]):
+        for _, topic, message in sorted(waiting, key=lambda each: each[0]):
             if topic == "/clock":
                 self._now = message.clock.sec * 1_000_000_000 + message.clock.nanosec
-            else:
-                self._last = max(self._now or sent, self._last + 1)  # one after the other, also within one tick
-                self._writer.write_raw(topic, self._types[topic], message, self._last)
-                self.counts[topic] += 1
+            elif self._now:
+                self._write(topic, message)
+
+    def _write(self, topic: str, message: bytes) -> None:
+        self._last = max(self._now, self._last + 1)  # one after the other, also within one tick
+        self._writer.write_raw(topic, self._types[topic], message, self._last)
+        self.counts[topic] += 1
 
     def _subscribe(self, topic: str, type_name: str) -> Any:
         latched = any(topic.endswith(each) for each in LATCHED_TOPICS)

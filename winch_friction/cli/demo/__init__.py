@@ -36,7 +36,7 @@ def command(
     _play(plan)
     results = _evaluate(plan, time.monotonic() - started)
     show_json(results) if json else _show(plan, results)
-    if not all(each["holds"] for each in results["live_equals_replay"]):
+    if not all(each["equal"] and not each["missing"] for each in results["live_equals_replay"]):
         raise RuntimeError(f"the replay of {plan.bag} differs from the live outputs")
 
 
@@ -97,16 +97,17 @@ def _evaluate(plan: Any, elapsed: float) -> dict[str, Any]:
     from winch_friction.cli.demo.page import sections
     from winch_friction.cli.demo.picture import draw
     from winch_friction.cli.demo.recording import read_recording
-    from winch_friction.cli.demo.verify import verify
     from winch_friction.physics.friction.scaled import scaled_system
     from winch_friction.records.atomic import write_text
     from winch_friction.records.model_file import save_model
+    from winch_friction.replay.recording import replay_recording
     from winch_friction.report.base import write_report
     from winch_friction.report.figures import save_figure
 
     stderr.print("reading the bag and replaying it ...")
     recording = read_recording(plan)
-    rows, agreements = measure(plan, recording), verify(plan, recording)
+    rows = measure(plan, recording)
+    agreements = replay_recording(plan.bag, plan.crane, plan.seed).live
     picture = draw(plan, recording, rows)
     truth = scaled_system(plan.seed, plan.friction_factor)
     save_figure(picture, plan.out / "demo.png")
@@ -126,7 +127,8 @@ def _results(plan: Any, rows: Any, agreements: Any, elapsed: float) -> dict[str,
         "friction_factor": plan.friction_factor,
         "phases": [row.as_dict() for row in rows],
         "live_equals_replay": [
-            {"what": a.what, "samples": a.samples, "difference": a.difference, "holds": a.holds} for a in agreements
+            {"node": a.node, "compared": a.compared, "missing": a.missing, "largest": a.largest, "equal": a.equal}
+            for a in agreements
         ],
         "simulated_seconds": plan.duration * len(plan.phases),
         "elapsed_seconds": elapsed,
@@ -154,7 +156,7 @@ def _show(plan: Any, results: dict[str, Any]) -> None:
     ]
     title = f"Residual heave, and friction-torque error in N m by speed: {plan.scenario}, sea {plan.sea}"
     show_table(title, ("feedforward", "heave [mm]", "less", *bins), rows)
-    worst = max(each["difference"] for each in results["live_equals_replay"])
+    worst = max(each["largest"] for each in results["live_equals_replay"])
     speed = results["simulated_seconds"] / results["elapsed_seconds"]
     print(f"live equals replay: largest relative difference {worst:.1e}; sailed at {speed:.1f} x real time")
     print(f"page {plan.out / 'demo.html'}, picture {plan.out / 'demo.png'}, bag {plan.bag}")

@@ -1,5 +1,6 @@
 """The demo's HTML page: figures, picture, what was learned, and whether the replay agrees."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -7,8 +8,8 @@ import numpy as np
 from winch_friction.cli.demo.measures import BINS, PhaseFigures, bin_label
 from winch_friction.cli.demo.plan import DemoPlan
 from winch_friction.cli.demo.recording import Recording
-from winch_friction.cli.demo.verify import TOLERANCE, Agreement
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.replay.live import AGREEMENT, Comparison
 from winch_friction.report.base import Section, TextSection
 from winch_friction.report.figures import figure_html
 from winch_friction.report.tables import paragraph, table_html
@@ -18,7 +19,7 @@ def sections(
     plan: DemoPlan,
     recording: Recording,
     rows: list[PhaseFigures],
-    agreements: list[Agreement],
+    agreements: Sequence[Comparison],
     truth: FrictionModel,
     picture: Any,
 ) -> list[Section]:
@@ -90,10 +91,10 @@ def learned_table(seed: FrictionModel, learned: FrictionModel, truth: FrictionMo
     return table_html(columns, body, "Parameters at the end") + paragraph(note, "faint")
 
 
-def agreement_table(agreements: list[Agreement]) -> str:
+def agreement_table(agreements: Sequence[Comparison]) -> str:
     """Live against replay."""
-    body = [(a.what, a.samples, f"{a.difference:.1e}", "yes" if a.holds else "NO") for a in agreements]
-    columns = ("node", "samples", "largest relative difference", f"within {TOLERANCE:g}")
+    body = [(a.node, a.compared, a.missing, f"{a.largest:.1e}", "yes" if a.equal else "NO") for a in agreements]
+    columns = ("node", "samples", "without an answer", "largest relative difference", f"within {AGREEMENT:g}")
     return table_html(columns, body, "The bag's inputs through the same step objects again")
 
 

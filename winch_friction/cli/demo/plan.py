@@ -71,7 +71,6 @@ class DemoPlan:
         phases = [phase.as_plan() for phase in self.phases]
         plan = {
             "bag": str(self.bag),
-            "metadata": {"source": "winch-friction demo", "phases": phases},  # what a replay needs to know
             "crane": self.crane_name,
             "groups": GROUPS,
             "phases": phases,

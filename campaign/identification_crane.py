@@ -83,6 +83,7 @@ def study(seed: int, restarts: int = 3) -> dict[str, Any]:
         seed=seed,
         complex_options={"restarts": restarts},
     )
+    seed_model = winch_seed(found, given.crane, "seed", {})
     models = {"first loop": found.first_loop, "second loop": found.last_loop, "joint fit": found.joint.model}
     return {
         "seed": seed,
@@ -92,8 +93,9 @@ def study(seed: int, restarts: int = 3) -> dict[str, Any]:
         "fits": {name: (fit.cost, fit.evaluations) for name, fit in found.fits.items()},
         "ahc": _ahc(models, given, found.joint.sensor_errors["displacement_scale"][0]),
         "consistency": {
-            "sensors exact": consistency(winch_seed(found, given.crane, "seed", {}), given, SensorErrors()),
-            "sensors with errors": consistency(winch_seed(found, given.crane, "seed", {}), given, given.errors),
+            "sensors exact": consistency(seed_model, given, SensorErrors()),
+            "sensors calibrated by the joint fit": consistency(seed_model, given, calibrated(given.errors, found)),
+            "sensors with errors": consistency(seed_model, given, given.errors),
         },
     }
 
@@ -164,6 +166,16 @@ def consistency(seed_model: FrictionModel, given: Case, errors: SensorErrors) ->
         "nees": nees(estimator.model(), difference),
         "dimension": len(difference),
     }
+
+
+def calibrated(errors: SensorErrors, found: SystemIdentification) -> SensorErrors:
+    """What is left of the sensors' errors when those that the joint fit found are taken out."""
+    known = {name: value for name, (value, _) in found.joint.sensor_errors.items()}
+    return SensorErrors(
+        displacement_scale=errors.displacement_scale / (1.0 + known["displacement_scale"]),
+        pressure_scale=errors.pressure_scale / (1.0 + known["pressure_scale"]),
+        pressure_offset=errors.pressure_offset - known["pressure_offset"],
+    )
 
 
 def nees(model: FrictionModel, truth: np.ndarray) -> float:

@@ -17,8 +17,8 @@ def page(results: dict[str, Any]) -> str:
     parts = [
         "# Identification campaign",
         f"`{results['command']}` · commit {results['commit']} · {datetime.now(UTC):%Y-%m-%d} · "
-        f"{results['seconds']:.0f} s on one core · {len(results['cranes'])} cranes, seeds "
-        f"{results['cranes'][0]['seed']} and following, not used in development",
+        f"{results['seconds']:.0f} s of one core ({results['wall']:.0f} s on a shared machine) · "
+        f"{len(results['cranes'])} cranes, seeds {results['cranes'][0]['seed']} and following, not used in development",
         "A crane of its own per seed: every parameter of crane 2 "
         "moved by the spread between units, sensors with systematic errors (displacement 1 %, pressure 0.25 % and "
         "0.75 bar, one sigma), noise, quantisation. Supplier's table: generated, with a low-displacement loss that MJ4 "

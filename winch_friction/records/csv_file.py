@@ -1,46 +1,47 @@
-"""Run files as CSV: one header line with units, one row per sample; comma, semicolon or tab."""
+"""Run files as CSV: one header line with units, one row per sample; comma, semicolon or tab. Needs no library."""
 
+import csv
+import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.headers import Header, header_text, parse_header
 from winch_friction.records.run_checks import Place, checked_run
 
-_FIRST_ROW_LINE = 2  # the header is line 1
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-nan")
 
 
 def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
     """A run from a CSV file; raises `InputError` with line and column for whatever cannot be read."""
-    text = _text(path)
-    separator = _separator(text)
-    lines = text.splitlines()
-    headers = unique_headers([parse_header(cell, str(path)) for cell in _cells(lines[0], separator)], path)
-    _check_width(path, lines, separator, len(headers))
-    table = _table(path, text, separator, headers)
-    place: Place = lambda row: f"line {row + _FIRST_ROW_LINE}"
+    lines, rows = _rows(path, _text(path))
+    headers = unique_headers([parse_header(cell, str(path)) for cell in rows[0]], path)
+    _check_width(path, lines, rows)
+    place: Place = lambda row: f"line {lines[row + 1]}"
+    cells = list(zip(*rows[1:], strict=True)) or [()] * len(headers)
     columns, aside = {}, {}
-    for header, values in zip(headers, table.columns, strict=True):
+    for header, values in zip(headers, cells, strict=True):
         if header.known:
-            columns[header.name] = header.to_si(_numbers(path, header, values), str(path))
+            columns[header.name] = header.to_si(_numbers(path, header, values, place), str(path))
         else:
-            aside[header.text] = _as_numbers_if_possible(values)
+            aside[header.text] = _numbers_or_text(values)
     return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside)
 
 
 def write_csv_run(run: Run, path: Path) -> Path:
     """Write a run atomically, SI units in the headers, every digit kept; metadata has no place in a CSV file."""
-    import pandas
-
-    frame = pandas.DataFrame({header_text(name): values for name, values in run.columns.items()} | dict(run.aside))
-    with atomic_path(path) as temporary:
-        frame.to_csv(temporary, index=False)
+    content = {header_text(name): values for name, values in run.columns.items()} | dict(run.aside)
+    columns = [_written(np.asarray(values)) for values in content.values()]
+    with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(content)
+        writer.writerows(zip(*columns, strict=True))
     return path
 
 
@@ -67,59 +68,54 @@ def _text(path: Path) -> str:
     return text.rstrip("\r\n") + "\n"  # blank lines at the end are nobody's data
 
 
-def _separator(text: str) -> str:
+def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
+    """The number of each row's last line, and its cells."""
     header = text.partition("\n")[0]
-    return max(",;\t", key=header.count)
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip().strip('"') for cell in line.split(separator)]
-
-
-def _check_width(path: Path, lines: list[str], separator: str, width: int) -> None:
-    if not lines[0].strip():
-        raise InputError(f"{path}: line 1 is blank; expected the header line there")
-    for k, line in enumerate(lines[1:]):
-        found = line.count(separator) + 1
-        if '"' in line:
-            continue  # quoted text may hold separators; the parser counts these rows
-        if found != width:
-            at = f"{path}: line {k + _FIRST_ROW_LINE}"
-            raise InputError(f"{at}: blank line" if not line else f"{at}: {found} values for {width} columns")
-
-
-def _table(path: Path, text: str, separator: str, headers: list[Header]) -> Any:
-    import pyarrow
-    from pyarrow import csv
-
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=header.count))
+    lines, rows = [], []
     try:
-        return csv.read_csv(
-            pyarrow.BufferReader(text.encode()),
-            read_options=csv.ReadOptions(column_names=[header.text for header in headers], skip_rows=1),
-            parse_options=csv.ParseOptions(delimiter=separator, newlines_in_values=True),
-            convert_options=csv.ConvertOptions(null_values=[""], strings_can_be_null=True),
-        )
-    except pyarrow.ArrowException as error:
-        raise InputError(f"{path}: {str(error).splitlines()[0]}") from error
+        for row in reader:
+            lines.append(reader.line_num)
+            rows.append(row)
+    except csv.Error as error:
+        raise InputError(f"{path}: line {reader.line_num}: {error}") from error
+    return lines, rows
 
 
-def _numbers(path: Path, header: Header, values: Any) -> Any:
-    if str(values.type) in ("int64", "double", "null"):
-        return np.asarray(values.to_pandas(), dtype=float)
-    texts = values.cast("string").to_pylist() if str(values.type) != "string" else values.to_pylist()
-    return np.array([_number(path, header, row, text) for row, text in enumerate(texts)])
+def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]) -> None:
+    width = len(rows[0])
+    if not width:
+        raise InputError(f"{path}: line 1 is blank; expected the header line there")
+    for line, row in zip(lines, rows, strict=True):
+        if len(row) != width:
+            raise InputError(f"{path}: line {line}: {len(row)} values for {width} columns" if row else
+                             f"{path}: line {line}: blank line")  # fmt: skip
 
 
-def _number(path: Path, header: Header, row: int, text: str | None) -> float:
-    if text is None or text.strip().lower() in _MISSING:
+def _numbers(path: Path, header: Header, values: Sequence[str], place: Place) -> FloatArray:
+    try:
+        return np.array(values, dtype=float)
+    except ValueError:  # a cell that is empty, or no number
+        return np.array([_number(path, header, place, row, text) for row, text in enumerate(values)])
+
+
+def _number(path: Path, header: Header, place: Place, row: int, text: str) -> float:
+    if text.strip().lower() in _MISSING:
         return float("nan")
     try:
         return float(text)
     except ValueError:
-        at = f"{path}: line {row + _FIRST_ROW_LINE}, column '{header.text}'"
+        at = f"{path}: {place(row)}, column '{header.text}'"
         raise InputError(f"{at}: '{text.strip()[:40]}' is not a number; leave the cell empty if unknown") from None
 
 
-def _as_numbers_if_possible(values: Any) -> Any:
-    numeric = str(values.type) in ("int64", "double")
-    return np.asarray(values.to_pandas(), dtype=float if numeric else object)
+def _numbers_or_text(values: Sequence[str]) -> Any:
+    try:
+        return np.array([text or "nan" for text in values], dtype=float)
+    except ValueError:
+        return np.array(values, dtype=object)
+
+
+def _written(values: Any) -> list[Any]:
+    """Plain values; NaN as an empty cell."""
+    return ["" if value != value else value for value in values.tolist()]

@@ -34,9 +34,7 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
 
 def write_parquet_run(run: Run, path: Path) -> Path:
     """Write a run atomically, SI units in the headers, metadata in the schema."""
-    import pyarrow
-    from pyarrow import parquet
-
+    pyarrow, parquet = _pyarrow()
     content = {header_text(name): values for name, values in run.columns.items()} | dict(run.aside)
     metadata = {_METADATA: json.dumps(dict(run.metadata), default=str).encode()}
     table = pyarrow.table(content).replace_schema_metadata(metadata)
@@ -45,10 +43,17 @@ def write_parquet_run(run: Run, path: Path) -> Path:
     return path
 
 
-def _table(path: Path) -> Any:
-    import pyarrow
-    from pyarrow import parquet
+def _pyarrow() -> tuple[Any, Any]:
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError as error:  # absent, or built for another numpy
+        raise InputError(f"Parquet files need pyarrow ({error}); install one that fits numpy, or use CSV") from error
+    return pyarrow, parquet
 
+
+def _table(path: Path) -> Any:
+    pyarrow, parquet = _pyarrow()
     try:
         return parquet.ParquetFile(path).read()  # read_table would refuse nothing less, but merges folders
     except (pyarrow.ArrowException, OSError) as error:
@@ -57,6 +62,6 @@ def _table(path: Path) -> Any:
 
 def _numbers(path: Path, header: Header, chunked: Any) -> FloatArray:
     try:
-        return np.asarray(chunked.to_pandas(), dtype=float)
+        return np.asarray(chunked.to_numpy(), dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{path}: column '{header.text}': {chunked.type} values are not numbers") from error

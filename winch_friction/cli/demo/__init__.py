@@ -154,8 +154,8 @@ def _show(plan: Any, results: dict[str, Any]) -> None:
         ]
         for each in phases
     ]
-    title = f"Residual heave, and friction-torque error in N m by speed: {plan.scenario}, sea {plan.sea}"
-    show_table(title, ("feedforward", "heave [mm]", "less", *bins), rows)
+    title = f"Residual heave, and friction-torque error [N m] by rpm: {plan.scenario}, sea {plan.sea}"
+    show_table(title, ("feedforward", "heave [mm]", "less", *(each.removesuffix(" rpm") for each in bins)), rows)
     worst = max(each["largest"] for each in results["live_equals_replay"])
     speed = results["simulated_seconds"] / results["elapsed_seconds"]
     print(f"live equals replay: largest relative difference {worst:.1e}; sailed at {speed:.1f} x real time")

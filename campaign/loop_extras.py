@@ -18,6 +18,7 @@ from campaign.loop_cases import (
     scenario,
     score,
 )
+from campaign.loop_learning import learning_errors
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -49,6 +50,11 @@ def extras(truth: FrictionModel, quick: bool) -> str:
             "## Plant mismatch and slow pump (no bar)",
             "55 t, Hs 1 m; the controller, the estimator and the compensator know the nominal plant.",
             _table(["plant", "no feedforward, mm", "learned x 0.9, less by"], mismatches(truth, model, seeds)),
+            "## Learning under errors of sensors and plant (no bar)",
+            "Pump-controlled, 55 t, Hs 1 m, 20 wave periods; nobody told the estimator.",
+            _table(
+                ["error", "largest friction error of a speed bin", "NIS windows inside"], learning_errors(truth, quick)
+            ),
             "## Speed error by bin (no bar)",
             "55 t, Hs 1 m, pump-controlled: RMS of true minus reference speed, rpm.",
             _table(["rpm", "no feedforward", "learned x 0.9"], speed_errors(truth, model, seeds)),

@@ -10,6 +10,8 @@ from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_va
 from winch_friction.physics.signals import FloatArray
 
 SIGNIFICANCE = 0.01  # family-wise over all candidates
+# a fading warmth shows in few segments; a gain that large is not chance
+LARGE_GAIN, LARGE_GAIN_SIGNIFICANCE = 0.1, 0.05
 LEAST_GAIN = 0.02  # of the held-out RMSE
 LEAST_SHARE = 5e-3  # of what is explained already
 MOST_EFFECTS = 4
@@ -65,7 +67,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         relative = np.array([1.0 - np.sqrt(each.loss / current.loss) for each in trials])
         worth = np.array([current.loss - each.loss for each in trials])
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
-        worthy = (p <= SIGNIFICANCE) & (relative >= LEAST_GAIN) & (worth >= least)
+        worthy = _significant(p, relative) & (relative >= LEAST_GAIN) & (worth >= least)
         order = np.argsort([each.loss for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k], k == best) for k in order]
@@ -78,13 +80,18 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
     return Selection(base, current, found, tuple(considered))
 
 
+def _significant(p: FloatArray, gain: FloatArray) -> np.ndarray:
+    """Surer for a small gain than for one that chance does not bring."""
+    return np.asarray(p <= np.where(gain >= LARGE_GAIN, LARGE_GAIN_SIGNIFICANCE, SIGNIFICANCE))
+
+
 def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool, best: bool) -> Considered:
     own = trial.slots[-1]
     if best:
         verdict = "taken"
     elif worthy:
         verdict = "significant and useful, but outdone in held-out loss by the one taken"
-    elif p > SIGNIFICANCE:
+    elif not _significant(np.asarray(p), np.asarray(gain)):
         verdict = f"not significant on held-out segments (p = {p:.2g})"
     elif gain < LEAST_GAIN:
         verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
@@ -135,7 +142,8 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
         smaller = [cross.explain(current.slots[:k] + current.slots[k + 1 :]) for k in range(len(current.slots))]
         weakest = min(smaller, key=lambda each: each.loss)
         p = flip_p_values((weakest.losses - current.losses)[None], rng)[0]
-        if p <= SIGNIFICANCE and 1.0 - np.sqrt(current.loss / weakest.loss) >= LEAST_GAIN:
+        gain = 1.0 - np.sqrt(current.loss / weakest.loss)
+        if _significant(np.asarray(p), np.asarray(gain)) and gain >= LEAST_GAIN:
             break
         current = weakest
     return current

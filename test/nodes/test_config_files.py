@@ -1,0 +1,59 @@
+"""The shipped parameter files: every name is one that a node declares, every value one that it accepts."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.estimation import EstimatorConfig
+from winch_friction.nodes.compensator import CompensatorNodeOptions
+from winch_friction.nodes.estimator import EstimatorNodeOptions
+from winch_friction.nodes.options import NodeOptions
+from winch_friction.nodes.simulator import SimulatorNodeOptions
+from winch_friction.physics.options import from_mapping
+
+NODES = Path(__file__).resolve().parents[2] / "config" / "nodes"
+KINDS = {
+    "**": (NodeOptions,),
+    "compensator": (NodeOptions, CompensatorConfig, CompensatorNodeOptions),
+    "estimator": (NodeOptions, EstimatorConfig, EstimatorNodeOptions),
+    "simulator": (NodeOptions, SimulatorNodeOptions),
+}
+
+
+def _sections() -> list[Any]:
+    found = []
+    for path in sorted(NODES.glob("*.yaml")):
+        for name, content in yaml.safe_load(path.read_text()).items():
+            node = name.rsplit("/", 1)[-1]
+            found.append(pytest.param(node, content["ros__parameters"], id=f"{path.name}:{node}"))
+    return found
+
+
+@pytest.mark.parametrize(("node", "parameters"), _sections())
+def test_names_and_values_are_a_nodes_own(node: str, parameters: dict[str, Any]) -> None:
+    for kind in KINDS[node]:
+        names = {each.name for each in fields(kind)}
+        own = {key: parameters.pop(key) for key in list(parameters) if key in names}
+        from_mapping(kind, {k: tuple(filter(None, v)) if isinstance(v, list) else v for k, v in own.items()}, node)
+    parameters.pop("use_sim_time", None)
+    assert parameters == {}
+
+
+def test_the_commented_file_shows_the_compensators_defaults() -> None:
+    shown = yaml.safe_load((NODES / "crane.yaml").read_text())["/**/compensator"]["ros__parameters"]
+    names = {each.name for each in fields(CompensatorConfig)}
+    config = from_mapping(CompensatorConfig, {k: v for k, v in shown.items() if k in names}, "crane.yaml")
+    for each in fields(CompensatorConfig):
+        if each.name not in ("load", "absolute_limit"):  # NaN, and the crane's own limit
+            assert getattr(config, each.name) == getattr(CompensatorConfig(), each.name), each.name
+
+
+def test_the_commented_file_names_every_setting() -> None:
+    text = (NODES / "crane.yaml").read_text()
+    for kind in (NodeOptions, CompensatorConfig, CompensatorNodeOptions, EstimatorConfig, EstimatorNodeOptions):
+        for each in fields(kind):
+            assert f"{each.name}:" in text, each.name

@@ -52,6 +52,8 @@ def expand_around(
             loads.get(run.name, float("nan")),
             missing_torque(old, before.layout, explanation),
             turning,
+            old.wire_mode,
+            np.zeros_like(old.spikes) if turning else old.spikes,
         )
         for run, old in zip(runs, before.runs, strict=True)
     )

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
 from winch_friction.discrepancy.travel import resolution, travel_of
@@ -26,6 +27,7 @@ GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoo
 MIN_SAMPLES = 100
 MIN_DISPLACEMENT_SHARE = 0.05
 FIXED_POINT_STEPS = 3
+SPIKE, SPIKE_WINDOW, MOST_SPIKES = 12.0, 2.0, 0.01  # robust deviations, s, share of the moving samples
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
 
 
@@ -70,6 +72,7 @@ class PreparedRun:
     constants: tuple[tuple[str, float], ...]  # for the candidates' equations
     unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
     moving: np.ndarray
+    spikes: np.ndarray
     valid: np.ndarray
     present: frozenset[str]  # columns that the file had
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
@@ -88,13 +91,14 @@ def prepare(
     missing_torque: FloatArray | float = 0.0,
     turning: bool = False,
     mode: tuple[float, float] | None = None,
+    spikes: np.ndarray | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
     `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that the predicted
     pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples just after
     reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is known already;
-    otherwise it is looked for.
+    otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     columns, dt, valid = _uniform(run)
@@ -138,13 +142,16 @@ def prepare(
     # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
     # remain in the pressures
     measured = smooth(measured, window)
+    if spikes is None:
+        spikes = _spikes(measured - predicted, moving, dt)
     channels = _channels(run, columns, speed, acceleration, mass, groups, angle, crane)
     return PreparedRun(
         name=run.name, start=float(run.time[0]), dt=dt, time=columns["time"], speed=speed, acceleration=acceleration,
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
         wire_mode=mode,
-        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid, valid=valid,
+        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid & ~spikes,
+        spikes=spikes, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
 
@@ -221,6 +228,22 @@ def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: i
         load_acceleration = load_acceleration + np.gradient(smooth(columns["heave_velocity"], window), dt)
     drum_torque = mass * GRAVITY * radius
     return drum_torque / crane.gear_ratio, (mass, radius, drum_torque, load_acceleration)
+
+
+def _spikes(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
+    """Short bursts far outside a run's own spread: the shaft stuck for an instant, or a sensor failed."""
+    none = np.zeros(len(gap), bool)
+    if moving.sum() < MIN_SAMPLES:
+        return none
+    size = max(int(SPIKE_WINDOW / dt), 3) | 1
+    coarse = max(size // 25, 1)  # a running median over every few samples is as good and much faster
+    slow = np.interp(
+        np.arange(len(gap)), np.arange(0, len(gap), coarse), median_filter(gap[::coarse], max(size // coarse, 3))
+    )
+    off = np.abs(gap - slow)
+    spread = 1.4826 * float(np.median(off[moving]))
+    found = moving & (off > SPIKE * max(spread, 1e-12))
+    return dilated(found, int(0.1 / dt)) if 0 < found.sum() < MOST_SPIKES * moving.sum() else none
 
 
 def _wire_mode(gap, moving, rigid, dt, mass, lever, columns, crane):  # type: ignore[no-untyped-def]

@@ -11,7 +11,7 @@ from winch_friction.physics.units import BAR, CM3_PER_REV
 
 MOST_REGIONS = 3
 SMALLEST = 0.03  # of the blocks
-BALANCED = 0.6  # of the best pair's score that a single condition needs to be preferred: shorter words win
+BALANCED = 0.8  # of the best pair's score that a single condition needs to be preferred: shorter words win
 
 # how people read a signal: factor and unit
 READ_AS = {"pressure": (1.0 / BAR, "bar"), "displacement": (1.0 / CM3_PER_REV, "cm^3/rev"), "hook_load": (1e-3, "t"),

@@ -1,0 +1,30 @@
+"""Measured runs of the campaign's own generator, which shares no code with the package."""
+
+from functools import cache
+
+from campaign.rig import make_dataset
+from winch_friction.discrepancy.result import GapResult
+from winch_friction.discrepancy.workflow import GapOptions, find_gap
+from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+LENGTH = 0.6  # of a campaign's runs, to be quick
+
+
+def runs_with(seed: int, flavour: str, *effects: tuple[str, float], length: float = LENGTH) -> list[Run]:
+    """Twelve runs with these effects hidden."""
+    dataset = make_dataset(seed, flavour, effects, length=length)
+    return [Run(f"run_{k + 1:02d}.csv", columns) for k, columns in enumerate(dataset)]
+
+
+@cache
+def gap_of(seed: int, flavour: str, *effects: tuple[str, float], plan: bool = False) -> GapResult:
+    """The workflow's result, once per test session."""
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    return find_gap(runs_with(seed, flavour, *effects), crane, model, GapOptions(plan=plan))
+
+
+def names_of(result: GapResult) -> list[set[str]]:
+    """For each effect, the names it may be."""
+    return [{effect.name, *effect.rivals} for effect in result.effects]

@@ -1,0 +1,116 @@
+"""`winch-friction gap` from files to files."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from gap_rig import runs_with
+
+from winch_friction.cli.main import run as winch_friction
+from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import write_run
+
+OWN_EFFECT = """
+from winch_friction.physics.friction import Parameter, Scope, Term, register
+from winch_friction.physics.friction.symbols import wire_out
+
+q = Parameter("q_wire_guide", "N*m/m", 0.01, upper=10.0, doc="drag of the wire guide per metre paid out")
+register(Term("wire_guide", q.symbol * wire_out, (q,), Scope.SYSTEM, "a user's own", "gear and drum"))
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Runs in two formats, and the workflow's output."""
+    folder = tmp_path_factory.mktemp("gap")
+    runs = runs_with(4010, "quiet", ("gear_asymmetry", 0.5))
+    for k, run in enumerate(runs):
+        write_run(run, (folder / run.name).with_suffix(".parquet" if k % 2 else ".csv"))
+    paths = sorted(str(path) for path in folder.glob("run_*"))
+    assert winch_friction(["gap", *paths, "--out", str(folder / "out")]) == 0
+    return folder
+
+
+def test_gap_json_has_the_fields_of_the_design(folder):
+    content = json.loads((folder / "out" / "gap.json").read_text())
+    assert content["schema"] == "winch_friction.gap/1"
+    assert content["verdict"] in ("missing_effect", "ambiguous")
+    effect = content["effects"][0]
+    assert "gear_asymmetry" in (effect["name"], *effect["indistinguishable_from"])
+    assert set(effect["evidence"]) >= {"p_value", "cv_gain", "selection_frequency"}
+    assert all(set(p) == {"value", "std", "unit"} for p in effect["parameters"].values())
+    assert set(content["regions"][0]) == {"where", "share_of_gap", "mean_residual"}
+    holdout = content["gap"]["holdout"]
+    assert content["gap"]["unit"] == "bar"
+    assert holdout["after_ci"][0] <= holdout["after"] <= holdout["after_ci"][1]
+    assert holdout["after"] < 0.5 * holdout["before"]
+
+
+def test_the_next_experiment_is_a_scenario_that_runs(folder):
+    content = json.loads((folder / "out" / "gap.json").read_text())
+    if content["verdict"] != "ambiguous":
+        pytest.skip("these runs left nothing ambiguous")
+    plan = content["next_experiment"]
+    assert plan["expected_z"] >= 0.0
+    scenario = folder / "out" / plan["scenario"]
+    assert winch_friction(["simulate", str(scenario), "--out", str(folder / "next.csv")]) == 0
+    assert (folder / "next.csv").is_file()
+
+
+def test_the_repaired_model_is_a_model_file(folder):
+    model = load_model(folder / "out" / "model.yaml")
+    assert model.covariance is not None
+    assert model.provenance["repaired_by"] == "winch-friction gap"
+
+
+@pytest.mark.browser
+def test_the_report_opens_offline_without_console_errors(folder):
+    browser = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
+    if browser is None:
+        pytest.skip("no Chromium is installed")
+    page = folder / "out" / "report.html"
+    text = page.read_text(encoding="utf-8")
+    assert "http://" not in text.replace("http://www.w3.org", "") or 'src="http' not in text
+    opened = subprocess.run(
+        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--v=0",
+         f"--user-data-dir={folder / 'profile'}", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    assert "Before and after on locked runs" in opened.stdout
+    assert "CONSOLE" not in opened.stderr
+
+
+def test_a_users_own_effect_needs_one_declaration(tmp_path):
+    own = tmp_path / "own.py"
+    own.write_text(OWN_EFFECT)
+    for run in runs_with(4030, "rough", ("wire_out_drag", 1.0)):
+        write_run(run, tmp_path / run.name)
+    script = (
+        "import sys; from winch_friction.cli.main import run; "
+        f"sys.exit(run(['gap', *{[str(p) for p in sorted(tmp_path.glob('run_*.csv'))]}, '--effects', '{own}', "
+        f"'--out', '{tmp_path / 'out'}', '--json', '--no-report']))"
+    )  # a process of its own: the registry of terms is this process's
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    content = json.loads(done.stdout)
+    assert [effect["name"] for effect in content["effects"]] == ["wire_guide"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [([], "no run given"), (["missing.csv"], "missing.csv"), (["bad.csv"], "bad.csv"), (["short.csv"], "short.csv")],
+)
+def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("time,motor_speed\n0,1\n1,x\n")
+    rows = "\n".join(f"{t:g},1,2e6,1e6,3e-5,55000" for t in np.arange(0, 1, 0.1))
+    header = "time,motor_speed,main.pressure_a,main.pressure_b,main.displacement,hook_load"
+    (tmp_path / "short.csv").write_text(f"{header}\n{rows}\n")
+    assert winch_friction(["gap", *arguments, "--out", "out"]) == 2
+    error = capsys.readouterr().err.strip()
+    assert words in error.splitlines()[-1]
+    assert "Traceback" not in error
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,89 @@
+"""The workflow on data of the campaign's generator: what is hidden is named, and nothing is named where nothing is."""
+
+import numpy as np
+import pytest
+from gap_rig import gap_of, names_of, runs_with
+
+from winch_friction.discrepancy.workflow import GapOptions, find_gap
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model, model_from_text, model_to_text
+
+
+@pytest.mark.parametrize(("seed", "flavour"), [(4002, "rough"), (4003, "elastic_sea")])
+def test_nothing_is_missing_when_only_the_parameters_differ(seed, flavour):
+    result = gap_of(seed, flavour)
+    assert result.verdict == "nothing_missing"
+    assert result.effects == ()
+    assert result.next_experiment is None
+
+
+@pytest.mark.parametrize(
+    ("effect", "flavour"),
+    [("tare_load", "quiet"), ("viscosity_temperature", "slow_log"), ("presliding", "quiet"), ("torque_ripple", "paper"), ("line_pressure_drop", "si_files")],
+)  # fmt: skip
+def test_a_hidden_effect_is_named(effect, flavour):
+    result = gap_of(4010, flavour, (effect, 1.0))
+    assert result.verdict in ("missing_effect", "ambiguous")
+    assert any(effect in names for names in names_of(result))
+    assert len(result.effects) == 1
+
+
+def test_the_proof_is_on_runs_that_nothing_else_used():
+    result = gap_of(4010, "quiet", ("tare_load", 1.0))
+    holdout = result.holdout
+    assert not {run.name for run in holdout.runs} & {run.name for run in result.train.runs}
+    before, after = holdout.size_before, holdout.size_after
+    assert before.interval[0] <= before.value <= before.interval[1]
+    assert after.value - holdout.noise_floor < 0.2 * (before.value - holdout.noise_floor)
+
+
+def test_the_effect_has_its_size_within_three_deviations():
+    estimate = gap_of(4010, "quiet", ("tare_load", 1.0)).effects[0].parameters["m_h"]
+    assert estimate.unit == "kg"
+    assert abs(estimate.value - 2000.0) < 60.0
+    assert 0.0 < estimate.std < 200.0
+
+
+def test_two_effects_at_once():
+    result = gap_of(4020, "quiet", ("viscosity_temperature", 1.0), ("line_pressure_drop", 1.0))
+    found = names_of(result)
+    assert any("viscosity_temperature" in names for names in found)
+    assert any("line_pressure_drop" in names for names in found)
+    assert len(found) == 2
+
+
+@pytest.mark.parametrize(("effect", "signal"), [("wire_out_drag", "wire_out"), ("acceleration_loss", "acceleration")])
+def test_what_no_catalogue_knows_stays_unexplained_and_points_at_its_signal(effect, signal):
+    result = gap_of(4030, "rough", (effect, 1.0))
+    assert result.verdict == "unexplained"
+    assert result.effects == ()
+    assert result.depends[0].signal == signal
+    assert result.unexplained_share > 0.3
+
+
+def test_effects_that_are_tied_come_as_a_set():
+    result = gap_of(4040, "paper", ("brake_drag", 1.5))
+    assert result.verdict == "ambiguous"
+    assert names_of(result) == [{"brake_drag", "coulomb"}]
+
+
+def test_the_repaired_model_reads_back_with_its_covariance():
+    result = gap_of(4010, "slow_log", ("viscosity_temperature", 1.0))
+    assert "viscosity_temperature" in result.model.term_names
+    again = model_from_text(model_to_text(result.model))
+    assert again.values == pytest.approx(result.model.values)
+    np.testing.assert_allclose(again.covariance, result.model.covariance, rtol=1e-9)
+    assert np.linalg.eigvalsh(again.covariance).min() > -1e-9 * again.covariance.max()
+
+
+def test_the_same_runs_and_seed_give_the_same_answer():
+    first = gap_of(4010, "quiet", ("tare_load", 1.0)).content()
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    again = find_gap(runs_with(4010, "quiet", ("tare_load", 1.0)), crane, model, GapOptions(plan=False))
+    assert again.content() == first
+
+
+def test_regions_say_where():
+    result = gap_of(4010, "si_files", ("line_pressure_drop", 1.0))
+    assert any("motor_speed >" in region.where for region in result.regions)
+    assert 0.2 < result.regions[0].share_of_gap <= 1.0

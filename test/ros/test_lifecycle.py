@@ -2,8 +2,10 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+import yaml
 from conftest import Bench
 
 from winch_friction.nodes.remote import RemoteNode
@@ -79,3 +81,15 @@ def test_bad_parameters_are_one_line_and_status_2(executable: str, override: str
     assert len(lines) == 1
     assert said in lines[0]
     assert "Traceback" not in ended.stderr
+
+
+def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(bench: Bench, tmp_path: Path) -> None:
+    file = tmp_path / "parameters.yaml"
+    overrides = {"/winch/joint_states": {"subscription": {"reliability": "reliable"}}}
+    parameters = {"scal": 0.8, "qos_overrides": overrides}
+    file.write_text(yaml.safe_dump({"/**/compensator": {"ros__parameters": parameters}}))
+    bench.start("compensator", "--params-file", str(file))
+    bench.announce()
+    assert "parameter 'scal' is not known" in bench.log("compensator")
+    (subscription,) = bench.node.get_subscriptions_info_by_topic("/winch/joint_states")
+    assert subscription.qos_profile.reliability.name == "RELIABLE"

@@ -66,6 +66,7 @@ class WinchNode(LifecycleNode):
         for each in self._settings:
             each.declare(self)
         self.options: NodeOptions = self._node_parameters.read(self)
+        self._warn_of_unknown()
         self.check_settings({})
         self.crane: Crane
         self._active_entities: list[Callable[[], Any]] = []
@@ -196,6 +197,13 @@ class WinchNode(LifecycleNode):
         return float(self.get_clock().now().nanoseconds * 1e-9)
 
     # -- parameters
+    def _warn_of_unknown(self) -> None:
+        """rclpy takes a misspelt parameter without a word and goes on with the default."""
+        given = getattr(self, "_parameter_overrides", {})
+        for name in sorted(given):
+            if not self.has_parameter(name) and not name.startswith("qos_overrides."):
+                self.get_logger().warning(f"parameter '{name}' is not known and has no effect")
+
     def _on_set(self, changes: Sequence[Any]) -> SetParametersResult:
         try:
             self.check_settings({each.name: each.value for each in changes})

@@ -8,13 +8,14 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
 
 _SUPPORT = ("pairs", "seas")  # what the benchmarks share
 
 
 def command(
-    names: Annotated[list[str] | None, typer.Argument(help="Which benchmarks; all without a name.")] = None,
+    names: Annotated[OptionalTexts, typer.Argument(help="Which benchmarks; all without a name.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
 ) -> None:
     """Measure speed as ratios against what one would use instead, side by side in one process.

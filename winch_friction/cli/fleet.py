@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.physics.errors import InputError
 
 # verb -> where its result goes below --out
@@ -38,11 +39,9 @@ def command(
     out: Annotated[Path, typer.Option(help="Folder for the results and fleet.json.")],
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
     model: Annotated[str, typer.Option(help="Model file or shipped name.")],
-    option: Annotated[
-        list[str] | None, typer.Option(help="Option for the verb, NAME=VALUE or NAME; repeatable.")
-    ] = None,
+    option: Annotated[OptionalTexts, typer.Option(help="Option for the verb, NAME=VALUE or NAME; repeatable.")] = None,
     workers: Annotated[
-        int | None, typer.Option(min=0, help="Processes; 0: this one. Default: as many as cores.")
+        OptionalInt, typer.Option(min=0, help="Processes; 0: this one. Default: as many as cores.")
     ] = None,
     scheduler: Annotated[str, typer.Option(help="Address of a Dask scheduler; empty: a cluster on this machine.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="All outcomes as JSON.")] = False,

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.physics.errors import InputError
 
 HELP = """Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink.
@@ -28,13 +29,15 @@ app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
 @app.command("gap", help=HELP)
 def command(
-    runs: Annotated[list[Path] | None, typer.Argument(help="Run files: .csv, .parquet, rosbag2.")] = None,
+    runs: Annotated[OptionalPaths, typer.Argument(help="Run files: .csv, .parquet, rosbag2.")] = None,
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "crane_150t",
     model: Annotated[str, typer.Option(help="Model file or shipped name.")] = "a6vm215_crane2",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
     seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,
-    effects: Annotated[Path | None, typer.Option(help="Python file that registers candidate terms of your own.")] = None,
+    effects: Annotated[
+        OptionalPath, typer.Option(help="Python file that registers candidate terms of your own.")
+    ] = None,
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
     blind: Annotated[int, typer.Option(help="No runs: hide an effect N times, search for it, then open the seal.")] = 0,

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from winch_friction.cli.optional import OptionalPaths, OptionalTexts
+
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
 
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
@@ -35,7 +37,7 @@ def _hash(path: Path) -> str:
 def motor(
     table: Annotated[Path, typer.Argument(help="Supplier's table: CSV with units in the headers.")],
     out: Annotated[Path, typer.Option(help="Model file to write.")],
-    model: Annotated[list[str] | None, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
+    model: Annotated[OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
     use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best' by held-out displacement.")] = "mj4",
     max_displacement: Annotated[float, typer.Option(help="D_max in cm^3/rev; 0: the table's largest.")] = 0.0,
     speed: Annotated[str, typer.Option(help="Range in rpm.")] = "400-2500",
@@ -91,7 +93,7 @@ def system(
     out: Annotated[Path, typer.Option(help="Model file to write.")],
     motor: Annotated[str, typer.Option(help="Motor model: file or shipped name.")],
     crane: Annotated[str, typer.Option(help="Crane: file or shipped name.")] = "crane_150t",
-    held_out: Annotated[list[Path] | None, typer.Option(help="Test kept out of the fit; repeat.")] = None,
+    held_out: Annotated[OptionalPaths, typer.Option(help="Test kept out of the fit; repeat.")] = None,
     resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
     restarts: Restarts = 3,
     evaluations: Evaluations = 20000,

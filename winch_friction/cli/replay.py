@@ -6,17 +6,18 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
+from winch_friction.cli.optional import OptionalPath, OptionalTexts
 
 
 def command(
     recording: Annotated[Path, typer.Argument(help="Bag folder, .mcap, .db3, or a run file (.csv, .parquet).")],
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
     model: Annotated[str, typer.Option(help="Seed model: file or shipped name.")],
-    out: Annotated[Path | None, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
-    params_file: Annotated[Path | None, typer.Option(help="ROS parameter file of the nodes.")] = None,
-    picture: Annotated[Path | None, typer.Option(help="Picture of friction, speed, parameters: .png, .svg.")] = None,
+    out: Annotated[OptionalPath, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file of the nodes.")] = None,
+    picture: Annotated[OptionalPath, typer.Option(help="Picture of friction, speed, parameters: .png, .svg.")] = None,
     learn: Annotated[bool, typer.Option(help="Let the compensator take over what the estimator learns.")] = True,
-    remap: Annotated[list[str] | None, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
+    remap: Annotated[OptionalTexts, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
     joint: Annotated[str, typer.Option(help="Joint of the speed.")] = "winch_motor",
     pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "gauge",
     namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
 
 
@@ -17,7 +18,7 @@ def command(
     out: Annotated[Path, typer.Option(help="Folder for the runs, or the file of a single run.")] = Path("runs"),
     seed: Annotated[int, typer.Option(min=0, help="Seed of sea, sensors and campaign.")] = 0,
     hide: Annotated[
-        list[str] | None, typer.Option(help="Effect to hide in the plant, EFFECT or EFFECT=SIZE (1 = typical).")
+        OptionalTexts, typer.Option(help="Effect to hide in the plant, EFFECT or EFFECT=SIZE (1 = typical).")
     ] = None,
     kind: Annotated[str, typer.Option("--format", help="csv, parquet, mcap or db3, for a folder of runs.")] = "csv",
     truth: Annotated[bool, typer.Option(help="Write the plant's truth beside each run.")] = False,

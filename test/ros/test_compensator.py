@@ -6,8 +6,10 @@ from pathlib import Path
 import pytest
 from conftest import Bench, diagnostics, efforts, stamps
 from diagnostic_msgs.msg import DiagnosticArray
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
+from winch_friction.nodes.messages import clock_message
 from winch_friction.nodes.qos import LATCHED
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Sample
@@ -113,6 +115,23 @@ def test_a_wrong_model_is_refused_and_the_last_good_one_kept(fed: tuple[Bench, l
     assert status["model"] == seed.name
     assert status["accepted_models"] == "0"
     assert "model refused" in bench.log("compensator")
+
+
+def test_time_that_falls_back_begins_anew(bench: Bench) -> None:
+    bench.start("compensator", ramp_time=0.3, use_sim_time=True)
+    torque, clock = bench.listen("compensator/friction_torque"), bench.node.create_publisher(Clock, "/clock", 10)
+    bench.announce()
+    clock.publish(clock_message(bench.time))
+    bench.drive(0.8)
+    assert abs(efforts(torque)[-1]) > 100.0
+    bench.time -= 1000.0
+    clock.publish(clock_message(bench.time))
+    before = len(torque)
+    bench.drive(0.8)
+    again = efforts(torque)[before:]
+    assert "time jumped" in bench.log("compensator")
+    assert again[0] == 0.0
+    assert abs(again[-1]) > 100.0
 
 
 def test_enable_and_reset(fed: tuple[Bench, list]) -> None:

@@ -44,7 +44,7 @@ def voyage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Voyage]:
         plan = make_plan(out, "ahc_irregular", 50.0, 11, 1.3)
         plan = replace(plan, phases=plan.phases[2:])
         parameter_file, plan_file = plan.write()
-        with running_nodes(parameter_file, out / "logs") as nodes, running_stage(plan_file) as stage:
+        with running_nodes(parameter_file, out / "logs") as nodes, running_stage(plan_file, out / "logs") as stage:
             said = list(events(stage, nodes, out / "logs"))
             models = bench.listen("friction_model", String, LATCHED)
             assert bench.spin(10.0, lambda: bool(models)), "the late joiner got no model"

@@ -68,7 +68,7 @@ def _play(plan: Any) -> None:
     )
     with (
         running_nodes(parameter_file, logs) as nodes,
-        running_stage(plan_file) as stage,
+        running_stage(plan_file, logs) as stage,
         Progress(*columns, console=stderr) as bars,
     ):
         tasks = {phase.name: bars.add_task(phase.title, total=1.0, start=False) for phase in plan.phases}

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,14 +42,14 @@ def running_nodes(parameter_file: Path, logs: Path) -> Iterator[dict[str, subpro
 
 
 @contextmanager
-def running_stage(plan_file: Path) -> Iterator[subprocess.Popen[str]]:
-    """The stage; its lines come on stdout."""
-    with tempfile.TemporaryFile("w+") as complaints:
-        stage = _start("winch_friction.nodes.stage", [str(plan_file)], complaints, subprocess.PIPE)
-        try:
-            yield stage
-        finally:
-            end([stage])
+def running_stage(plan_file: Path, logs: Path) -> Iterator[subprocess.Popen[str]]:
+    """The stage; its lines come on stdout, what it complains of goes to `logs`/stage.log."""
+    with (logs / "stage.log").open("w") as log:
+        stage = _start("winch_friction.nodes.stage", [str(plan_file)], log, subprocess.PIPE)
+    try:
+        yield stage
+    finally:
+        end([stage])
 
 
 def events(
@@ -66,7 +65,7 @@ def events(
         if dead := _dead(nodes, logs):
             raise InputError(f"the demo stopped:{dead}")
     if stage.wait() != 0:
-        raise InputError(f"the demo's stage ended with status {stage.returncode}{_dead(nodes, logs)}")
+        raise InputError(f"the stage ended with status {stage.returncode}, see {logs}/stage.log{_dead(nodes, logs)}")
 
 
 def end(processes: Any) -> None:

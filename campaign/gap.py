@@ -39,7 +39,7 @@ def diagnose(case: Case) -> dict[str, Any]:
     data = make_dataset(case.seed, case.flavour, case.effects)
     runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(data)]
     started = time.perf_counter()
-    result = find_gap(runs, load_crane("crane_150t"), load_model("a6vm215_crane2"), GapOptions())
+    result = find_gap(runs, load_crane("crane_150t"), load_model("a6vm215_crane2"), GapOptions(plan=False))
     seconds = time.perf_counter() - started
     answer = json.loads(json.dumps(result.content()))
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

@@ -34,7 +34,7 @@ data = make_dataset(seed, "quiet", [("low_displacement_loss", 1.0)], length=leng
 runs = [Run(f"run_{k}", columns) for k, columns in enumerate(data)]
 crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
 started = time.perf_counter()
-find_gap(runs, crane, model, GapOptions())
+find_gap(runs, crane, model, GapOptions(plan=False))
 print(json.dumps([sum(len(run) for run in runs), time.perf_counter() - started]))
 """
 

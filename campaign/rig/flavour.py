@@ -34,7 +34,7 @@ class Flavour:
     gas_pressure: float = 300.0  # bar
     gas_is_calculated: bool = False  # the log holds the PLC's polytropic law for the passive pressure
     pressure_is_late: bool = False  # signal_delay sits in the pressures, not in the speed
-    wire_damping: float = 0.0  # N s/m of an elastic wire; 0: the load is rigidly coupled
+    wire_damping: float = 0.0  # N s/m of an elastic wire, below 1 its damping ratio; 0: rigid
     units: str = "plant"  # plant: rpm, bar, cm^3/rev; si: no brackets
 
 
@@ -85,7 +85,7 @@ FLAVOURS = {
             "elastic_still", (2, 55, 107, 77, 30, 15, 107, 55), (215, 215, 215, 164, 164, 120, 146, 102),
             (0.1, -0.1, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0, 0.05, -0.05), 5.0, True, 2000,
             (55, 30, 77, 55), (215, 160, 215, 190), False, False,
-            0.3, 0.4, 0.15, 2048, 0.05, (25, 30), (25, 52), 30.0, (5, 6), ALL, wire_damping=1.2e5,
+            0.3, 0.4, 0.15, 2048, 0.05, (25, 30), (25, 52), 30.0, (5, 6), ALL, wire_damping=0.06,
         ),
         Flavour(
             "elastic_sea", (5, 60, 100, 80, 35, 107, 20, 70), (215, 164, 215, 146, 130, 200, 215, 180),

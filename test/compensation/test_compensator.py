@@ -111,7 +111,7 @@ def test_slew_limit_bounds_every_step():
 
 
 # -- lost inputs
-@pytest.mark.parametrize("lost", ["reference", "pressure", "displacement", "groups"])
+@pytest.mark.parametrize("lost", ["reference", "pressure", "displacement", "groups", "layer"])
 def test_a_lost_input_ramps_to_zero_and_back_without_a_bump(lost):
     each = compensator()
     outputs, time = run_up(each)
@@ -132,6 +132,8 @@ def test_a_lost_input_ramps_to_zero_and_back_without_a_bump(lost):
 def _lose(sample, what):
     if what == "reference":
         sample.speed_reference = math.nan
+    elif what == "layer":
+        sample.wire_layer = 7.0
     elif what == "groups":
         sample.groups.clear()
     else:

@@ -113,6 +113,10 @@ def broken(sample, how):
         sample.time -= 0.1
     elif how == "duplicate":
         sample.time -= PERIOD
+    elif how == "absurd speed":
+        sample.motor_speed = 1e200
+    elif how == "wire layer":
+        sample.wire_layer = 9.0
     elif how in ("time", "motor_speed"):
         setattr(sample, how, math.nan)
     else:
@@ -122,7 +126,8 @@ def broken(sample, how):
 
 @pytest.mark.parametrize(
     "how",
-    ["spike", "no groups", "late", "duplicate", "time", "motor_speed", "pressure_a", "pressure_b", "displacement"],
+    ["spike", "no groups", "late", "duplicate", "time", "motor_speed", "pressure_a", "pressure_b", "displacement"]
+    + ["absurd speed", "wire layer"],
 )
 def test_a_rejected_sample_leaves_the_filter_exactly_as_it_was(running, samples, how):
     before = inside(running)

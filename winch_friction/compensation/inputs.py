@@ -16,6 +16,8 @@ def missing_inputs(sample: Sample, crane: Crane, reads: Set[str], source: str, l
     if "oil_temperature" in reads:
         needed.add("oil_temperature")
     lost = [name for name in sorted(needed) if not plausible(name, getattr(sample, name))]
+    if not crane.drum.has(sample.wire_layer):
+        lost.append("wire_layer")
     if crane.electric:
         return (*lost, *_missing_torque(sample, reads, load_known))
     return (*lost, *_missing_groups(sample))

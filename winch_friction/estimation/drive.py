@@ -9,8 +9,10 @@ from winch_friction.physics.winch.crane import Crane
 
 
 def usable(sample: Sample, crane: Crane) -> bool:
-    """Whether the sample has a time and plausible speed and drive."""
+    """Whether the sample has a time, plausible speed and drive, and a wire layer that the drum has (or none)."""
     if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
+        return False
+    if not crane.drum.has(sample.wire_layer):
         return False
     if crane.electric:
         return plausible("motor_torque", sample.motor_torque)

@@ -56,14 +56,11 @@ class _Accepted:
 class FrictionEstimator:
     """Learns the friction parameters from speed and drive torque, one sample at a time; its time is the samples' time.
 
-    An extended Kalman filter over [omega, wire stretch, load speed, load torque beyond the hook load,
-    disturbance, encoder rounding (2), scaled parameters]; the drive torque of the measured pressures (or of an
-    electric motor) is the
-    input, the shaft speed
-    the measurement. The direction of a step is the mean sign between its two speeds. The disturbance is a first-order
-    Gauss-Markov torque:
-    what no term explains is correlated in time (wire, sensor skew), and taken as white it would make the filter far
-    too sure.
+    An extended Kalman filter over [omega, wire stretch, load speed, load torque beyond the hook load, disturbance,
+    encoder rounding (2), scaled parameters]; the drive torque of the measured pressures (or of an electric motor) is
+    the input, the shaft speed the measurement. The direction of a step is the mean sign between its two speeds. The
+    disturbance is a first-order Gauss-Markov torque: what no term explains is correlated in time (wire, sensor skew),
+    and taken as white it would make the filter far too sure.
 
     Learning rests in stick, in saturation and without excitation; the parameters are then considered, not updated
     (Schmidt).

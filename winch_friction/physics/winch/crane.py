@@ -1,5 +1,6 @@
 """What a crane is, as far as friction is concerned."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -13,14 +14,17 @@ class Drum:
 
     layer_radii: tuple[float, ...]
 
+    def has(self, layer: float) -> bool:
+        """Whether this is one of the drum's layers, counted from 1, or none is said (NaN)."""
+        return layer != layer or (math.isfinite(layer) and 1 <= round(layer) <= len(self.layer_radii))
+
     def radius(self, layer: float) -> float:
         """Rope radius in m of a wire layer counted from 1; without a layer (NaN) the outer one is assumed."""
         if layer != layer:
             return self.layer_radii[-1]
-        index = int(round(layer)) - 1
-        if not 0 <= index < len(self.layer_radii):
+        if not self.has(layer):
             raise InputError(f"wire_layer {layer:g} does not exist: the drum has layers 1 ... {len(self.layer_radii)}")
-        return self.layer_radii[index]
+        return self.layer_radii[round(layer) - 1]
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def _draw_residual(axes: Any, plan: DemoPlan, parts: list[Recording]) -> None:
 
 def _draw_torque(axes: Any, plan: DemoPlan, parts: list[Recording]) -> None:
     time, truth = _shown(parts[-1], parts[-1].truth)
-    axes.plot(time, truth[:, 3], color=GREY, linewidth=3.0, alpha=0.6, label="true friction, hidden from the nodes")
+    axes.plot(time, truth[:, 3], color=GREY, linewidth=3.0, alpha=0.6, label="true friction")
     for colour, phase, part in list(zip(COLOURS, plan.phases, parts, strict=False))[1:]:
         time, fed = _shown(part, part.fed)
         axes.plot(time, fed[:, 1], color=colour, label=phase.title)

@@ -1,0 +1,43 @@
+"""A sea that is sailed again while the time goes on, and the answers that lockstep waits for."""
+
+import pytest
+
+from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
+from winch_friction.physics.errors import InputError
+from winch_friction.simulation.scenario import load_scenario
+
+
+def test_the_same_sea_again_with_later_stamps(crane_150t, crane2_model) -> None:
+    scenario = adjusted(load_scenario("ahc_irregular"), 100.0, 1.0)
+    voyage = Voyage(scenario, crane_150t, crane2_model, seed=4)
+    voyage.begin(1000.0)
+    first = [(voyage.sample.time, voyage.sample.motor_speed) for _ in range(80) if voyage.advance(0.0)]
+    while voyage.advance(0.0):
+        pass
+    assert voyage.finished
+    assert voyage.samples == 100
+    voyage.begin(1000.0)
+    second = [(voyage.sample.time, voyage.sample.motor_speed) for _ in range(80) if voyage.advance(0.0)]
+    assert [speed for _, speed in first] == [speed for _, speed in second]
+    assert [b[0] - a[0] for a, b in zip(first, second, strict=True)] == pytest.approx([3.0] * 80)
+
+
+def test_answers_are_waited_for_but_not_for_ever() -> None:
+    answers = Answers(("compensator", "estimator"))
+    answers.expect(10.0, now=100.0)
+    answers.take("compensator", 10.0, 5.0)
+    assert not answers.complete
+    assert not answers.overdue(100.5, patience=1.0)
+    answers.take("estimator", 9.98, None)
+    assert not answers.complete
+    answers.take("estimator", 10.0, None)
+    assert answers.complete
+    assert answers.torque == 5.0
+    assert answers.overdue(101.5, patience=1.0)
+    assert answers.unanswered == 1
+
+
+def test_hidden_effects_by_name_and_size() -> None:
+    assert hidden_effects(["signal_delay", "wear_drift=0.5"]) == [("signal_delay", 1.0), ("wear_drift", 0.5)]
+    with pytest.raises(InputError, match="must be a number"):
+        hidden_effects(["wear_drift=much"])

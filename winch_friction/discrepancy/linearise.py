@@ -31,7 +31,26 @@ def expand_at_seed(
     runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: dict[str, float]
 ) -> tuple[PreparedRun, ...]:
     """Runs prepared around the seed model."""
-    return tuple(prepare(run, crane, model, loads.get(run.name, float("nan"))) for run in runs)
+    prepared = [prepare(run, crane, model, loads.get(run.name, float("nan"))) for run in runs]
+    modes = _agreed_modes(prepared)
+    return tuple(
+        before
+        if before.wire_mode == mode
+        else prepare(run, crane, model, loads.get(run.name, float("nan")), mode=mode, spikes=before.spikes)
+        for run, before, mode in zip(runs, prepared, modes, strict=True)
+    )
+
+
+def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
+    """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
+
+    Heave compensation excites the mode throughout, so its runs decide where there are any; all then share one damping.
+    """
+    compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
+    damping = [run.wire_mode[1] for run in compensating if run.wire_mode[1] > 0.0]
+    elastic = len(damping) >= max(2, len(compensating) / 2)
+    shared = float(np.median(damping)) if elastic else 0.0
+    return [(run.wire_mode[0], shared if run.wire_mode[0] * run.dt < 1.0 else 0.0) for run in prepared]
 
 
 def expand_around(

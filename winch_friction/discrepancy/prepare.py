@@ -253,7 +253,7 @@ def _wire_mode(gap, moving, rigid, dt, mass, lever, columns, crane):  # type: ig
         return 0.0, 0.0
     stiffnesses = wire_stiffnesses(crane.wire_stiffness, columns["wire_out"])
     swing = swinging_load(gap, np.flatnonzero(moving), rigid, dt, load, lever, stiffnesses)
-    return swing.frequency, swing.damping
+    return float(np.sqrt(stiffnesses[0] / load)), swing.damping
 
 
 def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float, size: int) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3)
 WIRE_LENGTHS = (15.0, 22.0, 33.0, 50.0, 75.0, 110.0, 165.0, 250.0)  # m, tried where the log lacks it
-LEAST_GAIN = 0.6  # of the swinging's variance; below it the wire is taken for rigid
+LEAST_GAIN = 0.25  # of the swinging's variance; below it the wire is taken for rigid
 SWING_PERIODS = 1.5  # longest swing that counts, in periods of the mode
 
 

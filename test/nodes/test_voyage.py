@@ -22,6 +22,15 @@ def test_the_same_sea_again_with_later_stamps(crane_150t, crane2_model) -> None:
     assert [b[0] - a[0] for a, b in zip(first, second, strict=True)] == pytest.approx([3.0] * 80)
 
 
+def test_on_the_walls_clock_the_stamps_do_not_run_ahead(crane_150t, crane2_model) -> None:
+    voyage = Voyage(adjusted(load_scenario("ahc_irregular"), 50.0, 0.5), crane_150t, crane2_model, seed=4)
+    voyage.begin(5000.0, gap=0.0)
+    while voyage.advance(0.0):
+        pass
+    voyage.begin(5007.0, gap=0.0)
+    assert voyage.now == 5007.0
+
+
 def test_answers_are_waited_for_but_not_for_ever() -> None:
     answers = Answers(("compensator", "estimator"))
     answers.expect(10.0, now=100.0)

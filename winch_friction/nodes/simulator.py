@@ -91,8 +91,10 @@ class SimulatorNode(WinchNode):
 
     def _begin(self) -> str:
         """The sea from its start; the time goes on."""
-        origin = self.own.time_origin if self.own.publish_clock else self.ros_now()
-        self.voyage.begin(origin)
+        if self.own.publish_clock:
+            self.voyage.begin(self.own.time_origin)
+        else:
+            self.voyage.begin(self.ros_now(), gap=0.0)
         self.answers.clear()
         self._said = 0.0
         self._running, self._ready_since = True, float("inf")

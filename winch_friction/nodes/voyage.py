@@ -54,9 +54,9 @@ class Voyage:
     def _fresh(self) -> Simulator:
         return Simulator(self.scenario, self.crane, self.truth_model, seed=self.seed, hidden=self.hidden)
 
-    def begin(self, origin: float) -> None:
-        """From the scenario's start; `origin` dates the first voyage, later ones follow on."""
-        self._origin = origin if self._origin is None else max(self.now + GAP, self._origin)
+    def begin(self, origin: float, gap: float = GAP) -> None:
+        """From the scenario's start, dated `origin` s or, after another voyage, at least `gap` s after its end."""
+        self._origin = origin if self._origin is None else max(self.now + gap, origin)
         self._simulator = self._fresh()
         self.samples = 0
 

@@ -155,8 +155,8 @@ def _plant(plan: Plan, style: Flavour, hidden: Hidden, rng: np.random.Generator)
         radius * (1 + hidden.radius_step * (max(style.layers) - plan.layer)), float(plan.layer),
         wire_out, INERTIA, plan.boost, gas,
         motors * 5e-12 * rng.uniform(0.5, 2.0), 1.0e9 * rng.uniform(0.9, 1.1), style.pump_lag,
-        0.5 if plan.ahc else 0.0, WIRE_STIFFNESS / wire_out if style.wire_damping else 0.0, _wire_damping(style, plan, wire_out),
-        plan.date,
+        0.5 if plan.ahc else 0.0, WIRE_STIFFNESS / wire_out if style.wire_damping else 0.0,
+        _wire_damping(style, plan, wire_out), plan.date,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ import pytest
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.nodes.simulator import SimulatorNodeOptions
 from winch_friction.physics.errors import InputError
 
 
@@ -51,6 +52,13 @@ def test_changes_are_checked_together_without_being_taken_over() -> None:
     with pytest.raises(InputError, match="cycle at reversal"):
         options.read(board, {"velocity_source": "measured", "drive": "torque"})
     assert board.values["velocity_source"] == "reference"
+
+
+def test_a_simulator_without_pace_or_lockstep_is_refused() -> None:
+    board, options = Board({"rate": 0.0}), OptionParameters(SimulatorNodeOptions)
+    options.declare(board)
+    with pytest.raises(InputError, match="needs lockstep"):
+        options.read(board)
 
 
 def test_an_empty_list_of_strings_survives_ros() -> None:

@@ -16,6 +16,7 @@ from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.run import run
 from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.scaled import scaled_system
 from winch_friction.physics.options import check, option
@@ -53,6 +54,8 @@ class SimulatorNodeOptions:
 
     def __post_init__(self) -> None:
         check(self)
+        if self.rate == 0.0 and not self.lockstep:
+            raise InputError("rate 0 goes as fast as answers come: it needs lockstep; set lockstep, or a rate above 0")
 
 
 class SimulatorNode(WinchNode):
@@ -107,9 +110,13 @@ class SimulatorNode(WinchNode):
         if not self._running or not self._all_there():
             return
         if self._started is None:
-            self._started = self._steady() - self.voyage.elapsed / (self.own.rate or 1.0)
+            self._set_pace()
             self._publish(self.voyage.sample)
         self._go_on()
+
+    def _set_pace(self) -> None:
+        """From here on by the rate as it is now."""
+        self._started = self._steady() - self.voyage.elapsed / (self.own.rate or 1.0)
 
     def _go_on(self) -> None:
         while self._running and self._due() and self._answered():
@@ -197,6 +204,8 @@ class SimulatorNode(WinchNode):
         """Take over pace and patience."""
         if hasattr(self, "voyage"):
             self.own = self._own.read(self)
+        if getattr(self, "_started", None) is not None:
+            self._set_pace()
 
     def health(self) -> Sequence[Health]:
         """How far the voyage is and how often an answer did not come."""

@@ -96,21 +96,17 @@ class Inputs:
         )
 
     def _on_speed(self, message: Any, info: Any) -> None:
-        """The others first: they were sent before the speed that belongs to them."""
-        self.take_held()
+        """The others first, all that have come: stamps decide what belongs to which speed."""
         topics = self._stream.topics
         source, sent = topics.inputs[topics.speed_topic], info["source_timestamp"]
-        sample = self._stream.take(source, message, self._receipt(), sent)
+        receipt = self._receipt()
+        for held, subscription in self._held:
+            for other, other_info in drain(subscription):
+                self._stream.take(held, other, receipt, other_info["source_timestamp"])
+        sample = self._stream.take(source, message, receipt, sent)
         if sample is not None:
             self._last_seen = self.steady()
             self._on_sample(sample)
-
-    def take_held(self) -> None:
-        """Take in what has come on all topics but the speed's."""
-        receipt = self._receipt()
-        for source, subscription in self._held:
-            for message, info in drain(subscription):
-                self._stream.take(source, message, receipt, info["source_timestamp"])
 
     def _receipt(self) -> float:
         return float(self._node.get_clock().now().nanoseconds * NANOSECOND)

@@ -9,10 +9,10 @@ from rclpy.qos import (
 )
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-# best effort as sensor drivers offer it; a second of 200 Hz waits while the machine is busy elsewhere
+# best effort as sensor drivers offer it; five seconds of 200 Hz wait while the machine is busy elsewhere
 SENSOR = QoSProfile(
     history=QoSHistoryPolicy.KEEP_LAST,
-    depth=200,
+    depth=1000,
     reliability=QoSReliabilityPolicy.BEST_EFFORT,
     durability=QoSDurabilityPolicy.VOLATILE,
 )

@@ -17,7 +17,6 @@ class InputHealth:
 
     def report(self) -> Health:
         """Rate, age, number and refusals of every input that was ever seen."""
-        self._inputs.take_held()
         now, counts = self._now(), Counter(self._inputs.counts)
         elapsed = now - self._time
         values: dict[str, float] = {"silence": self._inputs.silence()}

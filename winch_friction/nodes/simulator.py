@@ -28,6 +28,7 @@ from winch_friction.simulation.scenario import load_scenario
 LONGEST_PAUSE = 0.05  # s; how often an answer that does not come is looked for
 # scans between two messages of what changes slowly, as a PLC does it
 SLOW_CHANNELS = {"hook_load": 5, "wire_out": 25, "wire_layer": 25, "oil_temperature": 50}
+MOST_AT_ONCE = 2  # samples in a tick, to catch up
 SETTLE = 0.3  # s between the last subscriber's discovery and the first sample: both ends must know each other
 
 
@@ -119,10 +120,11 @@ class SimulatorNode(WinchNode):
         self._started = self._steady() - self.voyage.elapsed / (self.own.rate or 1.0)
 
     def _go_on(self) -> None:
-        while self._running and self._due() and self._answered():
-            self._advance()
-            if self.answers.topics:
+        """In lockstep one sample; else what is due, but no burst after a pause: sensors do not do that either."""
+        for _ in range(1 if self.answers.topics else MOST_AT_ONCE):
+            if not (self._running and self._due() and self._answered()):
                 return
+            self._advance()
 
     def _due(self) -> bool:
         if self._started is None:

@@ -37,14 +37,14 @@ class Row:
     cpu: dict[str, float]
 
 
-def measure(rate: int, duration: float) -> Row:
-    """Run the three nodes at one rate."""
+def measure(rate: int, duration: float, priority: int) -> Row:
+    """Run the three nodes at one rate, at this nice value."""
     domain = str(10 + (os.getpid() + rate) % 80)
     os.environ |= {"ROS_DOMAIN_ID": domain, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     from campaign.rates_listener import Listener
 
-    processes = {name: _start(name, rate, duration) for name in NODES}
+    processes = {name: _start(name, rate, duration, priority) for name in NODES}
     try:
         with Listener() as listener:
             listener.wait_for_nodes(STARTING)
@@ -62,13 +62,14 @@ def measure(rate: int, duration: float) -> Row:
             each.wait(20.0)
 
 
-def _start(name: str, rate: int, duration: float) -> subprocess.Popen[Any]:
+def _start(name: str, rate: int, duration: float, priority: int) -> subprocess.Popen[Any]:
     parameters = {
         "simulator": {"scenario": "ahc_irregular", "sensor_rate": float(rate), "duration": duration, "rate": 1.0,
                       "publish_clock": "false", "subscribers": 3},
     }.get(name, {})  # fmt: skip
     overrides = [part for key, value in parameters.items() for part in ("-p", f"{key}:={value}")]
-    return subprocess.Popen([sys.executable, "-m", f"winch_friction.nodes.{name}", "--ros-args", *overrides])
+    command = ["nice", "-n", str(priority), sys.executable, "-m", f"winch_friction.nodes.{name}"]
+    return subprocess.Popen([*command, "--ros-args", *overrides])
 
 
 def _cpu_seconds(pid: int) -> float:
@@ -87,14 +88,14 @@ def _row(rate: int, listener: Any, cpu: dict[str, float]) -> Row:
     return Row(rate, *counts, float(median), float(p99), float(longest), cpu)
 
 
-def table(rows: list[Row], minutes: float) -> str:
+def table(rows: list[Row], minutes: float, priority: int) -> str:
     """Markdown with command and commit."""
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     load = ", ".join(f"{each:.1f}" for each in os.getloadavg())
     head = (
         "# Nodes at 50, 100 and 200 Hz\n\n"
         f"`{' '.join(['python -m campaign.rates', *sys.argv[1:]])}`, commit {commit}, {os.cpu_count()} cores "
-        f"(load average at the end {load}; the machine was shared).\n\n"
+        f"(shared: load average at the end {load}; the nodes ran at nice {priority}).\n\n"
         f"{minutes:g} minutes each, real time: simulator, compensator and estimator as processes over Fast DDS, "
         "fourteen input topics, best-effort subscriptions. Lost: published by the simulator, not counted by the node. "
         "Delay: from the sending of a speed to the sending of its feedforward. CPU: share of one core.\n\n"
@@ -116,14 +117,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="ten seconds each, to the screen only")
     parser.add_argument("--minutes", type=float, default=5.0)
+    parser.add_argument("--nice", type=int, default=0, help="priority of the nodes, where the machine is shared")
     parser.add_argument("--out", type=Path, default=OUT)
     options = parser.parse_args()
     minutes = 1.0 / 6.0 if options.quick else options.minutes
     rows = []
     for rate in RATES:
-        rows.append(measure(rate, 60.0 * minutes))
+        rows.append(measure(rate, 60.0 * minutes, options.nice))
         print(rows[-1], flush=True)
-    text = table(rows, minutes)
+    text = table(rows, minutes, options.nice)
     print(text)
     if not options.quick:
         from winch_friction.records.atomic import write_text

@@ -67,10 +67,10 @@ class Section:
 
 def finite(value: Any, where: str) -> float:
     """A finite float, or `InputError`."""
-    if isinstance(value, str):  # YAML 1.1 reads 1e-3 as a string
-        with contextlib.suppress(ValueError):
+    if isinstance(value, (str, int)) and not isinstance(value, bool):  # YAML 1.1 reads 1e-3 as a string
+        with contextlib.suppress(ValueError, OverflowError):
             value = float(value)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not isinstance(value, float) or not math.isfinite(value):
         raise InputError(f"{where} must be a finite number, found {_said(value)}")
     return float(value)
 

@@ -136,7 +136,7 @@ def control_record(scenario: Scenario, crane: Crane, plant: PlantFile, nominal: 
     ahc = scenario.mode == "ahc"
     secondary = scenario.drive == "secondary"
     gains = dict(SECONDARY_GAINS if secondary else PRIMARY_GAINS)
-    asked = scenario.control.model_dump()
+    asked = scenario.control.dict()
     gains.update({name: asked[name] for name in gains if asked[name] is not None})
     mode = 2.0 if secondary else (1.0 if ahc else 0.0)
     return record(

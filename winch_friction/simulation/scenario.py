@@ -4,26 +4,27 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
-
 from winch_friction.physics.errors import InputError
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import as_quantity, read_yaml
+from winch_friction.simulation.pydantic_v1 import Field, StrictStr, root_validator, validator
 from winch_friction.simulation.quantities import (
     CubicMetres,
     Displacement,
     Kilograms,
     Metres,
     MetresPerSecond,
+    Number,
     Pascals,
     Radians,
     RadiansPerSecond,
     Seconds,
     Strict,
+    Whole,
+    limited,
     validated,
 )
 
-SCHEMA = "winch_friction.scenario/1"
 Steps = tuple[tuple[float, float], ...]
 
 
@@ -57,19 +58,19 @@ class Regular(Strict):
     """One harmonic of crane tip heave."""
 
     kind: Literal["regular"]
-    amplitude: Metres = Field(gt=0.0, le=10.0)
-    period: Seconds = Field(gt=2.0)
+    amplitude: Metres = limited(gt=0.0, le=10.0)
+    period: Seconds = limited(gt=2.0)
 
 
 class Jonswap(Strict):
     """An irregular sea; the crane tip follows it by `response` (vessel and crane, [J])."""
 
     kind: Literal["jonswap"]
-    significant_height: Metres = Field(gt=0.0, le=15.0)
-    peak_period: Seconds = Field(default=9.0, gt=2.0)
-    gamma: float = Field(default=3.3, ge=1.0, le=7.0)
-    response: float = Field(default=0.6, gt=0.0, le=2.0)
-    seed: int | None = None
+    significant_height: Metres = limited(gt=0.0, le=15.0)
+    peak_period: Seconds = limited(9.0, gt=2.0)
+    gamma: Number = limited(3.3, ge=1.0, le=7.0)
+    response: Number = limited(0.6, gt=0.0, le=2.0)
+    seed: Whole | None = None
 
 
 class Profile(Strict):
@@ -77,116 +78,122 @@ class Profile(Strict):
     as speeds or as shares of the pump's flow.
     """
 
-    points: Annotated[Steps, BeforeValidator(_steps("rad/s"))] = ()
-    plateaus: Annotated[tuple[float, ...], BeforeValidator(_speeds)] = ()
-    pump_shares: tuple[Annotated[float, Field(gt=0.0, le=1.0)], ...] = ()
-    hold: Seconds = Field(default=8.0, gt=0.0)
-    ramp: Seconds = Field(default=2.0, gt=0.0)
-    rest: Seconds = Field(default=2.0, ge=0.0)
+    points: Steps = ()
+    plateaus: tuple[float, ...] = ()
+    pump_shares: tuple[Annotated[Number, limited(gt=0.0, le=1.0)], ...] = ()
+    hold: Seconds = limited(8.0, gt=0.0)
+    ramp: Seconds = limited(2.0, gt=0.0)
+    rest: Seconds = limited(2.0, ge=0.0)
+    _points = validator("points", pre=True, allow_reuse=True)(_steps("rad/s"))
+    _plateaus = validator("plateaus", pre=True, allow_reuse=True)(_speeds)
 
 
 class OilTemperature(Strict):
     """Oil temperature in degC: from start to end with a time constant."""
 
-    start: float = Field(default=40.0, ge=-20.0, le=95.0)
-    end: float | None = Field(default=None, ge=-20.0, le=95.0)
-    time_constant: Seconds = Field(default=600.0, gt=0.0)
+    start: Number = limited(40.0, ge=-20.0, le=95.0)
+    end: Number | None = limited(None, ge=-20.0, le=95.0)
+    time_constant: Seconds = limited(600.0, gt=0.0)
 
 
 class Water(Strict):
     """A body that is lowered through the surface."""
 
-    volume: CubicMetres = Field(gt=0.0)
-    height: Metres = Field(gt=0.0)
+    volume: CubicMetres = limited(gt=0.0)
+    height: Metres = limited(gt=0.0)
     surface: Metres
-    drag_area: float = Field(default=5.0, ge=0.0)
-    wave_share: float = Field(default=0.3, ge=0.0, le=1.0)
+    drag_area: Number = limited(5.0, ge=0.0)
+    wave_share: Number = limited(0.3, ge=0.0, le=1.0)
 
 
 class Sensors(Strict):
     """The PLC's view of the winch. Skew and offsets by channel, channels that are absent; standard deviations in SI."""
 
-    absent: tuple[str, ...] = ()
-    rate: float = Field(default=50.0, ge=5.0, le=500.0)
-    jitter: Seconds = Field(default=0.001, ge=0.0)
-    delay: Seconds = Field(default=0.0, ge=0.0, le=0.5)
+    absent: tuple[StrictStr, ...] = ()
+    rate: Number = limited(50.0, ge=5.0, le=500.0)
+    jitter: Seconds = limited(0.001, ge=0.0)
+    delay: Seconds = limited(0.0, ge=0.0, le=0.5)
     skew: dict[str, Seconds] = Field(default_factory=dict)
     noise: bool = True
     quantisation: bool = True
-    pressure_noise: Pascals = Field(default=0.3e5, ge=0.0)
-    pressure_step: Pascals = Field(default=600e5 / 4096, ge=0.0)
+    pressure_noise: Pascals = limited(0.3e5, ge=0.0)
+    pressure_step: Pascals = limited(600e5 / 4096, ge=0.0)
     pressure_offset: dict[str, Pascals] = Field(default_factory=dict)
-    pressure_scale: dict[str, float] = Field(default_factory=dict)
-    encoder_counts: float = Field(default=1024.0, ge=0.0)
-    displacement_noise: float = Field(default=0.0003, ge=0.0)
-    displacement_scale: dict[str, float] = Field(default_factory=dict)
+    pressure_scale: dict[str, Number] = Field(default_factory=dict)
+    encoder_counts: Number = limited(1024.0, ge=0.0)
+    displacement_noise: Number = limited(0.0003, ge=0.0)
+    displacement_scale: dict[str, Number] = Field(default_factory=dict)
     displacement_offset: dict[str, Displacement] = Field(default_factory=dict)
-    load_noise: Kilograms = Field(default=10.0, ge=0.0)
-    heave_noise: MetresPerSecond = Field(default=0.003, ge=0.0)
-    temperature_noise: float = Field(default=0.05, ge=0.0)
-    dropout_rate: float = Field(default=0.0, ge=0.0, le=1.0)
-    dropout_length: Seconds = Field(default=0.1, gt=0.0)
+    load_noise: Kilograms = limited(10.0, ge=0.0)
+    heave_noise: MetresPerSecond = limited(0.003, ge=0.0)
+    temperature_noise: Number = limited(0.05, ge=0.0)
+    dropout_rate: Number = limited(0.0, ge=0.0, le=1.0)
+    dropout_length: Seconds = limited(0.1, gt=0.0)
     dropout: Literal["nan", "missing"] = "nan"
 
 
 class Control(Strict):
     """Gains of the controller; defaults are those of every published comparison."""
 
-    position_gain: float | None = Field(default=None, ge=0.0)
-    speed_gain: float | None = Field(default=None, ge=0.0)
-    damping: float | None = Field(default=None, ge=0.0)
-    damping_time: float | None = Field(default=None, gt=0.0)
-    lead: float = Field(default=0.0, ge=-0.1, le=0.5)
-    drive_lag: float | None = Field(default=None, gt=0.0)
+    position_gain: Number | None = limited(None, ge=0.0)
+    speed_gain: Number | None = limited(None, ge=0.0)
+    damping: Number | None = limited(None, ge=0.0)
+    damping_time: Number | None = limited(None, gt=0.0)
+    lead: Number = limited(0.0, ge=-0.1, le=0.5)
+    drive_lag: Number | None = limited(None, gt=0.0)
 
 
 class Scenario(Strict):
     """One run of the simulated winch; SI."""
 
-    schema_: str = Field(default=SCHEMA, alias="schema", pattern=r"^winch_friction\.scenario/1$")
-    name: str
-    description: str = ""
-    duration: Seconds = Field(gt=0.0, le=14400.0)
+    schema_: Literal["winch_friction.scenario/1"] = Field("winch_friction.scenario/1", alias="schema")
+    name: StrictStr
+    description: StrictStr = ""
+    duration: Seconds = limited(gt=0.0, le=14400.0)
     mode: Literal["normal", "ahc"]
     drive: Literal["primary", "secondary"] = "primary"
-    load: Kilograms = Field(gt=0.0, le=400000.0)
-    displacement: Displacement = Field(gt=0.0)
-    displacement_schedule: Annotated[Steps, BeforeValidator(_steps("m^3/rad"))] = ()
-    boost_schedule: Annotated[Steps, BeforeValidator(_steps("Pa"))] = ()
+    load: Kilograms = limited(gt=0.0, le=400000.0)
+    displacement: Displacement = limited(gt=0.0)
+    displacement_schedule: Steps = ()
+    boost_schedule: Steps = ()
     passive_displacement: Displacement | None = None
-    wire_layer: int = Field(default=6, ge=1)
-    wire_out: Metres = Field(default=50.0, gt=1.0)
+    wire_layer: Whole = limited(6, ge=1)
+    wire_out: Metres = limited(50.0, gt=1.0)
     sea: Still | Regular | Jonswap = Field(default=Still(), discriminator="kind")
-    sea_ramp: Seconds = Field(default=10.0, gt=0.0)
+    sea_ramp: Seconds = limited(10.0, gt=0.0)
     calm_at: Seconds | None = None
-    calm_time: Seconds = Field(default=30.0, gt=0.0)
+    calm_time: Seconds = limited(30.0, gt=0.0)
     profile: Profile = Profile()
     oil_temperature: OilTemperature = OilTemperature()
     viscosity_truth: bool = False
     water: Water | None = None
     sensors: Sensors = Sensors()
     control: Control = Control()
-    plant: str = "winch_150t"
-    mismatch: dict[str, float] = Field(default_factory=dict)
-    presliding: Radians | None = Field(default=None, gt=0.0)
-    smooth_sign: RadiansPerSecond = Field(default=0.0, ge=0.0)
-    control_period: Seconds = Field(default=0.01, ge=0.001, le=0.1)
-    step: Seconds = Field(default=0.001, gt=0.0, le=0.005)
-    start_time: float = 0.0
-    hidden: dict[str, float] = Field(default_factory=dict)
+    plant: StrictStr = "winch_150t"
+    mismatch: dict[str, Number] = Field(default_factory=dict)
+    presliding: Radians | None = limited(None, gt=0.0)
+    smooth_sign: RadiansPerSecond = limited(0.0, ge=0.0)
+    control_period: Seconds = limited(0.01, ge=0.001, le=0.1)
+    step: Seconds = limited(0.001, gt=0.0, le=0.005)
+    start_time: Number = limited(0.0)
+    hidden: dict[str, Number] = Field(default_factory=dict)
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "Scenario":
-        if self.sensors.rate * self.control_period > 1.0 + 1e-9:
-            raise ValueError(f"sensors.rate {self.sensors.rate:g} Hz is above the control rate; lower control_period")
-        ratio = 1.0 / (self.sensors.rate * self.control_period)
+    _displacements = validator("displacement_schedule", pre=True, allow_reuse=True)(_steps("m^3/rad"))
+    _boosts = validator("boost_schedule", pre=True, allow_reuse=True)(_steps("Pa"))
+
+    @root_validator(skip_on_failure=True)
+    def _consistent(cls, values: dict[str, Any]) -> dict[str, Any]:
+        rate, period = values["sensors"].rate, values["control_period"]
+        if rate * period > 1.0 + 1e-9:
+            raise ValueError(f"sensors.rate {rate:g} Hz is above the control rate; lower control_period")
+        ratio = 1.0 / (rate * period)
         if abs(ratio - round(ratio)) > 1e-6:
             raise ValueError("the sensors' period must be a whole number of control periods")
-        return self
+        return values
 
     def override(self, changes: dict[str, Any]) -> "Scenario":
         """The scenario with other values by dotted key, {'load': 15e3, 'sea.period': 8.0}, checked again."""
-        content = self.model_dump(by_alias=True, exclude_unset=False)
+        content = self.dict(by_alias=True)
         for key, value in changes.items():
             _set(content, key.split("."), value)
         return validated(Scenario, content, f"scenario '{self.name}'")

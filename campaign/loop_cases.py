@@ -42,6 +42,11 @@ class Sea:
     period: float  # s, of the peak
     content: dict[str, Any]
 
+    @property
+    def regular(self) -> bool:
+        """Whether it is the same for every seed."""
+        return bool(self.content["kind"] == "regular")
+
 
 def jonswap(height: float, period: float) -> Sea:
     """An irregular sea."""

@@ -39,7 +39,8 @@ from winch_friction.physics.winch.torque_balance import sample_drive_torque
 
 UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
 UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
-RESTART_AFTER = 10  # rejections in a row that mean the speed was lost, not the sensor
+RESTART_AFTER = 10  # rejections in a row that mean the filter was wrong, not the sensor
+WIDE_GATE, WIDE_FOR = 10.0, 2.0  # the gate is so many times wider for so long, s, after it shut out a run of samples
 NAN = math.nan
 
 
@@ -89,6 +90,7 @@ class FrictionEstimator:
         self._begun = False
         self._layer = NAN
         self._rejected_in_a_row = 0
+        self._wide_until = -math.inf
         self.counts = {"accepted": 0, "rejected": 0, "restarted": 0, "learned_from": 0}
         self._state = "waiting"
 
@@ -118,7 +120,7 @@ class FrictionEstimator:
         self._predict(step, learning=not reason)
         measured, noise = sample.motor_speed, self._speed_variance
         innovation, variance = self._filter.innovation(measured, noise)
-        if not (variance > 0.0 and abs(innovation) <= self.config.gate * math.sqrt(variance)):
+        if not (variance > 0.0 and abs(innovation) <= self._gate(sample.time) * math.sqrt(variance)):
             self._filter.x, self._filter.P, self._load.mass = kept
             return self._rejected(sample, innovation, variance)
         self._correct(measured, noise, learning=not reason)
@@ -129,6 +131,16 @@ class FrictionEstimator:
             self.consistency.step(nis)
             self._factor.step(nis, dt)
         return self._estimate(sample, True, innovation, variance, step.friction.torque)
+
+    def _gate(self, time: float) -> float:
+        """How many sigma an innovation may have.
+
+        A seed far outside its own sigma is first blamed on the load and then, at the first reversal, contradicted by
+        every
+        sample of that direction. A gate that goes on rejecting them would learn one direction for good.
+        """
+        wide = self._wide_until - WIDE_FOR <= time <= self._wide_until
+        return self.config.gate * (WIDE_GATE if wide else 1.0)
 
     def _step_to(self, sample: Sample, dt: float) -> tuple[Step, tuple[float, ...]]:
         """The step from the last accepted sample to this one, and its mean operating point."""
@@ -220,6 +232,8 @@ class FrictionEstimator:
             x[state, 0] = value
         self._filter.x, self._filter.P = x, covariance
         self._friction.memory = None
+        if self._rejected_in_a_row >= RESTART_AFTER:
+            self._wide_until = sample.time + WIDE_FOR
         self._previous = self._kept(sample)
         self._rejected_in_a_row = 0
         self.counts["restarted"] += 1

@@ -40,7 +40,7 @@ from winch_friction.physics.winch.torque_balance import sample_drive_torque
 UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
 UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
 RESTART_AFTER = 10  # rejections in a row that mean the filter was wrong, not the sensor
-WIDE_GATE, WIDE_FOR = 10.0, 2.0  # the gate is so many times wider for so long, s, after it shut out a run of samples
+WIDE_GATE, WIDE_FOR = 3.0, 2.0  # the gate is so many times wider for so long, s, after it shut out a run of samples
 NAN = math.nan
 
 

@@ -50,6 +50,22 @@ def test_after_20_wave_periods_the_friction_is_known_in_every_speed_bin(crane, s
 
 
 @pytest.mark.slow
+def test_a_seed_far_outside_its_own_sigma_does_not_lock_the_gate(crane, seed):
+    truth = seed.with_values({name: 1.3 * seed.value(name) for name in seed.parameter_names if name != "C4"})
+    sea = {"kind": "regular", "amplitude": 1.5, "period": 10.0}
+    case = load_scenario("ahc_55t_215").override({"drive": "secondary", "load": 100e3, "sea": sea, "duration": 60.0})
+    run = simulate(case, crane, truth, seed=201).run
+    each = FrictionEstimator(crane, seed)
+    for sample in run.samples():
+        each.step(sample)
+    late = run["motor_speed"] > 20.0  # rad/s, the direction that it would have shut out
+    x = run_operating_points(run, crane, drum_torque=run_drum_torque(run, crane))
+    true, found = (np.asarray(model.torque(x), float)[late].mean() for model in (truth, each.model()))
+    assert found == pytest.approx(true, rel=0.05)
+    assert each.counts["rejected"] < 0.01 * len(run)
+
+
+@pytest.mark.slow
 @pytest.mark.shared
 @pytest.mark.parametrize("factor", [0.7, 1.3])
 def test_emps_in_one_pass(shared_data, factor):

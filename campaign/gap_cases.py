@@ -8,7 +8,7 @@ import numpy as np
 
 from campaign.rig import CATALOGUE, FLAVOURS, OUTSIDE, suitable_flavours
 
-# structurally the same trace (DOMAIN section 3), so not a pair of two
+# structurally the same trace (docs/physics.md §3), so not a pair of two
 _TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"}, {"brake_drag", "wear_drift"})
 
 

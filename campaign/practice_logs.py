@@ -38,7 +38,7 @@ class SensorErrors:
 
     @classmethod
     def drawn(cls, generator: np.random.Generator) -> "SensorErrors":
-        """DOMAIN section 6: 0.25 % transducers of 600 bar, displacement feedback within 1-3 %."""
+        """docs/simulation.md: 0.25 % transducers of 600 bar, displacement feedback within 1-3 %."""
         return cls(
             displacement_scale=1.0 + 0.01 * generator.standard_normal(),
             pressure_scale=1.0 + 0.0025 * generator.standard_normal(),

@@ -90,7 +90,7 @@ def make_dataset(
     truth: Friction | None = None,
     length: float = 1.0,
 ) -> list[Columns]:
-    """Twelve runs as SI columns under the names of DESIGN section 3.
+    """Twelve runs as SI columns under the names of docs/interfaces.md.
 
     `effects` are (identifier, size) with size 1 the catalogue's typical size; `truth` fixes the base parameters, else
     they are drawn within 1.5 sigma of the shipped prior; `length` multiplies the runs' duration of 170-240 s.

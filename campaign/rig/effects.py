@@ -1,4 +1,4 @@
-"""The 27 effects of DOMAIN section 7 at their typical sizes, and eight of the rig's own that no catalogue knows.
+"""The 27 effects of docs/discrepancy.md at their typical sizes, and eight of the rig's own that no catalogue knows.
 
 Each is a function (size, random, truth) -> strengths inside the plant; size 1 is the catalogue's typical size.
 """

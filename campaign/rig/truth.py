@@ -1,4 +1,4 @@
-"""The rig's own crane and its true friction: numbers of DOMAIN sections 3 and 6, written down again on purpose.
+"""The rig's own crane and its true friction: numbers of docs/physics.md, written down again on purpose.
 
 Nothing here is imported from the package under test, so that a mistake there cannot cancel against itself.
 """

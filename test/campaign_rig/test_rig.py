@@ -1,4 +1,4 @@
-"""The rig's data obey the torque balance of DOMAIN section 1, show each effect, and share nothing with the package."""
+"""The rig's data obey the torque balance of docs/physics.md, show each effect, and share nothing with the package."""
 
 import ast
 from functools import cache

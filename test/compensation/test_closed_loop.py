@@ -1,4 +1,4 @@
-"""The feedforward in the simulated loop: it helps, and it cannot make the winch cycle (DOMAIN section 10)."""
+"""The feedforward in the simulated loop: it helps, and it cannot make the winch cycle (docs/simulation.md)."""
 
 import numpy as np
 import pytest

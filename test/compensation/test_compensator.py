@@ -1,4 +1,4 @@
-"""The feedforward law and the rules of DOMAIN section 9."""
+"""The feedforward law and the rules of docs/physics.md §4."""
 
 import math
 from dataclasses import replace

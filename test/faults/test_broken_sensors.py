@@ -1,4 +1,4 @@
-"""What must stay true whatever the sensors do (DOMAIN section 9), over real step objects on a simulated sea."""
+"""What must stay true whatever the sensors do (docs/physics.md §4), over real step objects on a simulated sea."""
 
 import math
 

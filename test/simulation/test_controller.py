@@ -35,7 +35,7 @@ def test_a_saturated_pump_is_remembered():
 
 
 def test_the_volume_of_a_friction_step_is_delivered():
-    """Whatever the feedforward does, the compression flow adds up to compressibility times pressure (DOMAIN 10)."""
+    """Whatever the feedforward does, the compression flow adds up to compressibility times pressure."""
     c, memory = settings(leakage=0.0, pump_flow=1.0), np.zeros(CONTROL_STATES)
     flows, model_flow = [], 0.0
     for k in range(400):

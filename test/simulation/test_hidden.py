@@ -122,7 +122,7 @@ def test_air_softens_the_loop_at_low_pressure():
     from winch_friction.simulation.plant.parameters import PLANT, record
 
     loop = record(PLANT, line_volume=1.0, bulk_modulus=1.6e9, air=0.01)[0]
-    assert 1.0 / compressibility(loop, 20 * BAR) == pytest.approx(0.96e9, rel=0.01)  # DOMAIN section 7
+    assert 1.0 / compressibility(loop, 20 * BAR) == pytest.approx(0.96e9, rel=0.01)  # docs/discrepancy.md
     assert 1.0 / compressibility(loop, 200 * BAR) > 1.5e9
 
 

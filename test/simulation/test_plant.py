@@ -47,7 +47,7 @@ def test_a_held_load_sticks(crane, model, cycle):
 
 
 def test_the_pressures_carry_load_inertia_and_friction(cycle, crane, model):
-    """The torque balance of DOMAIN section 1 holds on the logged run at constant speed."""
+    """The torque balance of docs/physics.md §1 holds on the logged run at constant speed."""
     run = simulate(cycle.override(CLEAN), crane, model).run
     drum = run_drum_torque(run, crane)
     friction = model.torque(run_operating_points(run, crane, drum_torque=drum))

@@ -64,7 +64,7 @@ def test_truth_names_what_matters(ahc, crane, model):
 
 
 def test_feedforward_of_the_true_friction_improves_both_drives(ahc, crane, model):
-    """The physics of DOMAIN section 10: the friction known, the load stays put far better."""
+    """The physics of docs/simulation.md: the friction known, the load stays put far better."""
     for drive, least in (("primary", 0.6), ("secondary", 0.7)):
         scenario = ahc.override({"drive": drive, "duration": 60.0})
         without = simulate(scenario, crane, model)

@@ -1,5 +1,4 @@
-"""The friction feedforward: the friction model at the coming speed, inside its limits, faded and bridged (DOMAIN
-section 9)."""
+"""The friction feedforward: the friction model at the coming speed, inside its limits, faded and bridged."""
 
 import math
 from dataclasses import dataclass
@@ -35,8 +34,7 @@ class FeedforwardCompensator:
     """Friction feedforward of a winch, one sample at a time; its time is the samples' time.
 
     The friction is taken at the reference (or measured) speed `lead` s ahead; the direction is tanh(omega/omega_s) with
-    omega_s = max(reversal_speed, |acceleration| reversal_time), which spreads the sign change over time (DOMAIN
-    section 10).
+    omega_s = max(reversal_speed, |acceleration| reversal_time), which spreads the sign change over time.
 
     Pressures: the motor terms read the *measured* |p_A - p_B|, also when the speed is looked at ahead of time. At
     reversal the friction itself moves it by about 58 bar on the active group, but the pressure-dependent losses are

@@ -1,4 +1,4 @@
-"""The bounds of the feedforward (DOMAIN section 9), each with a count of how often it was needed."""
+"""The bounds of the feedforward (docs/physics.md §4), each with a count of how often it was needed."""
 
 from dataclasses import dataclass, field
 

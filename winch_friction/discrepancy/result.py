@@ -84,7 +84,7 @@ class GapResult:
     notes: Sequence[str] = field(default_factory=tuple)
 
     def content(self) -> dict[str, Any]:
-        """The JSON document of DESIGN section 5; further keys only add."""
+        """The JSON document of docs/interfaces.md; further keys only add."""
         return {
             "schema": SCHEMA,
             "verdict": self.verdict,

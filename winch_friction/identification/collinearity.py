@@ -1,4 +1,4 @@
-"""Directions in parameter space that the data at hand cannot tell apart (DOMAIN section 3): found, and said."""
+"""Directions in parameter space that the data at hand cannot tell apart (docs/physics.md §3): found, and said."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What is measured: a `Sample` is one instant, a `Run` is equally long columns over time (DESIGN section 3).
+"""What is measured: a `Sample` is one instant, a `Run` is equally long columns over time (docs/interfaces.md).
 
 Everything is SI. An absent scalar is NaN in a `Sample` and a missing key in a `Run`.
 """

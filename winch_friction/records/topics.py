@@ -1,4 +1,4 @@
-"""Which topic carries which channel (DESIGN section 4), shared by the nodes and by bags: one conversion, in one place.
+"""Which topic carries which channel (docs/interfaces.md): shared by the nodes and by bags: one conversion, one place.
 
 Messages are read by their field names alone, so those of rclpy and those of rosbags are decoded by the same lines.
 """

@@ -1,4 +1,4 @@
-"""How far a learned parameter may lie from its seed (DOMAIN section 9)."""
+"""How far a learned parameter may lie from its seed (docs/physics.md §4)."""
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel

@@ -1,4 +1,4 @@
-"""Torque balance at the motor shaft (DOMAIN section 1), summed over the motor groups:
+"""Torque balance at the motor shaft (docs/physics.md §1), summed over the motor groups:
 
 sum_g n_g D_g dp_g = T_d / i + J domega/dt + T_friction
 

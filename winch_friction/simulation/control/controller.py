@@ -1,4 +1,4 @@
-"""The control law of DOMAIN section 10, once per control period.
+"""The control law of docs/simulation.md, once per control period.
 
 Pump-controlled: command = D omega_ref + C_leak dp_e + C_h d(dp_e)/dt + position loop, inverted for the pump's lag, with
 dp_e the expected pressure (load, inertia and friction feedforward). Torque-commanded: expected torque + both loops.

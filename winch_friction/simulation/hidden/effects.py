@@ -1,4 +1,4 @@
-"""The declarations. Sizes are those of DOMAIN section 7; each changes the physics where it arises."""
+"""The declarations. Sizes are those of docs/discrepancy.md; each changes the physics where it arises."""
 
 from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.simulation.hidden.catalogue import DEGREE, MONTH, WEAR_EPOCH, Target, effect

@@ -1,4 +1,4 @@
-"""Equations of motion of winch, hydraulics, wire and payload (DOMAIN sections 1, 6 and 10). SI, hoisting positive.
+"""Equations of motion of winch, hydraulics, wire and payload (docs/simulation.md). SI, hoisting positive.
 
 One function per part; each reads the plant's record, none knows the controller.
 """

@@ -1,7 +1,7 @@
 """One control period of the plant: classical Runge-Kutta, the memory of friction advanced exactly in between.
 
 A bristle's sliding rate of 10^4 1/s would break an explicit method, so its equation is solved for the speed frozen over
-each step (DOMAIN section 10); staggered against the states that is of second order.
+each step (docs/simulation.md); staggered against the states that is of second order.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Effects with memory (DOMAIN section 7): their states follow the shaft's travel and the time at rest."""
+"""Effects with memory (docs/discrepancy.md): their states follow the shaft's travel and the time at rest."""
 
 import sympy as sp
 

@@ -1,4 +1,4 @@
-"""Effects that a motor model can lack (DOMAIN section 7), per motor: candidates of the discrepancy workflow."""
+"""Effects that a motor model can lack (docs/discrepancy.md), per motor: candidates of the discrepancy workflow."""
 
 import sympy as sp
 
@@ -22,7 +22,7 @@ c_case = Parameter("c_case", "m^3/rad", 5.0e-7, lower=-1e-4, upper=1e-4, doc="lo
 R_line = Parameter("R_line", "Pa*s^2/m^6", 3.0e8, upper=1e11, doc="turbulent resistance between transducer and motor")
 T_br = Parameter("T_br", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released")
 
-_DOMAIN = "DOMAIN section 7"
+_CATALOGUE = "docs/discrepancy.md"
 _TINY = 1e-6  # rad/s; keeps the derivative by an exponent finite at standstill
 
 low_displacement_loss = register(
@@ -50,15 +50,15 @@ notch_loss = register(
     )
 )  # fmt: skip
 case_pressure = register(
-    Term("case_pressure", c_case.symbol * p_sum, (c_case,), Scope.MOTOR, f"{_DOMAIN}, c (p_A + p_B)", "motor")
+    Term("case_pressure", c_case.symbol * p_sum, (c_case,), Scope.MOTOR, f"{_CATALOGUE}, c (p_A + p_B)", "motor")
 )
 brake_drag = register(
-    Term("brake_drag", T_br.symbol, (T_br,), Scope.SYSTEM, f"{_DOMAIN}, constant drag per motor", "gear and drum")
+    Term("brake_drag", T_br.symbol, (T_br,), Scope.SYSTEM, f"{_CATALOGUE}, constant drag per motor", "gear and drum")
 )
 # a pressure drop R (n D omega)^2 between transducer and motor, as the torque it takes from each motor
 line_pressure_drop = register(
     Term(
         "line_pressure_drop", R_line.symbol * n ** 2 * D**3 * w**2, (R_line,), Scope.MOTOR,
-        f"{_DOMAIN}, Darcy-Weisbach with a constant friction factor", "fluid",
+        f"{_CATALOGUE}, Darcy-Weisbach with a constant friction factor", "fluid",
     )
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Effects that the model of gears, drum, wire and oil can lack (DOMAIN section 7)."""
+"""Effects that the model of gears, drum, wire and oil can lack (docs/discrepancy.md)."""
 
 import math
 
@@ -23,7 +23,7 @@ a_r = Parameter("a_r", "1", 0.01, lower=-0.2, upper=0.2, doc="sine amplitude of 
 b_r = Parameter("b_r", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude of the torque ripple, share of T_d/i")
 k_r = Parameter("k_r", "1", 1.0, lower=1e-3, upper=100.0, shape=True, doc="periods per revolution of the motor shaft")
 
-# Walther's line through 134 cSt at 20 degC and 21 cSt at 60 degC (DOMAIN section 7); relative to 40 degC
+# Walther's line through 134 cSt at 20 degC and 21 cSt at 60 degC (docs/discrepancy.md); relative to 40 degC
 _LOG_20, _LOG_60 = (math.log10(math.log10(nu + 0.7)) for nu in (134.0, 21.0))
 _SLOPE = (_LOG_20 - _LOG_60) / (math.log10(333.15) - math.log10(293.15))
 _LEVEL = _LOG_20 + _SLOPE * math.log10(293.15)
@@ -35,7 +35,7 @@ def walther(celsius: sp.Expr | float) -> sp.Expr:
 
 
 _NU_40 = float(walther(40.0))
-_DOMAIN = "DOMAIN section 7"
+_CATALOGUE = "docs/discrepancy.md"
 
 viscosity_temperature = register(
     Term(
@@ -46,19 +46,19 @@ viscosity_temperature = register(
 gear_asymmetry = register(
     Term(
         "gear_asymmetry", e_g.symbol * T_d / gear_ratio * (s**2 + b_g.symbol * s) / 2, (e_g, b_g), Scope.SHAFT,
-        f"{_DOMAIN}, gear efficiency differs hoisting and lowering", "gear and drum", opposing=False,
+        f"{_CATALOGUE}, gear efficiency differs hoisting and lowering", "gear and drum", opposing=False,
     )
 )  # fmt: skip
 sheave_bending = register(
     Term(
         "sheave_bending", c_sh.symbol * T_d / gear_ratio, (c_sh,), Scope.SHAFT,
-        f"{_DOMAIN}, rope bending and sheave bearing loss", "gear and drum",
+        f"{_CATALOGUE}, rope bending and sheave bearing loss", "gear and drum",
     )
 )  # fmt: skip
 wear_drift = register(
     Term(
         "wear_drift", C_w.symbol * (time - t_w.symbol) / tau_w.symbol, (C_w, t_w, tau_w), Scope.SYSTEM,
-        f"{_DOMAIN}, seal run-in and wear", "gear and drum",
+        f"{_CATALOGUE}, seal run-in and wear", "gear and drum",
     )
 )  # fmt: skip
 torque_ripple = register(
@@ -66,6 +66,6 @@ torque_ripple = register(
         "torque_ripple",
         (a_r.symbol * sp.sin(k_r.symbol * shaft_angle) + b_r.symbol * sp.cos(k_r.symbol * shaft_angle))
         * T_d
-        / gear_ratio, (a_r, b_r, k_r), Scope.SHAFT, f"{_DOMAIN}, periodic in shaft angle", "motor", opposing=False,
+        / gear_ratio, (a_r, b_r, k_r), Scope.SHAFT, f"{_CATALOGUE}, periodic in shaft angle", "motor", opposing=False,
     )
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The torque-loss terms of the models that paper 1 compares (section 3), per motor, errata of DOMAIN section 2 applied.
+"""The torque-loss terms of the models that paper 1 compares (section 3), per motor, with the errata applied.
 
 Terms that are equal share one declaration with MJ4 (`motor.py`): C_e is K4, C_g mu is K1, C_i rho is K2, C_m is K5.
 Parameters named C.. are the paper's; `identification.motor_models` composes the models.

@@ -5,7 +5,7 @@ run keeps its own phase, because an angle counted from the start of a record has
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -24,7 +24,9 @@ NEIGHBOURHOOD = 401  # lines whose median is the background
 WINDOW = 15  # samples; slower than this is friction, not ripple
 SPEED_CLASSES = 3  # parts of a run
 MOST_OF_ONE_PART = 5.0  # of a line's power over its background
-SIGNIFICANT = 1e-4  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+# an angle added up from the speed carries the encoder's steps itself
+SIGNIFICANT_WITHOUT_ANGLE = 1e-12
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
 
 
@@ -38,11 +40,13 @@ class Ripple:
     std: float
     p_value: float
     prominence: float  # of the line's power over its neighbours'
+    angle_is_measured: bool = True
 
     @property
     def found(self) -> bool:
         """A line that stands out surely and is large enough to matter."""
-        return self.p_value < SIGNIFICANT and self.amplitude > SMALLEST
+        least = SIGNIFICANT if self.angle_is_measured else SIGNIFICANT_WITHOUT_ANGLE
+        return self.p_value < least and self.amplitude > SMALLEST
 
 
 def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
@@ -50,7 +54,10 @@ def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Cr
     # a fast ripple is swallowed by the inertia before it reaches the oil, a slow one drowns in the differentiated speed
     found = [_search(runs, prepared, crane, with_inertia) for with_inertia in (False, True)]
     lines = [line for line in found if line is not None]
-    return min(lines, key=lambda line: (line.p_value, -line.prominence)) if lines else None
+    if not lines:
+        return None
+    strongest = min(lines, key=lambda line: (line.p_value, -line.prominence))
+    return replace(strongest, angle_is_measured=all("shaft_angle" in run for run in runs))
 
 
 def _search(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, with_inertia: bool) -> Ripple | None:

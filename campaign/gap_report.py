@@ -1,7 +1,6 @@
 """The gap campaign's table: issue bars, then every effect, then what went wrong."""
 
 import json
-import subprocess
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,7 +31,7 @@ def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
 
 
 def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    commits = Counter(row.get("commit", "unknown") for row in rows)
     seeds = [row["seed"] for row in rows]
     kinds = Counter(row["kind"] for row in rows)
     return "\n".join(
@@ -43,7 +42,7 @@ def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
             "per data set; sizes relative to the typical size of each effect.",
             "",
             "* Command: `make campaign-gap` (`python -m campaign.gap`; resumable)",
-            f"* Commit: {commit}",
+            f"* Commit: {', '.join(f'{name} ({n} data sets)' for name, n in commits.items())}",
             f"* Data sets: {len(rows)} of {_planned(counts)} planned"
             f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds"
             f" {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",

@@ -29,6 +29,7 @@ PRIOR_WEIGHT = 10.0  # correlated block noise makes the data count for less than
 DEFAULT_RELATIVE_STD = 0.2  # for a model without covariance
 TINY = 1e-9
 UNBOUNDED = 1e9
+BARE = 3  # parameters
 PLAIN_TERMS = ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "stribeck")
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
@@ -150,8 +151,9 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
     lower, upper = list(base.lower), list(base.upper)
     for candidate in candidates:
         present = candidate.term is not None and candidate.term.name in model.term_names
-        # a plain term that the model lacks may be of any size: nothing is known about it yet
-        most = UNBOUNDED if candidate.name in PLAIN_TERMS and not present else candidate.plausible
+        # in a bare model a plain term may be of any size: nothing is known about it yet
+        bare = len(model.parameters) <= BARE
+        most = UNBOUNDED if bare and candidate.name in PLAIN_TERMS and not present else candidate.plausible
         for variant in candidate.shapes(runs):
             columns = []
             for parameter in candidate.linear:

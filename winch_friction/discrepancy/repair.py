@@ -65,6 +65,10 @@ def repair(
     for slot in explanation.slots:
         where = [columns.index(c) for c in slot.columns]
         own = _estimates(slot, value[where], np.sqrt(np.diag(covariance)[where]))
+        unused = [
+            p.name for p, c in zip(slot.candidate.linear, slot.columns, strict=True) if cross.total_g[c, c] <= 0.0
+        ]
+        own = {name: each for name, each in own.items() if slot.candidate.term is not None or name not in unused}
         parameters[slot.candidate.name] = own
         term = slot.candidate.term
         if term is None:

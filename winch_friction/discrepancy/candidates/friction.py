@@ -80,6 +80,8 @@ def _observed_time(runs: Sequence[PreparedRun]) -> list[Variant]:
     return [
         Variant("since the first run", {"t_w": begin, "tau_w": span}),
         Variant("around the middle of the dates", {"t_w": begin + 0.5 * span, "tau_w": span}),
+        Variant("since well before the first run", {"t_w": begin - 0.5 * span, "tau_w": span}),
+        Variant("since long before the first run", {"t_w": begin - span, "tau_w": span}),
     ]
 
 

@@ -10,15 +10,12 @@ from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
 
-WIRE_LENGTH = 100.0  # m; a missing wire's weight is given per so much of it
+ONE_DEPTH = -999.0  # a label among the layer numbers
+ONE_METRE = 1.0  # then e_R is the depth in m
 
-m_h = Parameter(
-    "m_h",
-    "kg",
-    2000.0,
-    lower=-2e4,
-    upper=2e4,
-    doc="mass that the load signal does not contain (of 100 m of wire, for the wire)",
+m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain")
+mu_w = Parameter(
+    "mu_w", "kg/m", 12.0, lower=-200.0, upper=200.0, doc="wire weight that the load signal does not contain"
 )
 e_R = Parameter("e_R", "1", 0.06, lower=-0.5, upper=0.5, doc="relative error of the rope radius")
 dJ = Parameter("dJ", "kg*m^2", 0.2, lower=-5.0, upper=10.0, doc="missing inertia at the motor shaft")
@@ -31,15 +28,17 @@ def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
 
 
 def tare_columns(run: PreparedRun, shape: Shape) -> FloatArray:
-    """A constant mass, or the wire paid out."""
-    if shape["wire"]:
-        wire = run.channels["wire_out"] if "wire_out" in run.channels else np.zeros(len(run.time))
-        return _hanging(run, wire / WIRE_LENGTH)[:, None]
-    return _hanging(run, 1.0)[:, None]
+    """A constant mass, the wire paid out, or both."""
+    hook = _hanging(run, 1.0) * shape["hook"]
+    length = run.channels["wire_out"] if "wire_out" in run.channels else np.zeros(len(run.time))
+    return np.column_stack([hook, _hanging(run, length) * shape["wire"]])
 
 
 def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
-    return [Variant("hook", {"wire": 0.0}), Variant("wire", {"wire": 1.0})]
+    shapes = [Variant("hook", {"hook": 1.0, "wire": 0.0})]
+    if any("wire_out" in run.channels for run in runs):
+        shapes += [Variant("wire", {"hook": 0.0, "wire": 1.0}), Variant("hook and wire", {"hook": 1.0, "wire": 1.0})]
+    return shapes
 
 
 def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
@@ -50,6 +49,8 @@ def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
     layer = run.channels.get("wire_layer")
     if shape["layer"] == 0.0 or layer is None:
         return torque[:, None]
+    if shape["layer"] == ONE_DEPTH:
+        return (torque * ONE_METRE / run.radius)[:, None]
     if shape["layer"] < 0.0:
         return (torque * (-shape["layer"] - layer))[:, None]
     return (torque * (np.rint(layer) == shape["layer"]))[:, None]
@@ -67,6 +68,7 @@ def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
     shapes = [Variant("all layers", {"layer": 0.0})]
     if len(layers) > 1:
         shapes += [Variant(f"layer {layer:g}", {"layer": layer}) for layer in layers]
+        shapes.append(Variant("the same depth on all layers", {"layer": ONE_DEPTH}))
         shapes.append(Variant("growing with depth", {"layer": -layers[-1]}))
     return shapes
 
@@ -81,8 +83,8 @@ def geometry_candidates() -> list[Candidate]:
     return [
         Candidate(
             "tare_load",
-            r"m_h\,(g+\ddot x)\,R/i",
-            (m_h,),
+            r"(m_h+\mu_w L)\,(g+\ddot x)\,R/i",
+            (m_h, mu_w),
             tare_columns,
             _tare_shapes,
             kind="geometry",

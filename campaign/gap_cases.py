@@ -73,9 +73,9 @@ def _singles(size: float, count: int, seeds: Iterator[int]) -> list[Case]:
 
 def _outside(count: int, seeds: Iterator[int]) -> list[Case]:
     return [
-        Case("outside", ((effect, 1.0),), _flavour([effect], k), next(seeds))
+        Case("outside", ((effect, 1.0),), _flavour([effect], k + offset), next(seeds))
         for k in range(count)
-        for effect in OUTSIDE
+        for offset, effect in enumerate(OUTSIDE, start=1)
     ]
 
 

@@ -68,11 +68,7 @@ def run_gap(
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
     loaded_crane = load_crane(crane)
-    options = GapOptions(holdout, seed, effects)
-    if effects is not None:
-        from winch_friction.discrepancy.candidates.catalogue import all_candidates
-
-        options = GapOptions(holdout, seed, None, tuple(all_candidates(effects)))
+    options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     seed_model = load_model(model)
     read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
     for run in read:

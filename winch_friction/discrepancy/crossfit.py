@@ -77,7 +77,8 @@ def _folds(run: np.ndarray) -> np.ndarray:
 
 
 def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Family-wise p-values of mean gain > 0 for rows of `gains` (candidates, segments), by sign flips and the largest t."""
+    """Family-wise p-values of mean gain > 0 for rows of `gains` (candidates, segments), by sign flips and the
+    largest t."""
     scale = np.sqrt((gains**2).sum(axis=1))
     scale = np.where(scale > 0.0, scale, 1.0)
     observed = gains.sum(axis=1) / scale

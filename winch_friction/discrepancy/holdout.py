@@ -22,7 +22,8 @@ class Split:
 
 
 def lock_holdout(runs: Sequence[Run], fraction: float, rng: np.random.Generator) -> Split:
-    """Choose the locked runs by kind (their motor groups), so that each kind is on both sides where there are two of it."""
+    """Choose the locked runs by kind (their motor groups), so that each kind is on both sides where there are two of
+    it."""
     if len(runs) < FEWEST_RUNS:
         return _divided(runs, fraction)
     kinds: dict[tuple[str, ...], list[str]] = {}

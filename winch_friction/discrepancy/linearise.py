@@ -1,4 +1,5 @@
-"""Regression problems around the best explanation so far: base parameters and pressures no longer those of the seed alone."""
+"""Regression problems around the best explanation so far: base parameters and pressures no longer those of the seed
+alone."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

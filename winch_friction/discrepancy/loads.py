@@ -14,7 +14,8 @@ ROUNDS = 6
 
 
 def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
-    """Mass in kg per run without `hook_load`; hoisting and lowering weigh alike, so that friction cancels in the mean."""
+    """Mass in kg per run without `hook_load`; hoisting and lowering weigh alike, so that friction cancels in the
+    mean."""
     if crane.electric:
         return {}
     return {run.name: _estimated(run, crane, model) for run in runs if "hook_load" not in run}

@@ -1,6 +1,7 @@
 """The experiment that would separate rivals best: T-optimality (Atkinson and Fedorov 1975) over feasible scenarios.
 
-Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size is the
+Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size
+is the
 truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together. What the
 rival cannot imitate, in standard deviations of the measurement, is the expected separation.
 """
@@ -23,8 +24,7 @@ from winch_friction.records.paths import shipped
 
 EXPERIMENTS = (
     "experiment_zero_check", "experiment_loads", "experiment_displacement_sweep", "experiment_boost_step",
-    "experiment_heave_6s", "experiment_heave_30s", "experiment_slow_ramps", "experiment_hold_times", "warm_up",
-    "test_03", "test_10", "ahc_55t_160",
+    "experiment_heave_30s", "experiment_slow_ramps", "experiment_hold_times", "ahc_55t_160",
 )  # fmt: skip
 ENOUGH = 3.0  # standard deviations that tell two effects apart
 
@@ -76,8 +76,9 @@ def plan_experiment(
         return None
     best = max(separation, key=lambda name: separation[name][0])
     z_best, rival = separation[best]
+    text = shipped("scenarios", best).read_text(encoding="utf-8")
     return NextExperiment(
-        best, shipped("scenarios", best).read_text(encoding="utf-8"), (own.candidate.name, rival.candidate.name), z_best,
+        best, text, (own.candidate.name, rival.candidate.name), z_best,
         {name: round(pair[0], 2) for name, pair in sorted(separation.items(), key=lambda item: -item[1][0])},
     )  # fmt: skip
 
@@ -97,7 +98,7 @@ def _separation(cross: CrossFit, new: CrossFit, truth: Explanation, rival: Seque
     g = cross.total_g + new.total_g
     b = g[:, true_columns] @ truth.beta
     y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
-    beta = cross.problem.fit(g, b, columns)
+    beta = cross.problem.fit(g, b, columns.tolist())
     return float(np.sqrt(max(_loss(g, b, y2, columns, beta), 0.0) / PRIOR_WEIGHT))
 
 

@@ -1,7 +1,7 @@
 """The independent noise of a run, from the data alone: what is left inside short windows once a parabola is taken out.
 
-A parabola over two seconds follows any friction, load or wave; what remains is sensor noise, whatever model is tried. No fit of
-candidates takes part, because a rich fit that lacks the true law would whiten the effect away.
+A parabola over two seconds follows any friction, load or wave; what remains is sensor noise, whatever model is
+tried. No fit of candidates takes part, because a rich fit that lacks the true law would whiten the effect away.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Is anything left that no named effect explains, and on which signal does it depend?
 
-A flexible model (hat functions of one signal at a time, for each direction of motion) predicts the remainder of runs that it was
-not fitted to. It has no name to offer, so it only ever leads to 'unexplained'.
+A flexible model (hat functions of one signal at a time, for each direction of motion) predicts the remainder of runs
+that it was not fitted to. It has no name to offer, so it only ever leads to 'unexplained'.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,8 @@ def remainder(cross: CrossFit, explanation: Explanation) -> FloatArray:
 
 
 def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> list[Dependence]:
-    """Every signal with what it predicts of the remainder on held-out runs, the best first; p-values are family-wise."""
+    """Every signal with what it predicts of the remainder on held-out runs, the best first; p-values are
+    family-wise."""
     blocks = cross.problem.blocks
     names, gains = [], []
     for name, values in blocks.features.items():
@@ -81,4 +82,4 @@ def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of
         g = full_g - weighted[own].T @ left[own]
         predicted[own] = weighted[own] @ np.linalg.solve(h + ridge, g)
     gain = left**2 - (left - predicted) ** 2
-    return np.bincount(index, weights=gain, minlength=len(numbers))
+    return np.asarray(np.bincount(index, weights=gain, minlength=len(numbers)), float)

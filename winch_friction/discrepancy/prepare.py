@@ -1,7 +1,7 @@
 """From a measured run to what every candidate reads: smooth signals, regimes, the base model's balance.
 
-Regressors are never built from the noisy pressure that is being explained: the pressure of the group that closes the torque
-balance is predicted from the base model (fixed point), only the passive group's is measured, smoothed.
+Regressors are never built from the noisy pressure that is being explained: the pressure of the group that closes the
+torque balance is predicted from the base model (fixed point), only the passive group's is measured, smoothed.
 """
 
 from collections.abc import Mapping
@@ -95,10 +95,12 @@ def prepare(
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
-    `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that the predicted
-    pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples just after
-    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is known already;
-    otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
+    `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that
+    the predicted
+    pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples
+    just after
+    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
+    known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     columns, dt, valid = _uniform(run)
@@ -127,8 +129,8 @@ def prepare(
     def balance(of_load: FloatArray) -> Any:
         inertial = crane.inertia * acceleration + mass * lever * of_load
         return _balance(
-            columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra, window,
-            missing_torque,
+            columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra,
+            window, missing_torque,
         )  # fmt: skip
 
     if mode is None:
@@ -150,7 +152,9 @@ def prepare(
         direction=direction, angle=angle, load=mass, load_acceleration=load_acceleration, radius=radius,
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
         wire_mode=mode,
-        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian, gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit, moving=moving & valid & ~spikes,
+        load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian,
+        gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit,
+        moving=moving & valid & ~spikes,
         spikes=spikes, valid=valid,
         present=frozenset(run.columns), channels=channels,
     )  # fmt: skip
@@ -272,9 +276,11 @@ def _balance(
     names = run.groups
 
     def point_of(groups: tuple[GroupSignals, ...]) -> tuple[Any, ...]:
+        counts = [np.full(size, float(g.count)) for g in groups]
         return operating_point(
             direction=direction, speed=speed, drum_torque=drum_torque, acceleration=acceleration,
-            groups=[(np.full(size, float(g.count)), np.abs(g.pressure), g.pressure_sum, g.displacement) for g in groups],
+            groups=[(n, np.abs(g.pressure), g.pressure_sum, g.displacement)
+                    for n, g in zip(counts, groups, strict=True)],
             motor_total=np.full(size, float(crane.motor_total(names))), **extra,
         )  # fmt: skip
 
@@ -288,8 +294,8 @@ def _balance(
     if not names:
         raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
     groups = _measured_groups(columns, run, crane, window)
-    measured = sum(crane.motor_count(g.name) * g.displacement * (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"])
-                   for g in groups)  # fmt: skip
+    drops = [columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups]
+    measured = sum(g.count * g.displacement * drop for g, drop in zip(groups, drops, strict=True))
     predicted = frictionless
     for _ in range(FIXED_POINT_STEPS):
         groups = _predicted_pressure(groups, predicted + missing)

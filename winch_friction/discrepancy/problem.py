@@ -1,4 +1,5 @@
-"""The regression that every question is put to: the gap on base parameters, held to their prior, and candidate effects."""
+"""The regression that every question is put to: the gap on base parameters, held to their prior, and candidate
+effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -180,7 +181,7 @@ def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "mo
     first = _problem(layout, tables, noise, runs)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.base_columns)
-    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), columns)
+    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.base_columns)
     again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.contiguous)) for k, t in enumerate(tables)}
     return _reweighted(first, again)
 
@@ -206,7 +207,8 @@ def _problem(
 
 
 def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
-    """Where the load was never measured it is anything: what a constant weight could explain is taken out everywhere."""
+    """Where the load was never measured it is anything: what a constant weight could explain is taken out
+    everywhere."""
     weight = table.x[:, weight_column]
     scale = float(weight @ weight)
     if scale <= 0.0:

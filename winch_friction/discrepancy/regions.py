@@ -16,7 +16,8 @@ BALANCED = 0.8  # of the best pair's score that a single condition needs to be p
 # how people read a signal: factor and unit
 READ_AS = {"pressure": (1.0 / BAR, "bar"), "displacement": (1.0 / CM3_PER_REV, "cm^3/rev"), "hook_load": (1e-3, "t"),
            "motor_speed": (1.0, "rad/s"), "acceleration": (1.0, "rad/s^2"), "oil_temperature": (1.0, "degC"),
-           "wire_out": (1.0, "m"), "heave_velocity": (1.0, "m/s"), "shaft_angle": (1.0, "rad of drum"), "time": (1.0, "s")}  # fmt: skip
+           "wire_out": (1.0, "m"), "heave_velocity": (1.0, "m/s"), "shaft_angle": (1.0, "rad of drum"), "time": (1.0,
+           "s")}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -72,15 +73,15 @@ def _best(conditions, left):  # type: ignore[no-untyped-def]
     both_counts, both_sums = masks @ masks.T, (masks * left) @ masks.T
     pairs = np.where(both_counts >= SMALLEST * size, both_sums**2 / np.maximum(both_counts, 1.0), 0.0)
     names = [name for _, _, name in conditions]
-    for i, j in combinations(range(len(names)), 2):
-        if names[i] == names[j]:
-            pairs[i, j] = pairs[j, i] = 0.0
+    for first, second in combinations(range(len(names)), 2):
+        if names[first] == names[second]:
+            pairs[first, second] = pairs[second, first] = 0.0
     k = int(np.argmax(single))
-    i, j = np.unravel_index(int(np.argmax(pairs)), pairs.shape)
+    i, j = (int(each) for each in np.unravel_index(int(np.argmax(pairs)), pairs.shape))
     if max(single[k], pairs[i, j]) <= 0.0:
         return None
     if single[k] >= BALANCED * pairs[i, j]:
         return conditions[k][0], conditions[k][1], (names[k],)
-    first, second = sorted((int(i), int(j)), key=lambda c: names[c] == "direction")
+    first, second = sorted((i, j), key=lambda c: names[c] == "direction")
     words = f"{conditions[first][0]} and {conditions[second][0]}"
     return words, conditions[first][1] & conditions[second][1], (names[first], names[second])

@@ -1,4 +1,5 @@
-"""The repaired model: the base refitted within its prior, with the effects found as terms and the signals' errors noted."""
+"""The repaired model: the base refitted within its prior, with the effects found as terms and the signals' errors
+noted."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,7 +39,8 @@ class Repair:
 
 
 def covariance_of(cross: CrossFit, explanation: Explanation) -> FloatArray:
-    """Covariance of the coefficients: data, thinned for correlated noise, and prior; bounds are not taken into account."""
+    """Covariance of the coefficients: data, thinned for correlated noise, and prior; bounds are not taken into
+    account."""
     columns = np.asarray(cross.problem.columns(explanation.slots))
     base = len(cross.problem.base.names)
     h = cross.total_g[np.ix_(columns, columns)] / PRIOR_WEIGHT
@@ -90,7 +92,8 @@ def repair(
 
 
 def with_turning(model: FrictionModel, finding: TurningFinding) -> tuple[FrictionModel, dict[str, Estimate]]:
-    """The model with an effect that shows only after reversals; its amplitudes are independent of the other parameters."""
+    """The model with an effect that shows only after reversals; its amplitudes are independent of the other
+    parameters."""
     term = finding.slot.candidate.term
     problem = finding.cross.problem
     columns = problem.columns(finding.fitted.slots)

@@ -90,7 +90,8 @@ class GapResult:
             "verdict": self.verdict,
             "effects": [effect.content() for effect in self.effects],
             "regions": [
-                {"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual} for r in self.regions
+                {"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual} for r in
+                self.regions
             ],
             "gap": {
                 "unit": self.unit,

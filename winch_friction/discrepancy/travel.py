@@ -1,4 +1,5 @@
-"""Direction and travel from the shaft's angle: what happens around a reversal is decided there, not by a noisy speed."""
+"""Direction and travel from the shaft's angle: what happens around a reversal is decided there, not by a noisy
+speed."""
 
 import numpy as np
 
@@ -16,8 +17,8 @@ def resolution(raw_speed: FloatArray, dt: float) -> float:
 def travel_of(angle: FloatArray, least: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Direction (-1, 0, 1), travel since the last reversal in rad, and progress per sample in rad.
 
-    A reversal counts once the shaft has come back by `least` from its farthest point; progress is the advance of that point,
-    so that a trembling angle does not travel.
+    A reversal counts once the shaft has come back by `least` from its farthest point; progress is the advance of
+    that point, so that a trembling angle does not travel.
     """
     direction, travel, progress = [], [], []
     heading, origin, far = 0.0, float(angle[0]), float(angle[0])

@@ -1,7 +1,8 @@
-"""What shows only just after a reversal: bristles that turn over with travel, and contacts that have grown while at rest.
+"""What shows only just after a reversal: bristles that turn over with travel, and contacts that have grown while at
+rest.
 
-The moving regime names everything else first; here its explanation is the base, on samples whose travel since the reversal is
-certain but short. Samples at rest take no part: static friction is undetermined there.
+The moving regime names everything else first; here its explanation is the base, on samples whose travel since the
+reversal is certain but short. Samples at rest take no part: static friction is undetermined there.
 """
 
 from collections.abc import Sequence

@@ -34,8 +34,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) ->
     before = max(before, 1e-9)
     depends = [d for d in left if d.p_value <= SIGNIFICANCE]
     if not selection.found:
-        obvious = [d for d in depends if d.share >= LEAST_UNEXPLAINED]
-        return Verdict(UNEXPLAINED, "no named effect explains it") if obvious else Verdict(NOTHING)
+        strong = any(d.share >= LEAST_UNEXPLAINED for d in depends)
+        return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
     implausible = [f.slot.candidate.name for f in selection.found if _at_bound(cross, selection, f)]
     if implausible:
         return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")

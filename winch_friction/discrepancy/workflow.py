@@ -48,7 +48,8 @@ class GapOptions:
 def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: GapOptions | None = None) -> GapResult:
     """Where runs and model disagree, which effect is missing, and the proof on locked runs.
 
-    Raises `InputError` for runs that lack what the torque balance needs, for two runs of one name and for no run at all.
+    Raises `InputError` for runs that lack what the torque balance needs, for two runs of one name and for no run at
+    all.
     """
     options = options or GapOptions()
     _check(runs, options)
@@ -141,7 +142,8 @@ def _assemble(
         depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
         untestable=search.untestable, model=final_model, seed_model=model,
-        next_experiment=experiment.content() if experiment else None, next_scenario=experiment.text if experiment else "",
+        next_experiment=experiment.content() if experiment else None,
+        next_scenario=experiment.text if experiment else "",
         notes=_notes(split.runs, search.loads),
     )  # fmt: skip
 
@@ -202,7 +204,8 @@ def _side(
     torque = _measured(at_seed, given.blocks, names)
     floor = np.sqrt(np.mean(_noise_per_run(after, around.blocks)[around.blocks.run] ** 2))
     return Side(
-        runs=tuple(run for run in expansion.runs if run.name in names), blocks=around.blocks, before=before, after=after,
+        runs=tuple(run for run in expansion.runs if run.name in names), blocks=around.blocks,
+        before=before, after=after,
         size_before=rms_with_interval(before, given.blocks.segment, rng),
         size_after=rms_with_interval(after, around.blocks.segment, rng), noise_floor=float(floor),
         relative=(relative_error(before, torque), relative_error(after, torque)),

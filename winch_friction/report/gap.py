@@ -110,8 +110,8 @@ def _next(result: GapResult) -> str:
     rows = [(name, f"{z:.2f}") for name, z in plan["considered"].items()]
     note = f"<p>{escape(plan['note'])}</p>" if plan.get("note") else ""
     return (
-        f"<p>Run <code>winch-friction simulate {escape(plan['scenario'])}</code>, or its likeness on the crane: it separates "
-        f"{escape(' from '.join(plan['separates']))} by {plan['expected_z']:.1f} standard deviations.</p>{note}"
+        f"<p>Run <code>winch-friction simulate {escape(plan['scenario'])}</code>, or its likeness on the crane: it "
+        f"separates {escape(' from '.join(plan['separates']))} by {plan['expected_z']:.1f} sigma.</p>{note}"
         + _table(("scenario", "expected separation, sigma"), rows)
     )
 

@@ -25,11 +25,15 @@ class Variant:
 class Candidate:
     """One effect that the model may lack.
 
-    `columns(run, shape)` gives the torque in N m at the shaft that each linear parameter, at one unit, adds to measured minus
-    predicted, shape (samples, parameters). `linear` declares those parameters with typical size and bounds; `plausible` times the
+    `columns(run, shape)` gives the torque in N m at the shaft that each linear parameter, at one unit, adds to
+    measured minus
+    predicted, shape (samples, parameters). `linear` declares those parameters with typical size and bounds;
+    `plausible` times the
     typical size is the largest amplitude that is believed. `needs` names run columns; `presumes` names terms of which
-    the model must have one; `term` is the friction term to put into the repaired model, None for what is corrected in a signal.
-    `brings` names lower-order effects that belong to it. `regime`: 'moving' samples, or 'turning' for what shows only around reversals.
+    the model must have one; `term` is the friction term to put into the repaired model, None for what is corrected
+    in a signal.
+    `brings` names lower-order effects that belong to it. `regime`: 'moving' samples, or 'turning' for what shows
+    only around reversals.
     """
 
     name: str

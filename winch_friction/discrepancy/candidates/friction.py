@@ -11,7 +11,7 @@ from winch_friction.discrepancy.candidates.linear_state import state_history
 from winch_friction.discrepancy.prepare import PreparedRun
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import broadcast_columns, compiled
-from winch_friction.physics.friction.term import Term
+from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.physics.signals import FloatArray
 
 # shape parameters are profiled over these values; what is not named takes the typical value times 0.5, 1, 2
@@ -25,7 +25,8 @@ SHAPES: dict[str, tuple[float, ...]] = {
 }
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 SHIPPED = (
-    "viscosity_temperature", "stribeck", "dwell_stiction", "gear_asymmetry", "gear_load_loss", "sheave_bending", "wear_drift",
+    "viscosity_temperature", "stribeck", "dwell_stiction", "gear_asymmetry", "gear_load_loss", "sheave_bending",
+    "wear_drift",
     "low_displacement_loss", "port_turbulence", "notch_loss", "churning", "high_pressure_mixed", "line_pressure_drop",
     "case_pressure", "brake_drag", "coulomb", "viscous", "torque_offset", "direction_asymmetry",
 )  # fmt: skip
@@ -64,14 +65,21 @@ def _shapes(term: Term, runs: Sequence[PreparedRun]) -> list[Variant]:
     if term.name == "wear_drift":
         return _observed_time(runs)
     shape = [p for p in term.parameters if p.shape]
-    top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
-    values = [tuple(top * share for share in STRIBECK_SHARES) if p.name == "C4" else SHAPES.get(p.name, tuple(p.typical * f for f in (0.5, 1.0, 2.0) if p.lower <= p.typical * f <= p.upper))
-              for p in shape]  # fmt: skip
+    values = [_shape_values(p, runs) for p in shape]
     return [
         Variant(", ".join(f"{p.name} = {v:g}" for p, v in zip(shape, point, strict=True)),
                 dict(zip((p.name for p in shape), point, strict=True)))
         for point in itertools.product(*values)
     ]  # fmt: skip
+
+
+def _shape_values(parameter: Parameter, runs: Sequence[PreparedRun]) -> tuple[float, ...]:
+    """The values over which a shape parameter is profiled."""
+    if parameter.name == "C4":
+        top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
+        return tuple(top * share for share in STRIBECK_SHARES)
+    usual = (parameter.typical * factor for factor in (0.5, 1.0, 2.0))
+    return SHAPES.get(parameter.name, tuple(v for v in usual if parameter.lower <= v <= parameter.upper))
 
 
 def _observed_time(runs: Sequence[PreparedRun]) -> list[Variant]:

@@ -33,7 +33,7 @@ def state_history(
 
 
 def _recursion(z: float, keep: list[float], add: list[float]) -> FloatArray:
-    history = []
+    history: list[float] = []
     append = history.append
     for a, b in zip(keep, add, strict=True):
         z = a * z + b

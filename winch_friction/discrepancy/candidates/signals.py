@@ -76,7 +76,8 @@ def _swivel(g: GroupSignals) -> FloatArray:
 
 
 def delay_columns(run: PreparedRun, shape: Shape) -> FloatArray:
-    """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come early.
+    """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come
+    early.
 
     A difference over the delay itself, since friction turns over faster than a derivative could follow.
     """

@@ -15,6 +15,7 @@ from winch_friction.records.topics import TopicMap
 
 # reliable and deep: a recording with holes proves nothing
 RECORDING = QoSProfile(depth=5000, reliability=QoSReliabilityPolicy.RELIABLE)
+REORDERED = 2_000_000_000  # ns; a message that was lost on the way is sent again, and comes after its successors
 LATCHED_TOPICS = ("friction_model",)
 JOINT_STATE = "sensor_msgs/msg/JointState"
 
@@ -36,8 +37,8 @@ def winch_topics(topics: TopicMap) -> dict[str, str]:
 class Recorder:
     """Writes what arrives on `topics` (topic -> type) to a `records.bag_write.BagWriter`.
 
-    Messages are collected by `collect`, put in the order in which they were sent, and dated by the simulated clock that
-    was sent before them; what comes before its first word is not written.
+    Messages are taken in by `collect`, written in the order in which they were sent, and dated by the simulated clock
+    that was sent before them; what comes before its first word is not written. `finish` writes what is still waiting.
     """
 
     def __init__(self, node: Node, writer: Any, topics: Mapping[str, str]) -> None:
@@ -48,6 +49,7 @@ class Recorder:
         self._subscriptions["/clock"] = node.create_subscription(
             Clock, "/clock", print, RECORDING, callback_group=self._group
         )
+        self._waiting: list[tuple[int, str, Any]] = []
         self._now = self._last = 0  # ns: the simulated clock, the last receipt written
         self.counts: Counter[str] = Counter()
 
@@ -57,13 +59,24 @@ class Recorder:
         return all(self._subscriptions[name].get_publisher_count() > 0 for name in names)
 
     def collect(self) -> None:
-        """Take in everything that has come and write it."""
-        waiting = [
+        """Take in everything that has come and write what is old enough to be in order."""
+        self._waiting += [
             (info["source_timestamp"], topic, message)
             for topic, subscription in self._subscriptions.items()
             for message, info in drain(subscription)
         ]
-        for _, topic, message in sorted(waiting, key=lambda each: each[0]):
+        if self._waiting:
+            self._write_until(max(each[0] for each in self._waiting) - REORDERED)
+
+    def finish(self) -> None:
+        """Write the rest."""
+        self.collect()
+        self._write_until(max((each[0] for each in self._waiting), default=0))
+
+    def _write_until(self, sent: int) -> None:
+        ready = sorted((each for each in self._waiting if each[0] <= sent), key=lambda each: each[0])
+        self._waiting = [each for each in self._waiting if each[0] > sent]
+        for _, topic, message in ready:
             if topic == "/clock":
                 self._now = message.clock.sec * 1_000_000_000 + message.clock.nanosec
             elif self._now:

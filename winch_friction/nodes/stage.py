@@ -61,6 +61,7 @@ class Stage:
                 self._simulator.trigger("reset")
             self._watch(phase["name"])
         self._listen(LAST_MESSAGES)
+        self.recorder.finish()
         self._estimator.change("deactivate")
         say(event="recorded", messages=dict(self.recorder.counts))
 

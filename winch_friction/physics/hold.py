@@ -7,6 +7,7 @@ same although the messages of different topics never arrive in quite the same or
 """
 
 import math
+from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -90,15 +91,25 @@ class InputHold:
         self._held.clear()
 
     def _value(self, column: str, time: float) -> float:
-        for stamp, value in reversed(self._held.get(column, ())):
-            if stamp <= time + SIMULTANEOUS:
-                return value if time - stamp <= self._limit(column) else math.nan
-        return math.nan
+        held = self._held.get(column)
+        if not held:
+            return math.nan
+        latest = time + SIMULTANEOUS
+        # the last one, unless a node that lags behind finds later ones waiting already
+        place = len(held) if held[-1][0] <= latest else bisect_right(held, latest, key=_stamp)
+        if not place:
+            return math.nan
+        stamp, value = held[place - 1]
+        return value if time - stamp <= self._limit(column) else math.nan
 
     def _limit(self, column: str) -> float:
         if column in self.max_ages:
             return self.max_ages[column]
         return self.max_ages.get(column.rpartition(".")[2], self.max_age)
+
+
+def _stamp(held: tuple[float, float]) -> float:
+    return held[0]
 
 
 def _keep(own: Any, held: Any, name: str) -> None:

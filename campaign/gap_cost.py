@@ -33,9 +33,9 @@ length, seed = float(sys.argv[1]), int(sys.argv[2])
 data = make_dataset(seed, "quiet", [("low_displacement_loss", 1.0)], length=length)
 runs = [Run(f"run_{k}", columns) for k, columns in enumerate(data)]
 crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-started = time.perf_counter()
+started = time.process_time()
 find_gap(runs, crane, model, GapOptions(plan=False))
-print(json.dumps([sum(len(run) for run in runs), time.perf_counter() - started]))
+print(json.dumps([sum(len(run) for run in runs), time.process_time() - started]))
 """
 
 
@@ -50,21 +50,23 @@ def cold_start(folder: Path) -> dict[str, float]:
     seconds = time.perf_counter() - started
     if status:
         raise SystemExit(f"winch-friction gap ended with status {os.waitstatus_to_exitcode(status)}")
-    return {"seconds": seconds, "megabytes": usage.ru_maxrss / 1024, "cpu_seconds": usage.ru_utime + usage.ru_stime}
+    return {
+        "seconds": seconds,
+        "megabytes": usage.ru_maxrss / 1024,
+        "cpu_seconds": usage.ru_utime + usage.ru_stime,
+        "load": os.getloadavg()[0],
+    }
 
 
 def growth() -> list[tuple[int, float]]:
-    """(samples, seconds of the workflow alone) for growing records, the fastest of two each."""
+    """(samples, processor seconds of the workflow alone) for growing records: a busy machine does not count."""
     rows = []
     for length in LENGTHS:
-        times = []
-        for _ in range(2):
-            out = subprocess.run(
-                [sys.executable, "-c", IN_PROCESS, str(length), str(SEED)], capture_output=True, text=True, check=True
-            )
-            samples, seconds = json.loads(out.stdout.strip().splitlines()[-1])
-            times.append(seconds)
-        rows.append((int(samples), min(times)))
+        out = subprocess.run(
+            [sys.executable, "-c", IN_PROCESS, str(length), str(SEED)], capture_output=True, text=True, check=True
+        )
+        samples, seconds = json.loads(out.stdout.strip().splitlines()[-1])
+        rows.append((int(samples), float(seconds)))
     return rows
 
 

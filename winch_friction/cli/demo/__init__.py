@@ -16,7 +16,7 @@ PRODUCTS = ("bag", "estimator.json", "demo.json", "demo.png", "demo.html", "lear
 def command(
     out: Annotated[Path, typer.Option(help="Folder for bag, picture, page and logs.")] = Path("out/demo"),
     scenario: Annotated[str, typer.Option(help="Shipped scenario or file; heave compensation.")] = "ahc_irregular",
-    duration: Annotated[float, typer.Option(help="Seconds of sea per phase.", min=40.0, max=3600.0)] = 80.0,
+    duration: Annotated[float, typer.Option(help="Seconds of sea per phase.", min=40.0, max=3600.0)] = 60.0,
     seed: Annotated[int, typer.Option(help="Which sea.", min=0)] = 1,
     friction_factor: Annotated[
         float,

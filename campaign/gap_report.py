@@ -14,8 +14,8 @@ COST = Path("out/campaign_gap/cost.json")  # written by campaign.gap_cost
 
 READING = """## Reading the table
 
-* Nulls and effects rotate through nine flavours of data: rigid and elastic wires, regular and irregular seas, crane still
-  or heaving, encoders of 1024 to 8192 pulses, white and coloured noise, with and without optional channels.
+* Nulls and effects rotate through nine flavours of data: rigid and elastic wires, regular and irregular seas, crane
+  still or heaving, encoders of 1024 to 8192 pulses, white and coloured noise, with and without optional channels.
 * At 0.3 of the size some effects are inside what is ordinary, and are rightly not called missing: `brake_drag`,
   `high_pressure_mixed` and `port_turbulence` move a base parameter (K4, K5, K2) by less than two standard deviations of
   its prior, as the nulls do; `slip_leakage` is then within a motor's ordinary leakage; a `signal_delay` of 15 ms is

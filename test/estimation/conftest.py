@@ -1,19 +1,9 @@
-"""A small winch that tests drive themselves: the truth is the same balance of torques, written out independently."""
+"""Crane and seed of the estimator's tests."""
 
-import math
-
-import numpy as np
 import pytest
 
-from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.units import BAR, CM3_PER_REV, GRAVITY
-from winch_friction.physics.winch import sample_operating_point
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
-
-FULL = 11 * 215 * CM3_PER_REV  # m^3/rad, all motors in normal mode
-LOAD = 55e3
-PERIOD = 0.02
 
 
 @pytest.fixture(scope="session")
@@ -24,27 +14,3 @@ def crane():
 @pytest.fixture(scope="session")
 def seed():
     return load_model("a6vm215_crane2")
-
-
-def rigid_samples(crane, truth, *, amplitude, period=10.0, duration=100.0, noise=None, speed_noise=0.0):
-    """Normal mode, rigid wire, tip at rest: the pressure that moves shaft and load sinusoidally against the true
-    friction."""
-    inertia = crane.inertia + crane.load_inertia(LOAD)
-    rng = np.random.default_rng(noise) if noise is not None else None
-    for time in np.arange(0.0, duration, PERIOD).tolist():
-        angle = 2 * math.pi * time / period
-        speed = amplitude * math.sin(angle)
-        acceleration = amplitude * 2 * math.pi / period * math.cos(angle)
-        torque = LOAD * GRAVITY * crane.drum.radius(float("nan")) / crane.gear_ratio + inertia * acceleration
-        pressure = 130 * BAR
-        for _ in range(3):  # the motor losses read the pressure that they raise
-            groups = {"main": GroupSample(pressure + 25 * BAR, 25 * BAR, 215 * CM3_PER_REV)}
-            sample = Sample(time, speed, groups=groups, hook_load=LOAD)
-            x = sample_operating_point(sample, crane, drum_torque=crane.drum_torque(LOAD), speed=speed)
-            pressure = (torque + float(truth.torque(x))) / FULL
-        sample.groups["main"].pressure_a = pressure + 25 * BAR
-        if rng is not None:
-            sample.groups["main"].pressure_a += rng.normal(0.0, 0.3 * BAR)
-            sample.groups["main"].pressure_b += rng.normal(0.0, 0.3 * BAR)
-            sample.motor_speed += rng.normal(0.0, speed_noise)
-        yield sample

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import PERIOD, rigid_samples
+from driven_winch import PERIOD, rigid_samples
 
 from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator

@@ -63,6 +63,12 @@ class Study:
             print(f"  {drive} done", file=sys.stderr, flush=True)
         return self
 
+    def learn(self) -> "Study":
+        """The learned models alone."""
+        cases = [(drive, load, sea) for drive in DRIVES for load in self.loads for sea in self.seas]
+        self.learned = {(drive, load, sea.name): learn(drive, load, sea, self.truth) for drive, load, sea in cases}
+        return self
+
     def _case(self, drive: str, load: float, sea: Sea) -> None:
         learned = learn(drive, load, sea, self.truth)
         self.learned[drive, load, sea.name] = learned
@@ -212,7 +218,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a smoke version: one load, two seas, one seed")
     parser.add_argument("--out", type=Path, default=None, help="default docs/campaign_loop.md (quick: standard output)")
+    parser.add_argument("--learning", action="store_true", help="only the table of what is learned, to standard output")
     options = parser.parse_args(arguments)
+    if options.learning:
+        print(f"Commit `{commit()}`.\n\n{learned_table(Study(TRUTHS['1.3 x the seed'], options.quick, True).learn())}")
+        return
     begun, measured = time.process_time(), commit()
     studies = {}
     for (name, truth), whole in zip(TRUTHS.items(), (True, False), strict=True):

@@ -115,6 +115,7 @@ def main() -> None:
     parser.add_argument("--table", type=Path)
     parser.add_argument("--minutes", type=float, default=float("inf"), help="stop after that long; the table says so")
     parser.add_argument("--report-only", action="store_true", help="write the table from the results there are")
+    parser.add_argument("--note", default="", help="a line for the head of the table")
     parser.add_argument("--only", help="cases whose key contains this")
     for name, value in vars(Counts()).items():
         parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=None, help=f"full campaign: {value}")
@@ -127,7 +128,7 @@ def main() -> None:
     cases = [case for case in all_cases(counts, chosen.first_seed) if not chosen.only or chosen.only in case.key]
     if not chosen.report_only:
         run(cases, chosen.processes, results, time.time() + 60 * chosen.minutes)
-    write_table(table, list(finished(results).values()), counts)
+    write_table(table, list(finished(results).values()), counts, chosen.note)
 
 
 if __name__ == "__main__":

@@ -25,12 +25,12 @@ READING = """## Reading the table
 * The drives of the elastic cranes: one has a rope's light damping, one is damped as strongly as 0.2 MN s/m."""
 
 
-def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
+def write_table(path: Path, rows: Sequence[Row], counts: Counts, note: str = "") -> None:
     """Markdown with the bars, each effect's line and the wrong answers."""
     failed = [row for row in rows if "error" in row]
     good = [row for row in rows if "error" not in row]
     parts = [
-        _head(rows, failed, counts),
+        _head(rows, failed, counts, note),
         _bars(good, failed),
         _cost(),
         _effects(good),
@@ -43,7 +43,7 @@ def write_table(path: Path, rows: Sequence[Row], counts: Counts) -> None:
     path.write_text("\n\n".join(part for part in parts if part) + "\n")
 
 
-def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
+def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts, note: str) -> str:
     commits = Counter(row.get("commit", "unknown") for row in rows)
     seeds = [row["seed"] for row in rows]
     kinds = Counter(row["kind"] for row in rows)
@@ -60,6 +60,7 @@ def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts) -> str:
             f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds"
             f" {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",
             f"* Ended with an error: {len(failed)}",
+            *([f"* {note}"] if note else []),
         ]
     )
 

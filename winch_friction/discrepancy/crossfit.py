@@ -12,7 +12,6 @@ from winch_friction.physics.signals import FloatArray
 FEWEST_RUNS = 5  # with fewer, folds are stretches of time
 FOLDS = 8
 FLIPS = 2000
-PARAMETER_COST = 20.0  # Akaike's 2 per parameter, times the weight of correlated block noise
 
 
 @dataclass(frozen=True)
@@ -50,13 +49,12 @@ class CrossFit:
             self.sums.append((own, self.total_g - g.g[own].sum(axis=0), self.total_b - g.b[own].sum(axis=0)))
 
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
-        """Loss, with its cost per parameter, and coefficients of a fit to all training runs."""
+        """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)
         beta = self.problem.fit(self.total_g, self.total_b, columns)
         index = np.asarray(columns)
         loss = self.total_y2 - 2.0 * self.total_b[index] @ beta + beta @ self.total_g[np.ix_(index, index)] @ beta
-        used = sum(self.total_g[c, c] > 0.0 for slot in slots for c in slot.columns)
-        return float(loss) + PARAMETER_COST * float(used), beta
+        return float(loss), beta
 
     def explain(self, slots: Sequence[Slot]) -> Explanation:
         """Held-out losses of a set of effects."""

@@ -1,7 +1,7 @@
 """Which effects are missing: forward by held-out loss, checked as a set, each with the rivals that do as well."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -77,7 +77,6 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         current = _exchanged(cross, trials[best])
     current = _with_company(cross, _pruned(cross, current, rng))
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
-    current, found = _most_typical_first(cross, current, found)
     return Selection(base, current, found, tuple(considered))
 
 
@@ -148,31 +147,6 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
             break
         current = weakest
     return current
-
-
-def _most_typical_first(
-    cross: CrossFit, current: Explanation, found: tuple[Found, ...]
-) -> tuple[Explanation, tuple[Found, ...]]:
-    """Of a tied set, the member whose size is nearest to what is typical of it stands for the set."""
-    for k, each in enumerate(found):
-        if not each.rivals:
-            continue
-        trials = [
-            cross.explain((*current.slots[:k], slot, *current.slots[k + 1 :])) for slot in (each.slot, *each.rivals)
-        ]
-        best = min(trials, key=lambda trial: _strangeness(cross, trial, k))
-        chosen = best.slots[k]
-        rest = tuple(slot for slot in (each.slot, *each.rivals) if slot is not chosen)
-        current = best
-        found = (*found[:k], replace(each, slot=chosen, rivals=rest), *found[k + 1 :])
-    return current, found
-
-
-def _strangeness(cross: CrossFit, trial: Explanation, k: int) -> float:
-    """How far the largest amplitude of the k-th effect is from its typical size, as a logarithm."""
-    columns = cross.problem.columns(trial.slots)
-    sizes = [abs(trial.beta[columns.index(c)]) for c in trial.slots[k].columns]
-    return abs(float(np.log(max([*sizes, 1e-6]))))
 
 
 def _with_company(cross: CrossFit, current: Explanation) -> Explanation:

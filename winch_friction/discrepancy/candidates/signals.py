@@ -21,7 +21,7 @@ ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 _GroupLaw = Callable[[GroupSignals], FloatArray]
 
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
-e_p = Parameter("e_p", "1", 0.005, lower=-0.2, upper=0.2, doc="gain error of the transducers")
+e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
 )

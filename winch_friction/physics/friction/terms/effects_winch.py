@@ -8,7 +8,7 @@ from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, oil_temperature, s, shaft_angle, time, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term
 
-e_g = Parameter("e_g", "1", 0.012, lower=-0.1, upper=0.1, doc="difference of gear loss by direction, share of T_d/i")
+e_g = Parameter("e_g", "1", 0.006, lower=-0.1, upper=0.1, doc="difference of gear loss by direction, share of T_d/i")
 b_g = Parameter(
     "b_g", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="0: half in each direction, 1: hoisting, -1: lowering"
 )

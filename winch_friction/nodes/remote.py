@@ -14,6 +14,10 @@ from std_srvs.srv import SetBool, Trigger
 from winch_friction.physics.errors import InputError
 
 PATIENCE = 60.0  # s; a first start compiles
+# a server may see a request before it has discovered where the answer goes, and that answer is lost: questions are
+# asked again; what changes the node is asked for once, and only after a question was answered
+QUESTIONS = 12
+CHANGING = ("change_state", "set_parameters", "enable", "reset", "save", "load_model")
 
 TRANSITIONS = {
     "configure": Transition.TRANSITION_CONFIGURE,
@@ -36,6 +40,7 @@ class RemoteNode:
 
     def change(self, *transitions: str) -> None:
         """Take it through lifecycle transitions; `InputError` when it refuses."""
+        self.state()
         for each in transitions:
             request = ChangeState.Request(transition=Transition(id=TRANSITIONS[each]))
             if not self._call(ChangeState, "change_state", request).success:
@@ -72,8 +77,11 @@ class RemoteNode:
         client = self._clients[service]
         if not client.wait_for_service(timeout_sec=self._patience):
             raise InputError(f"{self.name}: not there after {self._patience:g} s; did it start?")
-        future = client.call_async(request)
-        self._executor.spin_until_future_complete(future, timeout_sec=self._patience)
-        if not future.done():
-            raise InputError(f"{self.name}: no answer from {service} within {self._patience:g} s")
-        return future.result()
+        asked = 1 if service in CHANGING else QUESTIONS
+        for _ in range(asked):
+            future = client.call_async(request)
+            self._executor.spin_until_future_complete(future, timeout_sec=self._patience / asked)
+            if future.done():
+                return future.result()
+            client.remove_pending_request(future)
+        raise InputError(f"{self.name}: no answer from {service} within {self._patience:g} s")

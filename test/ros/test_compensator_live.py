@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from conftest import Bench, diagnostics, efforts, stamps
+from dds_bench import Bench, diagnostics, efforts, stamps
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String

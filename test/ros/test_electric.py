@@ -2,7 +2,7 @@
 
 import math
 
-from conftest import Bench, efforts
+from dds_bench import Bench, efforts
 from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import FluidPressure
 

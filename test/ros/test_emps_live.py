@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Bench, efforts, stamps
+from dds_bench import Bench, efforts, stamps
 
 from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.estimation import FrictionEstimator

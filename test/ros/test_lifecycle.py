@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from conftest import Bench
+from dds_bench import Bench
 
 from winch_friction.nodes.remote import RemoteNode
 from winch_friction.physics.errors import InputError

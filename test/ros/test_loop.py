@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Bench
+from dds_bench import Bench
 from std_msgs.msg import String
 
 from winch_friction.cli.demo.measures import measure

@@ -1,5 +1,6 @@
 """`winch-friction gap` from files to files."""
 
+import hashlib
 import json
 import shutil
 import subprocess
@@ -114,3 +115,13 @@ def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
     assert words in error.splitlines()[-1]
     assert "Traceback" not in error
     assert not (tmp_path / "out").exists()
+
+
+def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys):
+    assert winch_friction(["gap", "--blind", "1", "--seed", "3", "--out", str(tmp_path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    seal = (tmp_path / "trial_01" / "seal.json").read_text().strip()
+    promised = (tmp_path / "trial_01" / "seal.sha256").read_text().strip()
+    assert hashlib.sha256(seal.encode()).hexdigest() == promised
+    assert json.loads(seal)["effect"] == told["trials"][0]["hidden"]
+    assert told["right"] == int(told["trials"][0]["hidden"] in told["trials"][0]["found"])

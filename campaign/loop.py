@@ -209,8 +209,8 @@ realisation of the same sea, run beside the seed's feedforward. Reversal window:
 change of the reference."""
 
 SYSTEM_ONLY = """Here the motors' friction is right in the seed, and only gears, drum and wire have 30 % more: 6 to
-14 % of the whole. The seed at 0.9 is then little worse than the truth at 0.9, and learning cannot gain ten points:
-they are not there to gain."""
+14 % of the whole. The seed at 0.9 is then little worse than the truth at
+0.9, so that learning has about ten points to gain, and gains them."""
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -12,6 +12,7 @@ from std_msgs.msg import String
 from winch_friction.nodes.messages import clock_message
 from winch_friction.nodes.qos import LATCHED
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import Sample
 from winch_friction.records.model_file import load_model, model_to_text, save_model
 
@@ -99,6 +100,21 @@ def test_models_are_swapped_by_service_and_by_topic(fed: tuple[Bench, list], tmp
     bench.drive(0.8)
     assert diagnostics(seen, "feedforward")["accepted_models"] == "2"
     assert max(map(abs, efforts(torque)[-20:])) > 0.0
+
+
+def test_a_repaired_model_with_a_new_term_takes_over_while_running(fed: tuple[Bench, list], tmp_path: Path) -> None:
+    """What `gap` writes: the seed's terms and the effect that was missing."""
+    bench, torque = fed
+    seed, missing = load_model("a6vm215_crane2"), term_named("low_displacement_loss")
+    terms, values = (*seed.terms, missing), (*seed.values, *(p.typical / 3 for p in missing.parameters))
+    repaired = FrictionModel("repaired", terms, values, constants=seed.constants)
+    bench.drive(1.0)
+    before = max(map(abs, efforts(torque)[-40:]))
+    node = bench.remote("compensator")
+    node.set({"model_file": str(save_model(repaired, tmp_path / "model.yaml"))})
+    assert "in use" in node.trigger("load_model")
+    bench.drive(4.0)
+    assert max(map(abs, efforts(torque)[-40:])) > before
 
 
 def test_a_wrong_model_is_refused_and_the_last_good_one_kept(fed: tuple[Bench, list], tmp_path: Path) -> None:

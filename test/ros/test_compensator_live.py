@@ -44,8 +44,8 @@ def test_stale_inputs_ramp_to_zero_and_back_without_a_bump(fed: tuple[Bench, lis
     bench.drive(1.0)
     back = efforts(torque)[before:]
     assert abs(back[-1]) > 100.0
-    # a reversal alone changes the torque by 20 of its peak a second (the sign is spread over 0.05 s of acceleration), the
-    # ramp by 3.3 of it: 0.47 of the peak a sample; a bump would be the whole of it
+    # a reversal alone changes the torque by 20 of its peak a second (the sign is spread over 0.05 s of acceleration),
+    # the ramp by 3.3 of it: 0.47 of the peak a sample; a bump would be the whole of it
     assert max(abs(b - a) for a, b in zip(back[:-1], back[1:], strict=True)) < 0.5 * max(map(abs, back))
     assert diagnostics(seen, "feedforward")["state"] in ("active", "fading")
 

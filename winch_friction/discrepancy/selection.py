@@ -1,6 +1,6 @@
 """Which effects are missing: forward by held-out loss, checked as a set, each with the rivals that do as well."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -59,7 +59,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
     current, considered = base, []
     p_values: dict[str, float] = {}
     for stage in range(most):
-        trials = _trials(cross, current)
+        trials = candidate_trials(cross, current, current.names)
         if not trials:
             break
         gains = np.array([current.losses - each.losses for each in trials])
@@ -100,9 +100,8 @@ def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: b
     return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)
 
 
-def _trials(cross: CrossFit, current: Explanation) -> list[Explanation]:
-    """Every other candidate added to the current set, each in the variant that fits the training runs best."""
-    taken = set(current.names)
+def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
+    """Every candidate that is not taken added to the set, each in the variant that fits the training runs best."""
     best: dict[str, tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
         name = slot.candidate.name

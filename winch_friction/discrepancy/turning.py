@@ -16,6 +16,7 @@ from winch_friction.discrepancy.candidates.friction import SHAPES
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.linearise import Expansion, expand_around
 from winch_friction.discrepancy.problem import build_problem
+from winch_friction.discrepancy.selection import candidate_trials
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
@@ -55,7 +56,7 @@ def search_turning(
     cross = CrossFit(build_problem(chosen, turning.layout, "turning"))
     kept = [_same_slot(cross, slot) for slot in explanation.slots]
     base = cross.explain(kept)
-    trials = _trials(cross, base, named)
+    trials = candidate_trials(cross, base, named)
     if not trials:
         return None
     p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
@@ -76,15 +77,3 @@ def _same_slot(cross: CrossFit, slot: Slot) -> Slot:
         for each in cross.problem.slots
         if each.candidate.name == slot.candidate.name and each.variant.label == slot.variant.label
     )
-
-
-def _trials(cross: CrossFit, base: Explanation, named: set[str]) -> list[Explanation]:
-    best: dict[str, tuple[float, Slot]] = {}
-    for slot in cross.problem.slots:
-        name = slot.candidate.name
-        if name in named:
-            continue
-        loss, _ = cross.train_loss((*base.slots, slot))
-        if name not in best or loss < best[name][0]:
-            best[name] = (loss, slot)
-    return [cross.explain((*base.slots, slot)) for _, slot in best.values()]

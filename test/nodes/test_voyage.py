@@ -31,6 +31,14 @@ def test_on_the_walls_clock_the_stamps_do_not_run_ahead(crane_150t, crane2_model
     assert voyage.now == 5007.0
 
 
+def test_a_dated_scenario_is_dated_by_the_clock(crane_150t, crane2_model) -> None:
+    scenario = adjusted(load_scenario("ahc_irregular"), 50.0, 0.5).override({"start_time": 1.7e9})
+    voyage = Voyage(scenario, crane_150t, crane2_model, seed=4)
+    voyage.begin(1000.0)
+    assert voyage.advance(0.0)
+    assert voyage.sample.time == pytest.approx(voyage.now, abs=0.05)
+
+
 def test_answers_are_waited_for_but_not_for_ever() -> None:
     answers = Answers(("compensator", "estimator"))
     answers.expect(10.0, now=100.0)

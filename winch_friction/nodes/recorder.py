@@ -38,7 +38,8 @@ class Recorder:
     """Writes what arrives on `topics` (topic -> type) to a `records.bag_write.BagWriter`.
 
     Messages are taken in by `collect`, written in the order in which they were sent, and dated by the simulated clock
-    that was sent before them; what comes before its first word is not written. `finish` writes what is still waiting.
+    that was sent before them; what comes before its first word is not written. `finish` writes what is still waiting,
+    `close` unsubscribes. `taken` and `counts` are the messages that came and that were written, by topic.
     """
 
     def __init__(self, node: Node, writer: Any, topics: Mapping[str, str]) -> None:
@@ -51,6 +52,7 @@ class Recorder:
         )
         self._waiting: list[tuple[int, str, Any]] = []
         self._now = self._last = 0  # ns: the simulated clock, the last receipt written
+        self.taken: Counter[str] = Counter()
         self.counts: Counter[str] = Counter()
 
     def hears(self, *topics: str) -> bool:
@@ -60,11 +62,13 @@ class Recorder:
 
     def collect(self) -> None:
         """Take in everything that has come and write what is old enough to be in order."""
-        self._waiting += [
+        come = [
             (info["source_timestamp"], topic, message)
             for topic, subscription in self._subscriptions.items()
             for message, info in drain(subscription)
         ]
+        self._waiting += come
+        self.taken.update(topic for _, topic, _ in come)
         if self._waiting:
             self._write_until(max(each[0] for each in self._waiting) - REORDERED)
 
@@ -72,6 +76,11 @@ class Recorder:
         """Write the rest."""
         self.collect()
         self._write_until(max((each[0] for each in self._waiting), default=0))
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        while self._subscriptions:
+            self._node.destroy_subscription(self._subscriptions.popitem()[1])
 
     def _write_until(self, sent: int) -> None:
         ready = sorted((each for each in self._waiting if each[0] <= sent), key=lambda each: each[0])

@@ -60,12 +60,14 @@ class SimulatorNodeOptions:
 
 
 class SimulatorNode(WinchNode):
-    """Publishes a sample, takes the answer, advances the plant; begins when activated and again on `~/reset`."""
+    """Publishes a sample, takes the answer, advances the plant; begins when activated and again on `~/reset`.
+
+    Sea, plant and lockstep are those of the parameters at the last `configure`: one process sails one scenario after
+    the other.
+    """
 
     def __init__(self, **node_arguments: Any) -> None:
-        changeable = ("rate", "subscribers", "repeat")
-        fixed = [name for name in SimulatorNodeOptions.__dataclass_fields__ if name not in changeable]
-        self._own = OptionParameters(SimulatorNodeOptions, fixed=fixed)
+        self._own = OptionParameters(SimulatorNodeOptions, fixed=("publish_clock",))
         super().__init__("simulator", self._own, **node_arguments)
 
     def build(self, crane: Crane, model: FrictionModel) -> None:

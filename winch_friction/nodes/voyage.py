@@ -35,7 +35,7 @@ def adjusted(scenario: Scenario, sensor_rate: float, duration: float) -> Scenari
 
 
 class Voyage:
-    """Repeats one scenario; stamps are the scenario's time plus an origin that only grows."""
+    """Repeats one scenario; stamps are the time since its start plus an origin that only grows."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class Voyage:
     def sample(self) -> Sample:
         """The latest scan, dated by the clock."""
         latest = self._simulator.sample
-        return replace(latest, time=latest.time + (self._origin or 0.0))
+        return replace(latest, time=latest.time - self.scenario.start_time + (self._origin or 0.0))
 
     def advance(self, torque: float) -> bool:
         """Go on to the next scan with this feedforward in N m; False when the voyage ended before one came."""

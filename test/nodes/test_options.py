@@ -30,7 +30,7 @@ class Board:
 
 
 def test_every_option_is_a_described_parameter() -> None:
-    board, options = Board(), OptionParameters(CompensatorConfig, keys={"gains": {"stribeck": 1.0}})
+    board, options = Board(), OptionParameters(CompensatorConfig, keys=lambda: {"gains": {"stribeck": 1.0}})
     options.declare(board)
     assert all(descriptor.description for descriptor in board.descriptors.values())
     assert board.values["gains.stribeck"] == 1.0

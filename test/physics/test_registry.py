@@ -2,6 +2,7 @@
 
 import pytest
 import sympy as sp
+from own_term_files import forgotten, own_terms
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import Scope, Term, register, registered_terms, term_named
@@ -37,17 +38,46 @@ def test_a_users_file_adds_a_term(tmp_path):
         "k = Parameter('k_test_user', 'N', 0.1, doc='per metre')\n"
         "register(Term('test_user_term', k.symbol * wire_out, (k,), Scope.SHAFT, 'a test', 'gear and drum'))\n"
     )
-    try:
+    with forgotten("test_user_term"):
         assert [term.name for term in load_file(path)] == ["test_user_term"]
         assert "wire_out" in term_named("test_user_term").reads
-    finally:
-        from winch_friction.physics.friction import registry
+        assert [term.name for term in load_file(path)] == ["test_user_term"]  # not run again
+        path.write_text(path.read_text() + "# another opinion\n")
+        with pytest.raises(InputError, match="mine.py: changed since"):
+            load_file(path)
 
-        registry._TERMS.pop("test_user_term", None)
 
-
-def test_a_broken_users_file_is_one_line(tmp_path):
-    path = tmp_path / "broken.py"
-    path.write_text("1/0\n")
-    with pytest.raises(InputError, match="broken.py: ZeroDivisionError"):
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1/0\n", "wrong.py: ZeroDivisionError"),
+        ("register = None\n", "wrong.py: declares no term"),
+        ("def\n", "wrong.py: SyntaxError"),
+        ("import no_such_module\n", "wrong.py: ModuleNotFoundError"),
+        ("from winch_friction.physics.friction import *\nregister(term_named('coulomb'))\n", "wrong.py: .*twice"),
+    ],
+)
+def test_a_wrong_users_file_is_one_line(tmp_path, text, said):
+    path = tmp_path / "wrong.py"
+    path.write_text(text)
+    with pytest.raises(InputError, match=said) as refused:
         load_file(path)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("name", ["missing.py", "."])
+def test_a_missing_users_file_is_one_line(tmp_path, name):
+    with pytest.raises(InputError, match="not a readable Python file of terms"):
+        load_file(tmp_path / name)
+
+
+def test_a_users_file_that_fails_half_way_adds_nothing(tmp_path):
+    path = own_terms(tmp_path, "half_way", "k_half_way")
+    declared = path.read_text()
+    path.write_text(declared + "1/0\n")
+    with pytest.raises(InputError, match="ZeroDivisionError"):
+        load_file(path)
+    assert "half_way" not in registered_terms()
+    path.write_text(declared)
+    with forgotten("half_way"):
+        assert [term.name for term in load_file(path)] == ["half_way"]

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from own_term_files import forgotten, own_model, own_terms
 
 from winch_friction.cli import main
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
@@ -152,6 +153,28 @@ def test_the_verb(tmp_path, bag, capsys):
     assert main.run(["replay", str(tmp_path / "nothing"), *arguments[2:]]) == 2
     assert main.run([*arguments, "--remap", "x"]) == 2
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_model_with_a_users_own_term_needs_its_file(tmp_path, bag, capsys):
+    term, parameter = "replay_drag", "k_replay"
+    model = own_model(tmp_path, term, parameter)
+    arguments = ["replay", str(bag), "--crane", "crane_150t", "--model", str(model), "--json"]
+    assert main.run(arguments) == 2
+    assert "one of your own needs its file" in capsys.readouterr().err
+    assert main.run([*arguments, "--terms-file", str(tmp_path / "missing.py")]) == 2
+    assert "missing.py: not a readable" in capsys.readouterr().err
+    with forgotten(term):
+        assert main.run([*arguments, "--terms-file", str(own_terms(tmp_path, term, parameter))]) == 0
+        content = json.loads(capsys.readouterr().out)
+    assert parameter in {each["parameter"] for each in content["parameters"]}
+
+
+def test_a_recording_names_the_terms_of_its_models(tmp_path):
+    names = ("phase_drag", "k_phase")
+    files = {"terms_file": str(own_terms(tmp_path, *names)), "model_file": str(own_model(tmp_path, *names))}
+    with forgotten("phase_drag"):
+        settings = settings_from_metadata({"phases": [{"parameters": files}]}, "bag")
+    assert settings.phases[0].seed.term_names[-1] == "phase_drag"
 
 
 def test_phases_of_a_recording_begin_after_its_pauses(tmp_path, run, crane_150t, crane2_model):

@@ -70,6 +70,7 @@ def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -
         ("compensator", "scale:=much", "scale"),
         ("estimator", "crane:=no_such_crane", "no_such_crane"),
         ("simulator", "scenario:=no_such_sea", "no_such_sea"),
+        ("estimator", "terms_file:=no_such_terms.py", "no_such_terms.py"),
         ("estimator", "pressure_reference:=relative", "gauge, absolute"),
     ],
 )

@@ -14,6 +14,7 @@ def command(
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
     model: Annotated[str, typer.Option(help="Seed model: file or shipped name.")],
     out: Annotated[OptionalPath, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file of the nodes.")] = None,
     picture: Annotated[OptionalPath, typer.Option(help="Picture of friction, speed, parameters: .png, .svg.")] = None,
     learn: Annotated[bool, typer.Option(help="Let the compensator take over what the estimator learns.")] = True,
@@ -34,6 +35,7 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
+    from winch_friction.physics.friction.registry import load_file
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
     from winch_friction.replay.recording import replay_recording
@@ -41,6 +43,8 @@ def command(
     from winch_friction.replay.summary import summary
 
     options = bag_options(remap or [], joint, pressure_reference, namespace)
+    if terms_file is not None:
+        load_file(terms_file)
     settings = settings_from_file(params_file) if params_file else None
     seed = load_model(model)
     with stderr.status("replaying"):

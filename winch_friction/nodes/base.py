@@ -20,6 +20,7 @@ from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.polling import Polled
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.registry import load_file
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -66,7 +67,6 @@ class WinchNode(LifecycleNode):
         for each in self._settings:
             each.declare(self)
         self.options: NodeOptions = self._node_parameters.read(self)
-        self._warn_of_unknown()
         self.check_settings({})
         self.crane: Crane
         self._active_entities: list[Callable[[], Any]] = []
@@ -107,12 +107,22 @@ class WinchNode(LifecycleNode):
     def apply_settings(self) -> None:
         """Take over changed parameters."""
 
+    def load_terms(self) -> None:
+        """Register the terms of `terms_file` and declare what can be set for them; `InputError` when it is no such
+        file."""
+        if self.options.terms_file:
+            load_file(self.options.terms_file)
+            for each in self._settings:
+                each.declare(self)
+
     # -- lifecycle
     @said_aloud
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Read the files, build; a bad file is one line and leaves the node unconfigured."""
         try:
             self.options = self._node_parameters.read(self)
+            self.load_terms()
+            self._warn_of_unknown()
             self.crane = load_crane(self.options.crane)
             self.build(self.crane, load_model(self.options.model_file))
         except InputError as error:

@@ -46,8 +46,7 @@ class CompensatorNode(WinchNode):
     """Publishes `~/friction_torque` and `~/pressure_feedforward` at every speed message."""
 
     def __init__(self, **node_arguments: Any) -> None:
-        gains = {"gains": dict.fromkeys(sorted(registered_terms()), 1.0)}
-        self._config = OptionParameters(CompensatorConfig, keys=gains)
+        self._config = OptionParameters(CompensatorConfig, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         super().__init__("compensator", self._config, self._own, **node_arguments)
 
@@ -117,6 +116,7 @@ class CompensatorNode(WinchNode):
         return "feedforward starts anew"
 
     def _load_model(self) -> str:
+        self.load_terms()
         model = load_model(self.options.model_file)
         self.law.load_model(model)
         return f"model '{model.name}' in use"
@@ -160,6 +160,10 @@ class CompensatorNode(WinchNode):
         status["state"] = state
         level = {"waiting": WARN, "stale": ERROR}.get(state, OK)
         return [Health("feedforward", level, state, status), self._input_health.report()]
+
+
+def _a_gain_for_every_term() -> dict[str, dict[str, float]]:
+    return {"gains": dict.fromkeys(sorted(registered_terms()), 1.0)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -14,6 +14,9 @@ class NodeOptions:
     autostart: bool = option(True, doc="configure and activate at start, without waiting for a lifecycle manager")
     crane: str = option("crane_150t", doc="crane file, or the name of a shipped crane")
     model_file: str = option("a6vm215_crane2", doc="model file or shipped name: the seed, and what ~/load_model loads")
+    terms_file: str = option(
+        "", doc="Python file that declares friction terms of your own, which the model files may name; it is run"
+    )
     groups: tuple[str, ...] = option(("active", "passive"), doc="motor groups on the shaft, by their names in topics")
     speed_joint: str = option(
         "winch_motor", choices=("winch_motor", "winch_drum"), doc="joint whose speed winch/joint_states carries"
@@ -45,4 +48,5 @@ class NodeOptions:
         )
 
 
-FIXED = tuple(name for name in NodeOptions.__dataclass_fields__ if name not in ("model_file", "crane"))
+READ_WITH_MODEL = ("crane", "model_file", "terms_file")  # may change at any time, and count from the next reading on
+FIXED = tuple(name for name in NodeOptions.__dataclass_fields__ if name not in READ_WITH_MODEL)

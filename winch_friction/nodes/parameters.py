@@ -1,7 +1,7 @@
 """ROS parameters from option dataclasses: declared once, with description and range, and read back as one object."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
 from typing import Any, Generic, TypeVar
 
@@ -18,9 +18,9 @@ _LARGEST = 2**62
 class OptionParameters(Generic[T]):
     """The fields of an option dataclass as parameters of a node.
 
-    A mapping field becomes one parameter per key, `gains.stribeck`; `keys` names keys beyond those of the default. An
-    empty tuple is declared as `[""]`, for rclpy cannot tell the type of an empty list. `fixed` names the fields that
-    cannot change while the node lives.
+    A mapping field becomes one parameter per key, `gains.stribeck`; `keys` says by field which keys there are beyond
+    those of the default, and is asked at each `declare`. An empty tuple is declared as `[""]`, for rclpy cannot tell
+    the type of an empty list. `fixed` names the fields that cannot change while the node lives.
     """
 
     def __init__(
@@ -28,27 +28,28 @@ class OptionParameters(Generic[T]):
         kind: type[T],
         *,
         fixed: Iterable[str] = (),
-        keys: Mapping[str, Mapping[str, float]] | None = None,
+        keys: Callable[[], Mapping[str, Mapping[str, float]]] = dict,
         skip: Iterable[str] = (),
     ) -> None:
         self.kind = kind
         self.fixed = frozenset(fixed)
-        self._keys = dict(keys or {})
+        self._keys = keys
         self._fields = [each for each in fields(kind) if each.name not in frozenset(skip)]  # type: ignore[arg-type]
         self.names: dict[str, tuple[str, str | None]] = {}
 
     def declare(self, node: Any) -> None:
-        """Declare every field; a bad override is an `InputError` that names the parameter."""
+        """Declare every field that is not declared yet; a bad override is an `InputError` that names the parameter."""
+        keys = self._keys()
         for each in self._fields:
-            for name, key, default in self._entries(each):
-                self.names[name] = (each.name, key)
+            for name, key, default in self._entries(each, keys.get(each.name, {})):
                 declare(node, name, default, limits_of(each), each.name in self.fixed)
+                self.names[name] = (each.name, key)
 
-    def _entries(self, each: Any) -> list[tuple[str, str | None, Any]]:
+    def _entries(self, each: Any, more: Mapping[str, float]) -> list[tuple[str, str | None, Any]]:
         default = default_of(each)
         if not isinstance(default, dict):
             return [(each.name, None, (list(default) or [""]) if isinstance(default, tuple) else default)]
-        merged = {**default, **self._keys.get(each.name, {})}
+        merged = {**default, **more}
         return [(f"{each.name}.{key}", key, float(value)) for key, value in merged.items()]
 
     def read(self, node: Any, changes: Mapping[str, Any] | None = None) -> T:

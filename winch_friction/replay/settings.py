@@ -9,6 +9,7 @@ from winch_friction.compensation import CompensatorConfig
 from winch_friction.estimation import EstimatorConfig
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.registry import load_file
 from winch_friction.physics.options import from_mapping
 from winch_friction.records.model_file import load_model
 from winch_friction.records.strict_yaml import read_yaml
@@ -56,6 +57,8 @@ def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySet
 def _phase(content: Mapping[str, Any], index: int, where: str) -> Phase:
     parameters = dict(content.get("parameters", {}))
     model, follow = parameters.pop("model_file", ""), bool(parameters.pop("follow_model_topic", True))
+    if terms_file := parameters.pop("terms_file", ""):
+        load_file(terms_file)
     return Phase(
         start=float(content.get("start", "nan" if index else "-inf")),
         config=from_mapping(CompensatorConfig, parameters, where),

@@ -38,8 +38,8 @@ def running(crane, seed, samples):
 def inside(each):
     """Everything that a rejected sample must leave alone, bit by bit."""
     return (
-        each._filter.x.tobytes(), each._filter.P.tobytes(), each._load.mass, each._previous, each._friction.memory,
-        each._excitation.range, [copy.copy(vars(s)) for s in each._statuses], each._factor.value,
+        *(part.tobytes() for part in each._filter.state), each._load.mass, each._last, each._friction.memory,
+        each._excitation.range, [copy.copy(vars(s)) for s in each._statuses._each], each._filter.noise_factor,
     )  # fmt: skip
 
 
@@ -166,7 +166,7 @@ def test_gaps_and_jumps_of_time_restart_the_speed_alone(running, samples, jump):
 @pytest.mark.parametrize("why", ["disabled", "saturation", "stick"])
 def test_frozen_parameters_are_considered_and_not_touched(crane, seed, running, samples, why):
     values, covariance = running.model().values, running.model().covariance
-    speed_before = running._filter.P[0, 0]
+    speed_before = running._filter.state[1][0, 0]
     running.set_enabled(why != "disabled")
     for k, sample in enumerate(samples[300:330]):
         sample = copy.deepcopy(sample)
@@ -182,7 +182,7 @@ def test_frozen_parameters_are_considered_and_not_touched(crane, seed, running, 
     assert estimate.state in (why, "rejected")
     assert running.model().values == values
     assert np.array_equal(running.model().covariance, covariance)
-    assert running._filter.P[0, 0] < 10.0 * speed_before  # the speed goes on being estimated
+    assert running._filter.state[1][0, 0] < 10.0 * speed_before  # the speed goes on being estimated
 
 
 def test_one_direction_at_one_speed_is_no_excitation(crane, seed):

@@ -1,6 +1,12 @@
 """What may be said about a parameter: seed, learning, learned, frozen or invalid, with hysteresis."""
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.parameters import ScaledParameters
+from winch_friction.physics.signals import FloatArray
 
 
 class ParameterStatus:
@@ -42,3 +48,34 @@ class ParameterStatus:
         if share < learned:
             return "learned"
         return "learning" if share < learning else "seed"
+
+
+class ParameterStatuses:
+    """The statuses of all parameters of a seed."""
+
+    def __init__(self, config: EstimatorConfig, parameters: ScaledParameters) -> None:
+        self._parameters = parameters
+        self._prior = np.diag(parameters.prior)
+        self._each = [ParameterStatus(config) for _ in parameters.seed.values]
+
+    def step(self, phi: FloatArray, covariance: FloatArray, frozen: bool, dt: float) -> None:
+        """Take the filter's parameters (n,) and their covariance (n, n), and whether learning rested for `dt` s."""
+        shares = np.sqrt(np.diag(covariance) / self._prior)
+        limits = self._parameters.at_limit(phi)
+        for index, share, limit in zip(self._parameters.free, shares, limits, strict=True):
+            self._each[index].step(float(share), frozen, bool(limit), dt)
+
+    @property
+    def texts(self) -> list[str]:
+        """The statuses to say, in the seed's order."""
+        return [each.text for each in self._each]
+
+    @property
+    def levels(self) -> list[str]:
+        """Seed, learning or learned, in the seed's order: what a checkpoint keeps."""
+        return [each.level for each in self._each]
+
+    @levels.setter
+    def levels(self, levels: Sequence[str]) -> None:
+        for each, level in zip(self._each, levels, strict=True):
+            each.level = level

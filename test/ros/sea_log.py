@@ -15,7 +15,7 @@ from winch_friction.nodes.simulator import SLOW_CHANNELS
 from winch_friction.records.bag_write import BagWriter
 from winch_friction.records.topics import TopicMap, crane_topics
 
-LONGEST = 120.0  # s that a sea may take
+LONGEST = 60.0  # s that a sea may take
 WHOLE_SEA = 10_000  # messages that a publisher keeps until they are acknowledged: more than a sea has samples
 
 

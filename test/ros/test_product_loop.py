@@ -18,6 +18,7 @@ from winch_friction.records.bag_file import open_bag
 from winch_friction.records.runs import read_run
 from winch_friction.records.topics import stamp_time
 
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]  # s; it takes a minute
 EFFECT = "low_displacement_loss"
 SIZE = 0.3  # at full size the safety envelope of 1.3 x the seed would clip the repair
 SEED = 71

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.options import check, option
 
-# below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed (DOMAIN
-# section 10)
+# below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed
 SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s
 
 

@@ -60,6 +60,7 @@ def run_gap(
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
     from winch_friction.discrepancy.workflow import GapOptions, find_gap
+    from winch_friction.physics.friction.registry import load_file
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model, save_model
@@ -69,6 +70,8 @@ def run_gap(
         raise InputError("no run given; name at least one run file, or use --blind N")
     loaded_crane = load_crane(crane)
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
+    if effects is not None:
+        load_file(effects)  # before the model, which may be one that these effects have repaired
     seed_model = load_model(model)
     read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
     for run in read:

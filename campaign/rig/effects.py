@@ -81,7 +81,7 @@ OUTSIDE_SIGNAL: dict[str, tuple[str, ...]] = {
     "seal_grip_temperature": ("oil_temperature",),
     "drum_sector_drag": ("shaft_angle", "wire_out"),
     "warm_in_during_run": ("time", "run_time"),
-    "pressure_memory": ("pressure", "main.pressure_a", "active.pressure_a", "hook_load", "drum_torque"),
+    "pressure_memory": ("main.pressure", "active.pressure", "passive.pressure", "hook_load", "drum_torque"),
     "root_speed": ("motor_speed", "speed"),
     "speed_bump": ("motor_speed", "speed"),
     "acceleration_loss": ("acceleration",),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.wire_mode import on_the_wire, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.wire_mode import agreed_damping, on_the_wire, swinging_load, wire_stiffnesses
 
 DT, MASS, LEVER = 0.02, 55e3, 1.136 / 250
 TIME = np.arange(0.0, 120.0, DT)
@@ -32,13 +32,15 @@ def test_the_swing_is_found_and_taken_out(length):
     stiffness = 3e8 / 50.0
     load = on_the_wire(motion(TIME), DT, np.sqrt(stiffness / MASS), 0.06)
     noise = 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
-    gap = MASS * LEVER * (load - motion(TIME)) + 30.0 * np.sign(np.cos(0.7 * TIME)) + noise
+    step = np.sign(np.cos(0.7 * TIME))
+    gap = MASS * LEVER * (load - motion(TIME)) + 30.0 * step + noise
     tried = wire_stiffnesses(3e8, None if length is None else np.full(len(TIME), length))
-    swing = swinging_load(gap, np.ones(len(TIME), bool), motion(TIME), DT, MASS, np.full(len(TIME), LEVER), tried)
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, tried, step[:, None])
     assert swing.frequency == pytest.approx(np.sqrt(stiffness / MASS), rel=0.02)
     assert 0.03 <= swing.damping <= 0.1
-    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * np.sign(np.cos(0.7 * TIME))
-    assert left[500:].std() < 0.25 * (gap - 30.0 * np.sign(np.cos(0.7 * TIME)))[500:].std()
+    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * step
+    assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
 
 
 def test_a_rigid_wire_stays_rigid():
@@ -47,3 +49,35 @@ def test_a_rigid_wire_stays_rigid():
     swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (6e6,))
     assert swing.damping == 0.0
     assert np.array_equal(swing.acceleration, rigid)
+
+
+def test_a_delay_is_not_taken_for_a_wire():
+    rigid = motion(TIME)
+    torque = MASS * LEVER * rigid
+    late = np.interp(TIME - 0.05, TIME, torque) - torque + 5.0 * np.random.default_rng(3).standard_normal(len(TIME))
+    shift = np.gradient(torque)[:, None]
+    swing = swinging_load(late, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (3e6,), shift)
+    assert swing.damping == 0.0
+
+
+def test_stretches_of_motion_have_levels_of_their_own():
+    rigid = motion(TIME)
+    moving = np.flatnonzero(np.abs(np.sin(0.7 * TIME)) > 0.1)
+    load = on_the_wire(rigid, DT, 7.0, 0.25)
+    friction = np.where(np.isin(np.arange(len(TIME)), moving), 400.0 * np.sign(np.sin(0.7 * TIME)), 5e3)
+    gap = MASS * LEVER * (load - rigid) + friction
+    swing = swinging_load(gap, moving, rigid, DT, MASS, np.full(len(TIME), LEVER), (49.0 * MASS,))
+    assert swing.damping == pytest.approx(0.25, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "expected"), [((0.06, 0.06, 0.061), 0.06), ((0.24, 0.71, 0.36), 0.33), ((0.02, 0.6, 0.02), None)]
+)
+def test_runs_agree_on_a_ratio_or_on_a_damper_or_not_at_all(ratios, expected):
+    masses, stiffness = (61e3, 20e3, 55e3), (3.1e6, 1.0e6, 1.6e6)
+    modes = [(np.sqrt(k / m), z, m) for z, m, k in zip(ratios, masses, stiffness, strict=True)]
+    found = agreed_damping(modes)
+    if expected is None:
+        assert found is None
+    else:
+        assert found(np.sqrt(1.6e6 / 55e3), 55e3) == pytest.approx(expected, rel=0.1)

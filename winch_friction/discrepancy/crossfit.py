@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 
 from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.problem import Problem
@@ -16,12 +17,16 @@ FLIPS = 2000
 
 @dataclass(frozen=True)
 class Explanation:
-    """A set of effects with its held-out losses per segment and its fit to all training runs."""
+    """A set of effects with its held-out losses per segment and its fit to all training runs.
+
+    `left_out` holds the coefficients of each fit that left one fold out, shape (folds, columns).
+    """
 
     slots: tuple[Slot, ...]
     losses: FloatArray
     beta: FloatArray
     train_loss: float
+    left_out: FloatArray
 
     @property
     def loss(self) -> float:
@@ -60,14 +65,32 @@ class CrossFit:
         """Held-out losses of a set of effects."""
         columns = self.problem.columns(slots)
         index = np.asarray(columns)
-        losses = np.empty(len(self.fold))
+        losses, left_out = np.empty(len(self.fold)), np.empty((len(self.sums), len(columns)))
         g = self.problem.grams
-        for own, sum_g, sum_b in self.sums:
-            beta = self.problem.fit(sum_g, sum_b, columns)
+        for k, (own, sum_g, sum_b) in enumerate(self.sums):
+            left_out[k] = beta = self.problem.fit(sum_g, sum_b, columns)
             part = g.g[np.ix_(own, index, index)]
             losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ beta + (part @ beta) @ beta
         loss, beta = self.train_loss(slots)
-        return Explanation(tuple(slots), losses, beta, loss)
+        return Explanation(tuple(slots), losses, beta, loss, left_out)
+
+    def jackknife_p_value(self, explanation: Explanation) -> float:
+        """Two-sided p-value of the last effect's amplitude, from how much it changes when a fold is left out.
+
+        Student's t of the delete-one jackknife (Efron and Stein 1981). The amplitude of an effect with several columns
+        is the projection of its torque on that of the fit to all runs. 1 for few runs, whose stretches are too alike.
+        """
+        if len(np.unique(self.problem.grams.run)) < FEWEST_RUNS:
+            return 1.0
+        own = list(explanation.slots[-1].columns)
+        at = slice(-len(own), None)
+        weights = self.total_g[np.ix_(own, own)] @ explanation.beta[at]
+        amplitude = explanation.left_out[:, at] @ weights
+        folds = len(amplitude)
+        spread = float(np.sqrt((folds - 1) / folds * ((amplitude - amplitude.mean()) ** 2).sum()))
+        if not spread > 0.0:
+            return 1.0
+        return float(2.0 * student.sf(abs(amplitude.mean()) / spread, folds - 1))
 
 
 def _folds(run: np.ndarray) -> np.ndarray:

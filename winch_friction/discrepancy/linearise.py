@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.prepare import PreparedRun, prepare
+from winch_friction.discrepancy.prepare import Found, PreparedRun, prepare
 from winch_friction.discrepancy.problem import Layout, base_of, build_problem, layout_of
+from winch_friction.discrepancy.wire_mode import agreed_damping
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
 
@@ -23,9 +25,10 @@ class Expansion:
     layout: Layout
     model: FrictionModel  # the base model at the point of expansion
 
-    def cross(self, names: Sequence[str], regime: str = "moving") -> CrossFit:
-        """The regression over the runs of these names."""
-        return CrossFit(build_problem([run for run in self.runs if run.name in names], self.layout, regime))
+    def cross(self, names: Sequence[str], known: Sequence[Slot] = ()) -> CrossFit:
+        """The regression over the runs of these names; what is `known` already is not taken for noise."""
+        slots = [self.layout.slot_like(each) for each in known]
+        return CrossFit(build_problem([run for run in self.runs if run.name in names], self.layout, known=slots))
 
 
 def expand_at_seed(
@@ -45,13 +48,23 @@ def expand_at_seed(
 def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
-    Heave compensation excites the mode throughout, so its runs decide where there are any; all then share one damping.
+    Heave compensation excites the mode throughout, so its runs decide where there are any; all share what damps it.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
-    damping = [run.wire_mode[1] for run in compensating if run.wire_mode[1] > 0.0]
-    elastic = len(damping) >= max(2, len(compensating) / 2)
-    shared = float(np.median(damping)) if elastic else 0.0
-    return [(run.wire_mode[0], shared if run.wire_mode[0] * run.dt < 1.0 else 0.0) for run in prepared]
+    swinging = [(*run.wire_mode, _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
+    ratio = agreed_damping(swinging) if 2 * len(swinging) > max(3, len(compensating)) else None
+    return [
+        (run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0) for run in prepared
+    ]
+
+
+def _slow(run: PreparedRun) -> bool:
+    """Whether the samples can follow the wire's mode."""
+    return 0.0 < run.wire_mode[0] * run.dt < 1.0
+
+
+def _mass(run: PreparedRun) -> float:
+    return float(np.median(run.load))
 
 
 def expand_around(
@@ -70,7 +83,7 @@ def expand_around(
             crane,
             model,
             loads.get(run.name, float("nan")),
-            missing_torque(old, before.layout, explanation),
+            found_so_far(old, before.layout, explanation),
             turning,
             old.wire_mode,
             np.zeros_like(old.spikes) if turning else old.spikes,
@@ -80,14 +93,17 @@ def expand_around(
     return Expansion(prepared, layout_of(base_of(seed, model), candidates, prepared, seed), model)
 
 
-def missing_torque(run: PreparedRun, layout: Layout, explanation: Explanation) -> FloatArray:
-    """Torque in N m that the effects found add to what the motors carry; errors of signals add nothing."""
-    total = np.zeros(len(run.time))
+def found_so_far(run: PreparedRun, layout: Layout, explanation: Explanation) -> Found:
+    """What an explanation's effects add to what the driving motors carry, and to the passive side's signals; errors of
+    the driving motors' own signals add nothing.
+    """
+    missing, error = np.zeros(len(run.time)), np.zeros(len(run.time))
     at = len(layout.base.names)
     for slot in explanation.slots:
         width = len(slot.columns)
-        if slot.candidate.kind != "signal":
+        if slot.candidate.kind != "signal" or slot.variant.carried:
             columns = slot.candidate.columns(run, slot.variant.shape) * layout.scales[list(slot.columns)]
+            total = error if slot.variant.carried else missing
             total += columns @ explanation.beta[at : at + width]
         at += width
-    return total
+    return Found(missing, error)

@@ -5,7 +5,7 @@ torque balance is predicted from the base model (fixed point), only the passive 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -66,6 +66,7 @@ class PreparedRun:
     wire_mode: tuple[float, float]  # frequency rad/s and damping ratio of the load on its wire; 0: rigid
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
+    from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane
     jacobian: FloatArray
     gear_ratio: float
     inertia: float
@@ -83,23 +84,31 @@ class PreparedRun:
         return tuple(group.name for group in self.groups)
 
 
+@dataclass(frozen=True)
+class Found:
+    """What effects found so far add along a run, N m at the shaft: load on the motors, and what the passive side's
+    signals have too much.
+    """
+
+    missing_torque: FloatArray | float = 0.0
+    passive_error: FloatArray | float = 0.0
+
+
 def prepare(
     run: Run,
     crane: Crane,
     model: FrictionModel,
     load: float = float("nan"),
-    missing_torque: FloatArray | float = 0.0,
+    found: Found | None = None,
     turning: bool = False,
     mode: tuple[float, float] | None = None,
     spikes: np.ndarray | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
-    `missing_torque` N m on the run's uniform grid: what effects found so far add to the load on the motors, so that
-    the predicted
-    pressure comes close to the true one. `turning` takes direction and travel from the angle and marks the samples
-    just after
-    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
+    With what was `found` so far, on the run's uniform grid, the pressures that friction is reckoned with come close to
+    the true ones. `turning` takes direction and travel from the angle and marks the samples just after reversals
+    instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
     known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
@@ -122,7 +131,7 @@ def prepare(
     if turning:
         direction, state_speed, moving = _just_reversed(angle, raw_speed, speed, guard, dt)
     static, load_side = _load(run, columns, crane, load, acceleration, window, dt, size)
-    mass, radius, drum_torque, load_acceleration = load_side
+    mass, radius, drum_torque, load_acceleration, heave_acceleration = load_side
     lever = radius / crane.gear_ratio
     extra = _optional(columns, angle, run.time[0], size)
 
@@ -130,16 +139,19 @@ def prepare(
         inertial = crane.inertia * acceleration + mass * lever * of_load
         return _balance(
             columns, run, crane, model, state_speed, direction, acceleration, drum_torque, static + inertial, extra,
-            window, missing_torque,
+            window, found or Found(),
         )  # fmt: skip
 
     if mode is None:
         measured, _, _, predicted, _, _ = balance(load_acceleration)
-        mode = _wire_mode(
-            smooth(measured, window) - predicted, moving, load_acceleration, dt, mass, lever, columns, crane
-        )
+        gap = smooth(measured, window) - predicted
+        # the last two are delays, of the speed or of the pressures
+        shifts = np.gradient(predicted - mass * lever * heave_acceleration), np.gradient(predicted)
+        friction = np.column_stack([speed, direction * speed**2, *shifts])
+        mode = _wire_mode(gap, moving, load_acceleration, dt, mass, lever, columns, crane, friction)
     if mode[1] > 0.0:
         load_acceleration = on_the_wire(load_acceleration, dt, *mode)
+        heave_acceleration = on_the_wire(heave_acceleration, dt, *mode)
     measured, groups, point, predicted, jacobian, unit = balance(load_acceleration)
     # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
     # remain in the pressures
@@ -153,6 +165,7 @@ def prepare(
         drum_torque=drum_torque, groups=groups, point=point, gap=measured - predicted,
         wire_mode=mode,
         load_friction=_load_friction(model, point), predicted=predicted, jacobian=jacobian,
+        from_speed=predicted - mass * lever * heave_acceleration,
         gear_ratio=crane.gear_ratio, inertia=crane.inertia, constants=_constants(crane, model), unit_torque=unit,
         moving=moving & valid & ~spikes,
         spikes=spikes, valid=valid,
@@ -227,11 +240,12 @@ def _load(run, columns, crane, load, acceleration, window, dt, size):  # type: i
         layers = np.rint(columns["wire_layer"])
         for layer in np.unique(layers):
             radius[layers == layer] = crane.drum.radius(float(layer))
-    load_acceleration = radius / crane.gear_ratio * acceleration
+    heave_acceleration = np.zeros(size)
     if "heave_velocity" in columns:
-        load_acceleration = load_acceleration + np.gradient(smooth(columns["heave_velocity"], window), dt)
+        heave_acceleration = np.gradient(smooth(columns["heave_velocity"], window), dt)
+    load_acceleration = radius / crane.gear_ratio * acceleration + heave_acceleration
     drum_torque = mass * GRAVITY * radius
-    return drum_torque / crane.gear_ratio, (mass, radius, drum_torque, load_acceleration)
+    return drum_torque / crane.gear_ratio, (mass, radius, drum_torque, load_acceleration, heave_acceleration)
 
 
 def _spikes(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
@@ -250,14 +264,15 @@ def _spikes(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
     return dilated(found, int(0.1 / dt)) if 0 < found.sum() < MOST_SPIKES * moving.sum() else none
 
 
-def _wire_mode(gap, moving, rigid, dt, mass, lever, columns, crane):  # type: ignore[no-untyped-def]
+def _wire_mode(gap, moving, rigid, dt, mass, lever, columns, crane, friction):  # type: ignore[no-untyped-def]
     """Frequency and damping of the load's swinging, where stiffness and length of the wire are known."""
     load = float(np.median(mass))
-    if "wire_out" not in columns or not np.isfinite(crane.wire_stiffness) or load <= 0.0 or moving.sum() < MIN_SAMPLES:
+    if not np.isfinite(crane.wire_stiffness) or load <= 0.0 or moving.sum() < MIN_SAMPLES:
         return 0.0, 0.0
-    stiffnesses = wire_stiffnesses(crane.wire_stiffness, columns["wire_out"])
-    swing = swinging_load(gap, np.flatnonzero(moving), rigid, dt, load, lever, stiffnesses)
-    return float(np.sqrt(stiffnesses[0] / load)), swing.damping
+    stiffnesses = wire_stiffnesses(crane.wire_stiffness, columns.get("wire_out"))
+    swing = swinging_load(gap, np.flatnonzero(moving), rigid, dt, load, lever, stiffnesses, friction)
+    known = float(np.sqrt(stiffnesses[0] / load)) if "wire_out" in columns else swing.frequency
+    return known, swing.damping
 
 
 def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float, size: int) -> dict[str, Any]:
@@ -269,7 +284,7 @@ def _optional(columns: Mapping[str, FloatArray], angle: FloatArray, start: float
 
 
 def _balance(
-    columns, run, crane, model, speed, direction, acceleration, drum_torque, frictionless, extra, window, missing
+    columns, run, crane, model, speed, direction, acceleration, drum_torque, frictionless, extra, window, found
 ):  # type: ignore[no-untyped-def]
     """Measured and predicted drive torque, groups with predicted pressures, operating point, Jacobian, N m per bar."""
     size = len(speed)
@@ -293,12 +308,12 @@ def _balance(
                 model.jacobian(point), float(total))  # fmt: skip
     if not names:
         raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
-    groups = _measured_groups(columns, run, crane, window)
+    groups = _corrected(_measured_groups(columns, run, crane, window), found.passive_error)
     drops = [columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups]
     measured = sum(g.count * g.displacement * drop for g, drop in zip(groups, drops, strict=True))
     predicted = frictionless
     for _ in range(FIXED_POINT_STEPS):
-        groups = _predicted_pressure(groups, predicted + missing)
+        groups = _predicted_pressure(groups, predicted + found.missing_torque)
         point = point_of(groups)
         predicted = frictionless + model.torque(point)
     own = next(g for g in groups if g.balances)
@@ -326,6 +341,12 @@ def _measured_groups(columns, run, crane, window) -> tuple[GroupSignals, ...]:  
         groups.append(GroupSignals(name, crane.motor_count(name), smooth(a - b, 2 * window), smooth(a + b, 2 * window),
                                    smooth(np.minimum(a, b), 2 * window), displacement, name == balancing))  # fmt: skip
     return tuple(groups)
+
+
+def _corrected(groups: tuple[GroupSignals, ...], error: FloatArray | float) -> tuple[GroupSignals, ...]:
+    """Groups whose passive pressures are rid of an error that amounts to a torque (N m) at the shaft."""
+    passive = sum(g.count * g.displacement for g in groups if not g.balances)
+    return tuple(g if g.balances else replace(g, pressure=g.pressure - error / passive) for g in groups)
 
 
 def _predicted_pressure(groups: tuple[GroupSignals, ...], torque: FloatArray) -> tuple[GroupSignals, ...]:

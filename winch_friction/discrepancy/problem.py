@@ -137,6 +137,11 @@ class Layout:
         small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own])
         return small, tuple(placed)
 
+    def slot_like(self, other: Slot) -> Slot:
+        """The slot of the same effect and shape as one of another layout."""
+        alike = (other.candidate.name, other.variant.label)
+        return next(each for each in self.slots if (each.candidate.name, each.variant.label) == alike)
+
     def regressors(self, run: PreparedRun) -> FloatArray:
         """All scaled columns of one run, N m, shape (samples, columns)."""
         parts = [np.column_stack([run.jacobian, tolerance_columns(run)]) * self.base.scale]
@@ -167,8 +172,10 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
 
 
-def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "moving") -> Problem:
-    """Blocks and Gram matrices of these runs."""
+def build_problem(
+    runs: Sequence[PreparedRun], layout: Layout, regime: str = "moving", known: Sequence[Slot] = ()
+) -> Problem:
+    """Blocks and Gram matrices of these runs; what effects that are `known` already explain is not taken for noise."""
     length = segment_length(runs)
     size = BLOCK_SAMPLES if regime == "moving" else 1
     tables: list[RunBlocks] = []
@@ -180,8 +187,8 @@ def build_problem(runs: Sequence[PreparedRun], layout: Layout, regime: str = "mo
     noise = {k: noise_of_run(t.y, t.contiguous) for k, t in enumerate(tables)}
     first = _problem(layout, tables, noise, runs)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
-    columns = np.asarray(first.base_columns)
-    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.base_columns)
+    columns = np.asarray(first.columns(known))
+    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.columns(known))
     again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.contiguous)) for k, t in enumerate(tables)}
     return _reweighted(first, again)
 

@@ -9,11 +9,11 @@ from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.physics.signals import FloatArray
 
-SIGNIFICANCE = 0.01  # family-wise over all candidates
-# a fading warmth shows in few segments; a gain that large is not chance
-LARGE_GAIN, LARGE_GAIN_SIGNIFICANCE = 0.1, 0.05
-LEAST_GAIN = 0.02  # of the held-out RMSE
-LEAST_SHARE = 5e-3  # of what is explained already
+# family-wise significance, on segments or on runs left out, that a gain in held-out RMSE from so much on must have:
+# the smaller it is the surer, for a fading warmth shows in few segments, but a large gain is not chance
+SIGNIFICANCE = ((0.1, 0.05), (0.02, 0.01), (0.01, 0.001))
+LEAST_GAIN = min(gain for gain, _ in SIGNIFICANCE)
+LEAST_SHARE = 1e-3  # of what is explained already
 MOST_EFFECTS = 4
 RIVAL_P = 0.05
 RIVAL_SHARE = 0.03  # a rival within this share of the effect's own gain does as well for any purpose
@@ -63,7 +63,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         if not trials:
             break
         gains = np.array([current.losses - each.losses for each in trials])
-        p = flip_p_values(gains, rng)
+        p = _evidence(cross, trials, gains, rng)
         relative = np.array([1.0 - np.sqrt(each.loss / current.loss) for each in trials])
         worth = np.array([current.loss - each.loss for each in trials])
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
@@ -80,9 +80,22 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
     return Selection(base, current, found, tuple(considered))
 
 
+def _evidence(
+    cross: CrossFit, trials: Sequence[Explanation], gains: FloatArray, rng: np.random.Generator
+) -> FloatArray:
+    """Family-wise p-values of each trial's last effect: does it help most segments, or is its size the same whichever
+    run is left out? Few segments may show an effect, but those of all runs then agree on how large it is.
+    """
+    steady = len(trials) * np.array([cross.jackknife_p_value(each) for each in trials])
+    return np.minimum(flip_p_values(gains, rng), steady)
+
+
 def _significant(p: FloatArray, gain: FloatArray) -> np.ndarray:
-    """Surer for a small gain than for one that chance does not bring."""
-    return np.asarray(p <= np.where(gain >= LARGE_GAIN, LARGE_GAIN_SIGNIFICANCE, SIGNIFICANCE))
+    """Whether a p-value is small enough for a gain; below the least gain any that would do for it."""
+    enough = np.full(np.shape(gain), SIGNIFICANCE[-1][1])
+    for least, level in reversed(SIGNIFICANCE):
+        enough = np.where(gain >= least, level, enough)
+    return np.asarray(p <= enough)
 
 
 def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool, best: bool) -> Considered:
@@ -139,8 +152,9 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
     """Drop what the rest of the set has made superfluous."""
     while len(current.slots) > 1:
         smaller = [cross.explain(current.slots[:k] + current.slots[k + 1 :]) for k in range(len(current.slots))]
-        weakest = min(smaller, key=lambda each: each.loss)
-        p = flip_p_values((weakest.losses - current.losses)[None], rng)[0]
+        k = int(np.argmin([each.loss for each in smaller]))
+        weakest, last = smaller[k], cross.explain((*smaller[k].slots, current.slots[k]))
+        p = _evidence(cross, [last], (weakest.losses - current.losses)[None], rng)[0]
         gain = 1.0 - np.sqrt(current.loss / weakest.loss)
         if _significant(np.asarray(p), np.asarray(gain)) and gain >= LEAST_GAIN:
             break

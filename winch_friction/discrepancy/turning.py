@@ -23,7 +23,7 @@ from winch_friction.physics.winch import Crane
 
 SIGNIFICANCE = 0.005
 # of the held-out RMSE just after reversals, where every imperfection of timing looks like a little presliding
-LEAST_GAIN = {"presliding": 0.3, "dwell_stiction": 0.13}
+LEAST_GAIN = {"presliding": 0.3, "dwell_stiction": 0.1}
 RIVALS = ("presliding", "dwell_stiction", "signal_delay", "stribeck", "coulomb", "viscous")
 FEWEST_BLOCKS = 200
 
@@ -54,7 +54,7 @@ def search_turning(
     if sum(int(run.moving.sum()) for run in chosen) < FEWEST_BLOCKS:
         return None
     cross = CrossFit(build_problem(chosen, turning.layout, "turning"))
-    kept = [_same_slot(cross, slot) for slot in explanation.slots]
+    kept = [turning.layout.slot_like(slot) for slot in explanation.slots]
     base = cross.explain(kept)
     trials = candidate_trials(cross, base, named)
     if not trials:
@@ -68,12 +68,3 @@ def search_turning(
     if p[best] > SIGNIFICANCE or gain < LEAST_GAIN.get(trials[best].slots[-1].candidate.name, 1.0):
         return None
     return TurningFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], turning)
-
-
-def _same_slot(cross: CrossFit, slot: Slot) -> Slot:
-    """The slot of the same effect and shape in another problem."""
-    return next(
-        each
-        for each in cross.problem.slots
-        if each.candidate.name == slot.candidate.name and each.variant.label == slot.variant.label
-    )

@@ -15,6 +15,7 @@ LEAST_UNEXPLAINED = 0.08  # share of the remainder that one signal must predict 
 LEFT_OVER = 0.15  # share of the excess over the noise floor that a named effect may leave
 LEAST_EXCESS = 0.35  # of the noise variance: less than that above the floor is nobody's effect
 OBVIOUS_EXCESS = 1.5
+NEVER_NOISE = 3.0  # twice the noise is something, whether a signal predicts it or not
 LARGE_EXCESS, SMALL_LEFT_OVER = 2.0, 0.04  # a smaller share counts where it is far above the noise
 STEADY, FEWEST_STEADY = 0.03, 300  # share of the largest acceleration; blocks
 MOST_NAMED = 2  # besides base terms that the model simply lacks
@@ -34,7 +35,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) ->
     before = max(before, 1e-9)
     depends = [d for d in left if d.p_value <= SIGNIFICANCE]
     if not selection.found:
-        strong = any(d.share >= LEAST_UNEXPLAINED for d in depends)
+        strong = any(d.share >= LEAST_UNEXPLAINED for d in depends) or before > NEVER_NOISE
         return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
     implausible = [f.slot.candidate.name for f in selection.found if _at_bound(cross, selection, f)]
     if implausible:

@@ -4,19 +4,23 @@
 so; the damping is nobody's datum and is chosen by what leaves least swinging in the gap.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from winch_friction.discrepancy.smoothing import smooth
 from winch_friction.physics.signals import FloatArray
 
-DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3)
-WIRE_LENGTHS = (15.0, 22.0, 33.0, 50.0, 75.0, 110.0, 165.0, 250.0)  # m, tried where the log lacks it
-LEAST_GAIN = 0.25  # of the swinging's variance; below it the wire is taken for rigid
-SWING_PERIODS = 1.5  # longest swing that counts, in periods of the mode
+DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)
+# m, tried where the log lacks it
+WIRE_LENGTHS = (15.0, 22.0, 33.0, 50.0, 75.0, 110.0, 165.0, 250.0, 370.0, 550.0, 830.0, 1250.0)
+FREQUENCY_STEPS = (1.1, 1.05, 1.025, 1.012, 1.006)
+LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
+# where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
+MOST_DAMPED, MOST_LEFT = 0.5, 0.1
+MOST_SPREAD = 0.35  # of the runs' damping, in its logarithm; one wire has one damping
 
 
 @dataclass(frozen=True)
@@ -36,21 +40,73 @@ def swinging_load(
     mass: float,
     lever: FloatArray,
     stiffnesses: Sequence[float],
+    friction: FloatArray | None = None,
 ) -> Swing:
     """The wire's mode that leaves least swinging in the gap.
 
     `gap` N m was made with the `rigid` acceleration m/s^2 of the load; `counts` marks the samples to judge by; `lever`
-    m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft.
+    m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft. `friction`, shape
+    (samples, columns), is what a missing effect may look like: its steps at reversals must not count as swinging.
     """
-    best, swing = np.inf, Swing(rigid, 0.0, 0.0)
-    for frequency in _frequencies(stiffnesses, mass, dt):
-        before = _swing_variance(gap, counts, dt, frequency)
-        for ratio in DAMPING_RATIOS:
-            acceleration = on_the_wire(rigid, dt, frequency, ratio)
-            left = _swing_variance(gap + mass * lever * (rigid - acceleration), counts, dt, frequency) / before
-            if left < min(best, 1.0 - LEAST_GAIN):
-                best, swing = left, Swing(acceleration, frequency, ratio)
-    return swing
+    judge = _Judge(gap, counts, friction)
+    before = judge.variance(0.0)
+
+    def left(frequency: float, ratio: float) -> float:
+        return judge.variance(mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio))) / before
+
+    tried = [(*_best_ratio(partial(left, frequency)), frequency) for frequency in _frequencies(stiffnesses, mass, dt)]
+    value, ratio, frequency = min(tried, default=(1.0, 0.0, 0.0))
+    if len(tried) > 1:
+        inside = min(each[-1] for each in tried) < frequency < max(each[-1] for each in tried)
+        frequency = _best_frequency(left, frequency, ratio)
+        value, ratio = _best_ratio(partial(left, frequency))
+        value = value if inside and ratio < MOST_DAMPED and value < MOST_LEFT else 1.0
+    if value > 1.0 - LEAST_GAIN:
+        return Swing(rigid, 0.0, 0.0)
+    return Swing(on_the_wire(rigid, dt, frequency, ratio), frequency, ratio)
+
+
+def _best_ratio(left: Callable[[float], float]) -> tuple[float, float]:
+    """What is left and the damping ratio that leaves least: the vertex of a parabola over the logarithm, through the
+    grid's best."""
+    values = np.array([left(ratio) for ratio in DAMPING_RATIOS])
+    k = int(np.argmin(values))
+    if not 0 < k < len(values) - 1:
+        return float(values[k]), DAMPING_RATIOS[k]
+    at = np.log(DAMPING_RATIOS[k - 1 : k + 2])
+    curve = np.polyfit(at, values[k - 1 : k + 2], 2)
+    return float(values[k]), float(np.exp(-0.5 * curve[1] / curve[0]))
+
+
+def _best_frequency(left: Callable[[float, float], float], frequency: float, ratio: float) -> float:
+    """The frequency near a first guess that leaves least, to half a percent."""
+    for step in FREQUENCY_STEPS:
+        frequency = min((frequency / step, frequency, frequency * step), key=lambda each: left(each, ratio))
+    return frequency
+
+
+class _Judge:
+    """How much of a gap swings: what friction may add and a level of its own in each stretch of motion left out."""
+
+    def __init__(self, gap: FloatArray, counts: np.ndarray, friction: FloatArray | None) -> None:
+        self._samples = np.flatnonzero(counts) if counts.dtype == bool else counts
+        self._stretch = np.concatenate([[0], np.cumsum(np.diff(self._samples) > 1)])
+        self._size = np.bincount(self._stretch)
+        self._gap = gap[self._samples]
+        friction = np.zeros((len(gap), 0)) if friction is None else friction
+        self._friction = np.column_stack(
+            [self._levelled(each) for each in friction[self._samples].T] or [0.0 * self._gap]
+        )
+        self._solve = np.linalg.pinv(self._friction)
+
+    def variance(self, change: FloatArray | float) -> float:
+        """Variance of gap + change over the counted samples."""
+        whole = self._levelled(self._gap + (change[self._samples] if isinstance(change, np.ndarray) else change))
+        return float(np.var(whole - self._friction @ (self._solve @ whole))) + 1e-12
+
+    def _levelled(self, values: FloatArray) -> FloatArray:
+        means = np.bincount(self._stretch, weights=values) / self._size
+        return np.asarray(values - means[self._stretch])
 
 
 def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) -> FloatArray:
@@ -72,14 +128,25 @@ def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterab
             yield frequency
 
 
-def _swing_variance(gap: FloatArray, counts: np.ndarray, dt: float, frequency: float) -> float:
-    samples = max(3, int(SWING_PERIODS * 2.0 * np.pi / (frequency * dt)))
-    slow = smooth(gap, samples + 1 - samples % 2)
-    return float(np.var((gap - slow)[counts])) + 1e-12
-
-
 def wire_stiffnesses(elastic_modulus_area: float, wire_out: FloatArray | None) -> tuple[float, ...]:
     """Stiffness in N/m to try: from the wire paid out, or over usual lengths where the log lacks it."""
     if wire_out is not None:
         return (elastic_modulus_area / max(float(np.median(wire_out)), 1.0),)
     return tuple(elastic_modulus_area / length for length in WIRE_LENGTHS)
+
+
+def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
+    """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass).
+
+    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither.
+    """
+    frequency, ratio, mass = np.array(modes).T
+    damper = 2.0 * ratio * frequency * mass  # N s/m
+    spreads = [float(np.std(np.log(each))) for each in (damper, ratio)]
+    if min(spreads) > MOST_SPREAD:
+        return None
+    if spreads[0] < spreads[1]:
+        shared = float(np.median(damper))
+        return lambda own, load: min(shared / (2.0 * own * load), 1.0)
+    steady = float(np.median(ratio))
+    return lambda _own, _load: steady

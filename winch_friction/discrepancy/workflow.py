@@ -10,6 +10,7 @@ import numpy as np
 from winch_friction.discrepancy.blocks import Blocks, Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
+from winch_friction.discrepancy.candidates.refine import refined
 from winch_friction.discrepancy.crossfit import FEWEST_RUNS, CrossFit, Explanation
 from winch_friction.discrepancy.holdout import Split, lock_holdout, rms_with_interval
 from winch_friction.discrepancy.linearise import Expansion, expand_around, expand_at_seed
@@ -32,6 +33,8 @@ from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 
 MOST_SIGNALS = 3
+MOST_EXPANSIONS = 2
+LEAST_NAMED_SHARE = 0.02  # of the remainder, that a signal must predict to be named before those that predict more
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     rng = np.random.default_rng(options.seed + 1)
     search = _search(split, crane, model, options, rng)
     result = _assemble(split, crane, model, options, search, rng)
-    if len(runs) < FEWEST_RUNS and result.effects and not _proved(result):
+    if len(split.train) < FEWEST_RUNS and result.effects and not _proved(result):
         return _assemble(split, crane, model, options, _withdrawn(search), rng)
     return result
 
@@ -107,11 +110,15 @@ def _search(split: Split, crane: Crane, model: FrictionModel, options: GapOption
     candidates = [each for each in usable if each.regime == "moving"]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
     cross = _cleaned(at_seed, ripple).cross(split.train)
-    first = select(cross, rng, 1)
-    expansion = expand_around(split.runs, crane, model, loads, at_seed, first.final, candidates)
-    expansion = _cleaned(expansion, ripple)
-    cross = expansion.cross(split.train)
-    selection = select(cross, rng)
+    expansion, selection = at_seed, select(cross, rng, 1)
+    for _ in range(MOST_EXPANSIONS):
+        candidates, usable = (_refined(each, selection.final) for each in (candidates, usable))
+        around = expand_around(split.runs, crane, model, loads, expansion, selection.final, candidates)
+        expansion = _cleaned(around, ripple)
+        cross = expansion.cross(split.train, selection.final.slots)
+        selection = select(cross, rng)
+        if not any(slot.candidate.continuous for slot in selection.final.slots):
+            break
     left = dependences(cross, remainder(cross, selection.final), rng)
     verdict = decide(cross, selection, left)
     if verdict.kind == UNEXPLAINED:
@@ -127,6 +134,12 @@ def _search(split: Split, crane: Crane, model: FrictionModel, options: GapOption
     return _Search(
         at_seed, expansion, cross, selection, tuple(left), verdict, turning, tuple(side), tuple(blind), loads
     )
+
+
+def _refined(candidates: Sequence[Candidate], explanation: Explanation) -> list[Candidate]:
+    """The candidates, those that were found with a finer grid of shapes."""
+    found = {slot.candidate.name: slot.variant for slot in explanation.slots}
+    return [refined(each, found[each.name]) if each.name in found else each for each in candidates]
 
 
 def _cleaned(expansion: Expansion, ripple: Ripple | None) -> Expansion:
@@ -249,7 +262,7 @@ def _measured(expansion: Expansion, blocks: Blocks, names: Sequence[str]) -> Flo
 
 
 def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
-    significant = [each for each in left if each.p_value <= SIGNIFICANCE and each.share > 0.0]
+    significant = [each for each in left if each.p_value <= SIGNIFICANCE and each.share > LEAST_NAMED_SHARE]
     return tuple((significant or [d for d in left if d.share > 0.0])[:MOST_SIGNALS])
 
 

@@ -42,7 +42,7 @@ def _one_side(group: GroupSignals, run: PreparedRun, tau: float) -> FloatArray:
 
 
 def _shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
-    return [Variant(f"tau = {tau:g} s", {"tau": tau}) for tau in TIME_CONSTANTS]
+    return [Variant(f"tau = {tau:g} s", {"tau": tau}, carried=True) for tau in TIME_CONSTANTS]
 
 
 def accumulator_candidates() -> list[Candidate]:
@@ -50,6 +50,6 @@ def accumulator_candidates() -> list[Candidate]:
     return [
         Candidate(
             "accumulator_thermal", r"n_p D_p\,\Delta p_p\,(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)", (e_T, g_T),
-            accumulator_columns, _shapes, kind="signal", hydraulic=True,
+            accumulator_columns, _shapes, kind="signal", hydraulic=True, continuous=("tau",),
         )
     ]  # fmt: skip

@@ -14,11 +14,15 @@ Shapes = Callable[[Sequence[PreparedRun]], "list[Variant]"]
 
 @dataclass(frozen=True)
 class Variant:
-    """One shape of an effect: fixed values of its shape parameters, and which of its linear parameters it uses."""
+    """One shape of an effect: fixed values of its shape parameters, and which of its linear parameters it uses.
+
+    `carried`: an error of the passive side's signals, so that the driving motors carry other than they seem to.
+    """
 
     label: str
     shape: Shape = field(default_factory=dict)
     bounds: tuple[float, float] | None = None  # of the amplitude in typical sizes, where the shape holds only there
+    carried: bool = False
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,7 @@ class Candidate:
     typical size is the largest amplitude that is believed. `needs` names run columns; `presumes` names terms of which
     the model must have one; `term` is the friction term to put into the repaired model, None for what is corrected
     in a signal.
+    `continuous` names the shape parameters whose values are a grid over a positive quantity, to be refined once found.
     `brings` names lower-order effects that belong to it. `regime`: 'moving' samples, or 'turning' for what shows
     only around reversals.
     """
@@ -49,6 +54,7 @@ class Candidate:
     plausible: float = 6.0
     hydraulic: bool = False
     brings: tuple[str, ...] = ()
+    continuous: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

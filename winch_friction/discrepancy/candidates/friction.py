@@ -21,7 +21,7 @@ SHAPES: dict[str, tuple[float, ...]] = {
     "b_g": (0.0,),
     "d_z": (0.009, 0.02, 0.04, 0.09),
     "g_dw": (0.4,),
-    "d_dw": (1.0, 5.0),
+    "d_dw": (0.5, 1.0, 2.0, 5.0),
 }
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 SHIPPED = (
@@ -57,8 +57,17 @@ def friction_candidate(term: Term) -> Candidate:
         term=term,
         regime="turning" if term.name in TURNING else "moving",
         brings=BRINGS.get(term.name, ()),
+        continuous=_continuous(term),
         hydraulic=any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     )
+
+
+def _continuous(term: Term) -> tuple[str, ...]:
+    """Positive shape parameters of which several values are tried."""
+    if term.name == "wear_drift":
+        return ()
+    positive = (p for p in term.parameters if p.shape and p.lower > 0.0)
+    return tuple(p.name for p in positive if len(SHAPES.get(p.name, STRIBECK_SHARES)) > 1)
 
 
 def _shapes(term: Term, runs: Sequence[PreparedRun]) -> list[Variant]:

@@ -15,7 +15,9 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
 DELAYS = (0.05, 0.1)  # s
-SMALL_DELAY = {"ahead": 0.03, "behind": 0.03}  # s
+# what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
+PRESSURES, SPEED = 1.0, 0.0
+SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 
 _GroupLaw = Callable[[GroupSignals], FloatArray]
@@ -42,7 +44,8 @@ def group_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
     """Which transducers are off: all alike, or, with several groups about, those of one side alone."""
     shapes = [Variant("all groups", {"groups": ALL})]
     if any(len(run.groups) > 1 for run in runs):
-        shapes += [Variant("the driving group", {"groups": BALANCING}), Variant("the passive group", {"groups": OTHER})]
+        shapes.append(Variant("the driving group", {"groups": BALANCING}))
+        shapes.append(Variant("the passive group", {"groups": OTHER}, carried=True))
     return shapes
 
 
@@ -65,7 +68,7 @@ def scale_columns(run: PreparedRun, shape: Shape) -> FloatArray:
 
 def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
     return [
-        Variant(f"{each.label}, {label}", {**each.shape, "port_a": port})
+        Variant(f"{each.label}, {label}", {**each.shape, "port_a": port}, carried=each.carried)
         for each in group_shapes(runs)
         for port, label in ((0.0, "both ports"), (1.0, "port A"))
     ]
@@ -79,19 +82,24 @@ def delay_columns(run: PreparedRun, shape: Shape) -> FloatArray:
     """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come
     early.
 
-    A difference over the delay itself, since friction turns over faster than a derivative could follow.
+    A difference over the delay itself, since friction turns over faster than a derivative could follow. A late speed
+    leaves the heave as it is logged.
     """
-    ahead = np.interp(run.time + shape["ahead"], run.time, run.predicted)
-    behind = np.interp(run.time - shape["behind"], run.time, run.predicted)
+    shifted = run.predicted if shape["late"] == PRESSURES else run.from_speed
+    ahead = np.interp(run.time + shape["ahead"], run.time, shifted)
+    behind = np.interp(run.time - shape["behind"], run.time, shifted)
     return ((ahead - behind) / (shape["ahead"] + shape["behind"]))[:, None]
 
 
-def _delay_shapes(_: Sequence[PreparedRun]) -> list[Variant]:
-    shapes = [Variant("small", SMALL_DELAY, (-0.8, 0.8))]
+def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+    shapes = [Variant("small, of the speed", SMALL_DELAY, (-0.8, 0.8))]
+    if any("heave_velocity" in run.channels for run in runs):
+        shapes.append(Variant("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-0.8, 0.8)))
     for step in DELAYS:
         near, far = 0.6 * step / tau.typical, 1.6 * step / tau.typical
-        shapes.append(Variant(f"speed late, about {1e3 * step:g} ms", {"ahead": step, "behind": 0.0}, (near, far)))
-        early = {"ahead": 0.0, "behind": step}
+        late = {"ahead": step, "behind": 0.0, "late": SPEED}
+        shapes.append(Variant(f"speed late, about {1e3 * step:g} ms", late, (near, far)))
+        early = {"ahead": 0.0, "behind": step, "late": PRESSURES}
         shapes.append(Variant(f"pressures late, about {1e3 * step:g} ms", early, (-far, -near)))
     return shapes
 

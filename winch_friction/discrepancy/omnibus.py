@@ -1,7 +1,8 @@
 """Is anything left that no named effect explains, and on which signal does it depend?
 
-A flexible model (hat functions of one signal at a time, for each direction of motion) predicts the remainder of runs
-that it was not fitted to. It has no name to offer, so it only ever leads to 'unexplained'.
+A flexible model of one signal at a time, for each direction of motion, predicts the remainder of runs that it was not
+fitted to: hat functions, or a straight line for signals of which each run has hardly more than one value. It has no
+name to offer, so it only ever leads to 'unexplained'.
 """
 
 from dataclasses import dataclass
@@ -40,31 +41,34 @@ def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> 
     blocks = cross.problem.blocks
     names, gains = [], []
     for name, values in blocks.features.items():
-        design = _design(values, blocks.direction)
-        if design is None:
-            continue
-        names.append(name)
-        gains.append(_segment_gains(design, left, blocks, cross.fold))
+        for design in _designs(values, blocks.direction):
+            names.append(name)
+            gains.append(_segment_gains(design, left, blocks, cross.fold))
     if not names:
         return []
     table = np.array(gains)
     p = flip_p_values(table, rng)
     total = float((left**2).sum())
     found = [Dependence(n, float(row.sum() / total), float(q)) for n, row, q in zip(names, table, p, strict=True)]
-    return sorted(found, key=lambda each: -each.share)
+    ranked = sorted(found, key=lambda each: -each.share)
+    return list({each.signal: each for each in reversed(ranked)}.values())[::-1]
 
 
-def _design(values: FloatArray, direction: FloatArray) -> FloatArray | None:
-    """Hats over the quantiles of a signal, hoisting and lowering apart; where the signal is absent, nothing."""
+def _designs(values: FloatArray, direction: FloatArray) -> list[FloatArray]:
+    """Hats over the quantiles of a signal and a straight line, hoisting and lowering apart; where the signal is absent,
+    nothing."""
     good = np.isfinite(values)
     if good.sum() < 20 or np.ptp(values[good]) <= 1e-9 * (np.abs(values[good]).max() + 1e-12):
-        return None
+        return []
+    line = np.column_stack([np.ones(len(values)), (values - values[good].mean()) / np.std(values[good])])
     knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, KNOTS)))
-    if len(knots) < 2:
-        return None
-    hats = np.column_stack([np.interp(np.where(good, values, knots[0]), knots, row) for row in np.eye(len(knots))])
-    hats[~good] = 0.0
-    return np.column_stack([hats * (direction > 0)[:, None], hats * (direction < 0)[:, None]])
+    hats = [np.interp(np.where(good, values, knots[0]), knots, row) for row in np.eye(len(knots))]
+    return [_by_direction(each, good, direction) for each in (line, np.column_stack(hats))]
+
+
+def _by_direction(columns: FloatArray, good: np.ndarray, direction: FloatArray) -> FloatArray:
+    known = np.where(good[:, None], columns, 0.0)
+    return np.column_stack([known * (direction > 0)[:, None], known * (direction < 0)[:, None]])
 
 
 def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of_segment: np.ndarray) -> FloatArray:

@@ -13,7 +13,7 @@ from scipy.ndimage import median_filter
 
 from winch_friction.discrepancy.smoothing import dilated, noise_level, smooth, speed_window
 from winch_friction.discrepancy.travel import resolution, travel_of
-from winch_friction.discrepancy.wire_mode import on_the_wire, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.wire_mode import on_the_wire, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -25,6 +25,7 @@ GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
 FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
 GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoothing window
 MIN_SAMPLES = 100
+MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
 MIN_DISPLACEMENT_SHARE = 0.05
 FIXED_POINT_STEPS = 3
 SPIKE, SPIKE_WINDOW, MOST_SPIKES = 12.0, 2.0, 0.01  # robust deviations, s, share of the moving samples
@@ -152,6 +153,7 @@ def prepare(
     if mode[1] > 0.0:
         load_acceleration = on_the_wire(load_acceleration, dt, *mode)
         heave_acceleration = on_the_wire(heave_acceleration, dt, *mode)
+        moving &= columns["time"] > min(settling_time(*mode), MOST_SETTLING * columns["time"][-1])
     measured, groups, point, predicted, jacobian, unit = balance(load_acceleration)
     # the same kernel on both sides of the balance: an oscillation that smoothing takes out of the acceleration must not
     # remain in the pressures

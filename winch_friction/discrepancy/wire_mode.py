@@ -20,6 +20,7 @@ FREQUENCY_STEPS = (1.1, 1.05, 1.025, 1.012, 1.006)
 LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
 # where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
+SETTLED = 4.0  # decay times, down to 2 %
 MOST_SPREAD = 0.35  # of the runs' damping, in its logarithm; one wire has one damping
 
 
@@ -119,6 +120,11 @@ def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) ->
     numerator, denominator = numerator / denominator[0], denominator / denominator[0]
     out, _ = lfilter(numerator, denominator, rigid, zi=lfilter_zi(numerator, denominator) * rigid[0])
     return np.asarray(out)
+
+
+def settling_time(frequency: float, ratio: float) -> float:
+    """Seconds in which a swing that began before the record dies out; 0 for a rigid wire."""
+    return SETTLED / (ratio * frequency) if ratio > 0.0 else 0.0
 
 
 def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterable[float]:

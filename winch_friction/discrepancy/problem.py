@@ -36,7 +36,7 @@ PLAIN_TERMS = ("coulomb", "viscous", "torque_offset", "direction_asymmetry", "st
 TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
     ("inertia", 5e-3, -1e-2, 1e-2),  # relative
-    ("timing", 0.3, -0.35, 0.85),  # samples that speed comes late: a counting encoder's mean is half a sample old
+    ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
 )
 
 

@@ -169,6 +169,16 @@ def test_a_model_with_a_users_own_term_needs_its_file(tmp_path, bag, capsys):
     assert parameter in {each["parameter"] for each in content["parameters"]}
 
 
+def test_the_nodes_parameter_file_names_the_terms_too(tmp_path, bag, capsys):
+    names = ("params_drag", "k_params")
+    params = tmp_path / "nodes.yaml"
+    params.write_text(f"/**:\n  ros__parameters:\n    terms_file: {own_terms(tmp_path, *names)}\n")
+    arguments = ["--crane", "crane_150t", "--model", str(own_model(tmp_path, *names)), "--params-file", str(params)]
+    with forgotten(names[0]):
+        assert main.run(["replay", str(bag), *arguments, "--json"]) == 0
+    assert names[1] in {each["parameter"] for each in json.loads(capsys.readouterr().out)["parameters"]}
+
+
 def test_a_recording_names_the_terms_of_its_models(tmp_path):
     names = ("phase_drag", "k_phase")
     files = {"terms_file": str(own_terms(tmp_path, *names)), "model_file": str(own_model(tmp_path, *names))}

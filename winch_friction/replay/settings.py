@@ -70,11 +70,17 @@ def _phase(content: Mapping[str, Any], index: int, where: str) -> Phase:
 
 
 def settings_from_file(path: Path) -> ReplaySettings:
-    """The nodes' ROS parameter file (config/nodes/*.yaml); what belongs to the nodes alone is passed over."""
+    """The nodes' ROS parameter file (config/nodes/*.yaml); what belongs to the nodes alone is passed over.
+
+    Terms of a `terms_file` are registered, so read the settings before the models.
+    """
     content = read_yaml(path)
     if not isinstance(content, Mapping):
         raise InputError(f"{path}: not a ROS parameter file: expected node names with ros__parameters")
     compensator, estimator = _parameters(content, "compensator", path), _parameters(content, "estimator", path)
+    for each in (compensator, estimator):
+        if terms_file := each.get("terms_file"):
+            load_file(terms_file)
     own = {key: float(value) for key, value in estimator.items() if key == "model_period"}
     own |= {key: float(value) for key, value in compensator.items() if key == "model_delay"}
     if "max_age" in estimator:

@@ -8,7 +8,7 @@ import pytest
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.accumulator import accumulator_candidates
 from winch_friction.discrepancy.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.prepare import prepare
+from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.ripple import angle_ripple
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

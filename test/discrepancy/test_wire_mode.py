@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.wire_mode import agreed_damping, on_the_wire, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.preparation.wire_mode import (
+    agreed_damping,
+    on_the_wire,
+    swinging_load,
+    wire_stiffnesses,
+)
 
 DT, MASS, LEVER = 0.02, 55e3, 1.136 / 250
 TIME = np.arange(0.0, 120.0, DT)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Variant
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.signals import FloatArray
 
 BLOCK_SAMPLES = 10  # 0.2 s at 50 Hz: the fast noise averages out, friction does not

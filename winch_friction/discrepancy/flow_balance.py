@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.terms.effects_winch import walther
 from winch_friction.physics.signals import FloatArray, Run
 

@@ -9,9 +9,11 @@ import numpy as np
 from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.prepare import Found, PreparedRun, prepare
+from winch_friction.discrepancy.preparation.balance import Found
+from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.wire_mode import agreed_damping
 from winch_friction.discrepancy.problem import Layout, base_of, build_problem, layout_of
-from winch_friction.discrepancy.wire_mode import agreed_damping
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane

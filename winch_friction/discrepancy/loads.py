@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from winch_friction.discrepancy.prepare import prepare
+from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.units import GRAVITY

@@ -15,7 +15,7 @@ import numpy as np
 from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.linearise import Expansion
-from winch_friction.discrepancy.prepare import prepare
+from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.problem import PRIOR_WEIGHT, build_problem
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.bounded_fit import bounded_fit
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.noise import noise_of_run
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY

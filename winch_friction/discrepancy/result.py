@@ -10,7 +10,7 @@ from winch_friction.discrepancy.blocks import Blocks
 from winch_friction.discrepancy.candidates.candidate import Untestable
 from winch_friction.discrepancy.holdout import Size
 from winch_friction.discrepancy.omnibus import Dependence
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regions import Region
 from winch_friction.discrepancy.repair import Estimate
 from winch_friction.discrepancy.selection import Considered

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.stats import gamma
 
-from winch_friction.discrepancy.prepare import PreparedRun
-from winch_friction.discrepancy.smoothing import smooth
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.smoothing import smooth
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 from winch_friction.physics.winch.torque_balance import run_drive_torque

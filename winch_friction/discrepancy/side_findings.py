@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.discrepancy.flow_balance import lost_speed
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.repair import Estimate
 from winch_friction.discrepancy.result import Effect
 from winch_friction.discrepancy.ripple import Ripple, angle_ripple

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.blocks import BLOCK_SAMPLES
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.result import GapResult, Side
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, RPM

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant
-from winch_friction.discrepancy.prepare import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
 

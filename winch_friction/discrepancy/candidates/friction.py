@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant
 from winch_friction.discrepancy.candidates.linear_state import state_history
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import broadcast_columns, compiled
 from winch_friction.physics.friction.term import Parameter, Term

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant, single_shape
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Variant
-from winch_friction.discrepancy.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 
 STEPS = (1.0 / 3.0, 2.0 / 3.0)  # of the way to the neighbour, in the logarithm
 

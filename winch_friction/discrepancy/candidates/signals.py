@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Variant
-from winch_friction.discrepancy.prepare import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, CM3_PER_REV

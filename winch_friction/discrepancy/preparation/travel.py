@@ -3,7 +3,7 @@ speed."""
 
 import numpy as np
 
-from winch_friction.discrepancy.smoothing import noise_level
+from winch_friction.discrepancy.preparation.smoothing import noise_level
 from winch_friction.physics.signals import FloatArray
 
 CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder

@@ -1,0 +1,1 @@
+"""From a measured run to what every candidate reads: smooth signals, regimes, the base model's balance."""

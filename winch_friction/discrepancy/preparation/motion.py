@@ -1,0 +1,79 @@
+"""How the shaft moves: smooth speed and acceleration, and in which samples its direction is certain."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.preparation.grid import Grid
+from winch_friction.discrepancy.preparation.smoothing import dilated, noise_level, smooth, speed_window
+from winch_friction.discrepancy.preparation.travel import resolution, travel_of
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.winch import Crane
+
+GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
+GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoothing window
+FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Speed rad/s, acceleration rad/s^2 and angle rad of the motor shaft.
+
+    `window` samples smoothed the speed and are to smooth what is compared with it. `state_speed` is what friction is
+    reckoned with, 0 where the direction is unknown; `used` marks the samples of the regime.
+    """
+
+    window: int
+    speed: FloatArray
+    acceleration: FloatArray
+    angle: FloatArray
+    direction: FloatArray
+    state_speed: FloatArray
+    used: np.ndarray
+
+
+def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
+    """The moving samples, or with `turning` those just after reversals; `InputError` without a speed column."""
+    raw = _motor_speed(grid, crane, name)
+    window = speed_window(raw)
+    speed = smooth(raw, window)
+    angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
+    guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw) / np.sqrt(window / 3.0))
+    if turning:
+        direction, state_speed, used = _just_reversed(angle, raw, speed, guard, grid.dt)
+    else:
+        direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
+        state_speed = np.where(direction != 0.0, speed, 0.0)
+        # a short touch of zero hides in the smoothed speed
+        still = (np.abs(speed) <= guard) | (np.abs(smooth(raw, 5, 1)) <= guard)
+        used = ~dilated(still, window // 2 + GUARD_SAMPLES)
+    # the acceleration is that of the smoothed speed: the same kernel as the pressures'
+    return Motion(window, speed, np.gradient(speed, grid.dt), angle, direction, state_speed, used)
+
+
+def _motor_speed(grid: Grid, crane: Crane, name: str) -> FloatArray:
+    if "motor_speed" in grid.columns:
+        return grid.columns["motor_speed"]
+    if "drum_speed" in grid.columns:
+        return grid.columns["drum_speed"] * crane.gear_ratio
+    raise InputError(f"{name}: neither 'motor_speed' nor 'drum_speed' holds values; one of them is needed")
+
+
+def _travelled(speed: FloatArray, dt: float) -> FloatArray:
+    return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1])) * dt])
+
+
+def _just_reversed(
+    angle: FloatArray, raw: FloatArray, speed: FloatArray, guard: float, dt: float
+) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Direction, speed of the travel and the samples whose contact has begun to slide but not gone far."""
+    least = resolution(raw, dt)
+    direction, travel, progress = travel_of(angle, least)
+    top = float(np.percentile(np.abs(speed), 99))
+    turned = np.concatenate([[0], np.flatnonzero(np.diff(direction) != 0.0) + 1])
+    samples = np.arange(len(angle))
+    since = samples - turned[np.searchsorted(turned[1:], samples, "right")]
+    near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
+    near &= (direction != 0.0) & (direction * speed > guard / 8.0)
+    return direction, direction * progress / dt, near

@@ -1,0 +1,102 @@
+"""From a measured run to what every candidate reads."""
+
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.preparation.balance import Balance, Balancing, Found
+from winch_friction.discrepancy.preparation.channels import channels_of
+from winch_friction.discrepancy.preparation.grid import Grid, uniform
+from winch_friction.discrepancy.preparation.motion import motion_of
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.spikes import spikes_of
+from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
+from winch_friction.discrepancy.preparation.wire_mode import settling_time, swinging_load, wire_stiffnesses
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.symbols import WINCH_SIGNALS
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
+
+FEWEST_MOVING = 100  # samples in which a swing can be looked for
+MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
+DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
+
+
+def prepare(
+    run: Run,
+    crane: Crane,
+    model: FrictionModel,
+    load: float = float("nan"),
+    found: Found | None = None,
+    turning: bool = False,
+    mode: tuple[float, float] | None = None,
+    spikes: np.ndarray | None = None,
+) -> PreparedRun:
+    """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
+
+    With what was `found` so far, on the run's uniform grid, the pressures that friction is reckoned with come close to
+    the true ones. `turning` takes direction and travel from the angle and marks the samples just after reversals
+    instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
+    known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
+    Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
+    """
+    grid = uniform(run)
+    motion = motion_of(grid, crane, run.name, turning)
+    hanging = load_of(grid, motion, crane, load)
+    balancing = Balancing(run, crane, model, grid, motion, found or Found())
+    if mode is None:
+        mode = _wire_mode(balancing, hanging)
+    hanging = hanging.on_wire(grid.dt, mode)
+    balance = balancing.of(hanging)
+    used = motion.used & _settled(grid, mode)
+    if spikes is None:
+        spikes = spikes_of(balance.gap, used, grid.dt)
+    return PreparedRun(
+        name=run.name, start=float(run.time[0]), dt=grid.dt, time=grid.time, speed=motion.speed,
+        acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
+        load_acceleration=hanging.acceleration, radius=hanging.radius, drum_torque=hanging.drum_torque,
+        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
+        load_friction=_load_friction(model, balance.point), predicted=balance.predicted, jacobian=balance.jacobian,
+        from_speed=balance.predicted - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
+        constants=_constants(crane, model), unit_torque=balance.unit_torque, moving=used & grid.valid & ~spikes,
+        spikes=spikes, present=frozenset(run.columns),
+        channels=channels_of(run, grid, motion, hanging, balance.groups, crane),
+    )  # fmt: skip
+
+
+def _wire_mode(balancing: Balancing, load: SuspendedLoad) -> tuple[float, float]:
+    """Frequency and damping of the load's swinging, where the wire's stiffness is known."""
+    mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
+    if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
+        return 0.0, 0.0
+    rigid = balancing.of(load)
+    stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
+    swing = swinging_load(
+        rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
+        _other_causes(balancing, load, rigid),
+    )  # fmt: skip
+    known = float(np.sqrt(stiffnesses[0] / mass)) if "wire_out" in columns else swing.frequency
+    return known, swing.damping
+
+
+def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:
+    """What else a gap may hold, in columns: friction by speed, and a delay of the speed or of the pressures."""
+    motion = balancing.motion
+    shifts = np.gradient(rigid.predicted - load.heave_torque), np.gradient(rigid.predicted)
+    return np.column_stack([motion.speed, motion.direction * motion.speed**2, *shifts])
+
+
+def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:
+    if mode[1] <= 0.0:
+        return np.ones(len(grid.time), bool)
+    return np.asarray(grid.time > min(settling_time(*mode), MOST_SETTLING * grid.time[-1]))
+
+
+def _load_friction(model: FrictionModel, point: tuple[Any, ...]) -> FloatArray:
+    more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(point))
+    return (np.asarray(model.torque(more)) - np.asarray(model.torque(point))) / 0.01
+
+
+def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:
+    own = {"max_displacement": crane.max_displacement, "gear_ratio": crane.gear_ratio, **model.constants}
+    return tuple(sorted(own.items()))

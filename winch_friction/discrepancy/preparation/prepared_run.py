@@ -1,0 +1,61 @@
+"""A measured run as the candidates read it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class GroupSignals:
+    """One motor group along a run: motors, predicted or smoothed |dp|, sum of pressures, displacement; Pa, m^3/rad."""
+
+    name: str
+    count: int
+    pressure: FloatArray  # signed drop
+    pressure_sum: FloatArray
+    low_pressure: FloatArray
+    displacement: FloatArray
+    balances: bool  # closes the torque balance: its pressure is predicted
+
+
+@dataclass(frozen=True)
+class PreparedRun:
+    """A run on a uniform grid; SI. `gap` is measured minus predicted drive torque at the shaft in N m."""
+
+    name: str
+    start: float  # absolute time of the first sample, s
+    dt: float
+    time: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    direction: FloatArray
+    angle: FloatArray
+    load: FloatArray
+    load_acceleration: FloatArray
+    radius: FloatArray
+    drum_torque: FloatArray
+    groups: tuple[GroupSignals, ...]
+    point: tuple[Any, ...]
+    gap: FloatArray
+    wire_mode: tuple[float, float]  # frequency rad/s and damping ratio of the load on its wire; 0: rigid
+    load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
+    predicted: FloatArray  # drive torque of the base model, N m
+    from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane
+    jacobian: FloatArray
+    gear_ratio: float
+    inertia: float
+    constants: tuple[tuple[str, float], ...]  # for the candidates' equations
+    unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
+    moving: np.ndarray
+    spikes: np.ndarray
+    present: frozenset[str]  # columns that the file had
+    channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
+
+    @property
+    def mode(self) -> tuple[str, ...]:
+        """Names of the motor groups: which kind of run this is."""
+        return tuple(group.name for group in self.groups)

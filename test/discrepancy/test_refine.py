@@ -11,14 +11,14 @@ def candidate(name):
     return next(each for each in all_candidates() if each.name == name)
 
 
-def test_the_finer_grid_keeps_the_old_shapes_and_halves_the_way_to_the_neighbours():
+def test_the_finer_grid_keeps_the_old_shapes_and_divides_the_way_to_the_neighbours():
     own = candidate("accumulator_thermal")
     given = own.shapes([])
     finer = refined(own, given[1]).shapes([])
     tau = sorted(each.shape["tau"] for each in finer)
     assert {each.shape["tau"] for each in given} < set(tau)
     near = [t for t in tau if given[0].shape["tau"] <= t <= given[2].shape["tau"]]
-    assert np.diff(np.log(near)).max() == pytest.approx(np.log(2.0) / 3.0)
+    assert np.diff(np.log(near)).max() == pytest.approx(np.log(2.0) / 6.0)
     assert len({each.label for each in finer}) == len(finer)
 
 

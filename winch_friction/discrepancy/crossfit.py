@@ -48,6 +48,7 @@ class CrossFit:
         self.fold = _folds(g.run)
         self.total_g, self.total_b = g.g.sum(axis=0), g.b.sum(axis=0)
         self.total_y2 = float(g.y2.sum())
+        self.unresolved = float(problem.unresolved.sum())
         self.sums = []
         for k in np.unique(self.fold):
             own = np.flatnonzero(self.fold == k)
@@ -73,6 +74,10 @@ class CrossFit:
             losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ beta + (part @ beta) @ beta
         loss, beta = self.train_loss(slots)
         return Explanation(tuple(slots), losses, beta, loss, left_out)
+
+    def gain(self, before: Explanation, after: Explanation) -> FloatArray:
+        """Share of the held-out error that `after` saves, beside what matters to nobody."""
+        return np.asarray(1.0 - np.sqrt((after.loss + self.unresolved) / (before.loss + self.unresolved)))
 
     def jackknife_p_value(self, explanation: Explanation) -> float:
         """Two-sided p-value of the last effect's amplitude, from how much it changes when a fold is left out.

@@ -48,10 +48,12 @@ def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> 
         return []
     table = np.array(gains)
     p = flip_p_values(table, rng)
-    total = float((left**2).sum())
+    total = float((left**2).sum()) + cross.unresolved
     found = [Dependence(n, float(row.sum() / total), float(q)) for n, row, q in zip(names, table, p, strict=True)]
-    ranked = sorted(found, key=lambda each: -each.share)
-    return list({each.signal: each for each in reversed(ranked)}.values())[::-1]
+    better: dict[str, Dependence] = {}
+    for each in sorted(found, key=lambda each: -each.share):
+        better.setdefault(each.signal, each)
+    return list(better.values())
 
 
 def _designs(values: FloatArray, direction: FloatArray) -> list[FloatArray]:

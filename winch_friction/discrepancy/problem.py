@@ -28,6 +28,8 @@ from winch_friction.physics.units import GRAVITY
 PRIOR_BOUND = 2.0  # sigma; a base parameter beyond it is itself a finding
 PRIOR_WEIGHT = 10.0  # correlated block noise makes the data count for less than their number
 DEFAULT_RELATIVE_STD = 0.2  # for a model without covariance
+LEAST_NOISE = 0.1  # bar; a 12-bit transducer of 600 bar steps by 0.15
+LEAST_SHARE_OF_TORQUE = 1e-3  # of an electric drive's torque
 TINY = 1e-9
 UNBOUNDED = 1e9
 BARE = 3  # parameters
@@ -65,11 +67,20 @@ class Problem:
     upper: FloatArray
     noise: dict[int, float]  # bar (N m) per run index
     run_names: tuple[str, ...]
+    least_noise: FloatArray | None = None  # bar (N m) per run index; what is smaller matters to nobody
 
     @property
     def base_columns(self) -> tuple[int, ...]:
         """Columns of the base parameters."""
         return tuple(range(len(self.base.names)))
+
+    @property
+    def unresolved(self) -> FloatArray:
+        """Variance in units of the noise that each block's remainder may have beyond it without mattering."""
+        if self.least_noise is None:
+            return np.zeros(len(self.blocks.y))
+        noise = np.array([self.noise[k] for k in range(len(self.noise))])
+        return np.maximum((self.least_noise / noise) ** 2 - 1.0, 0.0)[self.blocks.run]
 
     def columns(self, slots: Sequence[Slot]) -> tuple[int, ...]:
         """Columns of the base and of these effects."""
@@ -190,7 +201,15 @@ def build_problem(
     columns = np.asarray(first.columns(known))
     beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.columns(known))
     again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.contiguous)) for k, t in enumerate(tables)}
-    return _reweighted(first, again)
+    least = np.array([_least_noise(run) for run in runs])
+    return replace(_reweighted(first, again), least_noise=least)
+
+
+def _least_noise(run: PreparedRun) -> float:
+    """What no balance of a winch closes better than, however quiet its sensors, bar (N m for an electric drive)."""
+    if run.groups:
+        return LEAST_NOISE
+    return LEAST_SHARE_OF_TORQUE * float(np.sqrt(np.mean((run.gap + run.predicted) ** 2))) / run.unit_torque
 
 
 def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:

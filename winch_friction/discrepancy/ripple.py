@@ -24,7 +24,7 @@ NEIGHBOURHOOD = 401  # lines whose median is the background
 WINDOW = 15  # samples; slower than this is friction, not ripple
 SPEED_CLASSES = 3  # parts of a run
 MOST_OF_ONE_PART = 5.0  # of a line's power over its background
-SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+SIGNIFICANT = 2e-5  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody

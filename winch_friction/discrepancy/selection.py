@@ -64,7 +64,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
             break
         gains = np.array([current.losses - each.losses for each in trials])
         p = _evidence(cross, trials, gains, rng)
-        relative = np.array([1.0 - np.sqrt(each.loss / current.loss) for each in trials])
+        relative = np.array([cross.gain(current, each) for each in trials])
         worth = np.array([current.loss - each.loss for each in trials])
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
         worthy = _significant(p, relative) & (relative >= LEAST_GAIN) & (worth >= least)
@@ -155,7 +155,7 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
         k = int(np.argmin([each.loss for each in smaller]))
         weakest, last = smaller[k], cross.explain((*smaller[k].slots, current.slots[k]))
         p = _evidence(cross, [last], (weakest.losses - current.losses)[None], rng)[0]
-        gain = 1.0 - np.sqrt(current.loss / weakest.loss)
+        gain = cross.gain(weakest, current)
         if _significant(np.asarray(p), np.asarray(gain)) and gain >= LEAST_GAIN:
             break
         current = weakest
@@ -187,7 +187,7 @@ def _found(
     rivals, frequency = ((), 1.0) if bringers else _rivals(cross, current, without, k, rng)
     name = own.candidate.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
-    return Found(own, rivals, p, float(1.0 - np.sqrt(current.loss / without.loss)), frequency)
+    return Found(own, rivals, p, float(cross.gain(without, current)), frequency)
 
 
 def _rivals(

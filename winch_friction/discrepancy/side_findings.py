@@ -11,7 +11,7 @@ from winch_friction.discrepancy.repair import Estimate
 from winch_friction.discrepancy.result import Effect
 from winch_friction.discrepancy.ripple import Ripple, angle_ripple
 from winch_friction.physics.friction import term_named
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 
 
@@ -21,14 +21,26 @@ def find_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Cra
     return found if found is not None and found.found else None
 
 
-def without_ripple(run: PreparedRun, ripple: Ripple) -> PreparedRun:
-    """The run with the periodic part of its gap taken out; its phase is the run's own."""
+def ripple_waves(runs: Sequence[PreparedRun], ripple: Ripple) -> dict[str, FloatArray]:
+    """Sine and cosine share of T_d/i that each run's gap has of the ripple; the phase is the run's own."""
+    return {run.name: _wave_of(run, ripple) for run in runs}
+
+
+def _wave_of(run: PreparedRun, ripple: Ripple) -> FloatArray:
+    if not run.moving.any() or not np.any(run.drum_torque):
+        return np.zeros(2)
+    beta, *_ = np.linalg.lstsq(_waves(run, ripple)[run.moving], run.gap[run.moving], rcond=None)
+    return np.asarray(beta)
+
+
+def _waves(run: PreparedRun, ripple: Ripple) -> FloatArray:
     static = run.drum_torque / run.gear_ratio
-    wave = static[:, None] * np.column_stack([np.sin(ripple.order * run.angle), np.cos(ripple.order * run.angle)])
-    if not run.moving.any() or not np.any(static):
-        return run
-    beta, *_ = np.linalg.lstsq(wave[run.moving], run.gap[run.moving], rcond=None)
-    return replace(run, gap=run.gap - wave @ beta)
+    return static[:, None] * np.column_stack([np.sin(ripple.order * run.angle), np.cos(ripple.order * run.angle)])
+
+
+def without_ripple(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> PreparedRun:
+    """The run with a ripple of these shares taken out of its gap."""
+    return replace(run, gap=run.gap - _waves(run, ripple) @ wave)
 
 
 def ripple_effect(ripple: Ripple) -> Effect:

@@ -5,7 +5,7 @@ The moving regime names everything else first; here its explanation is the base,
 reversal is certain but short. Samples at rest take no part: static friction is undetermined there.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,13 +43,17 @@ class TurningFinding:
 def search_turning(
     runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], expansion: Expansion,
     explanation: Explanation, candidates: Sequence[Candidate], train: Sequence[str], rng: np.random.Generator,
+    cleaned: Callable[[Expansion], Expansion],
 ) -> TurningFinding | None:  # fmt: skip
-    """The best effect just after reversals, if it is one that only shows there, surely and usefully."""
+    """The best effect just after reversals, if it is one that only shows there, surely and usefully.
+
+    `cleaned` takes out of the runs what has been found beside the torque balance.
+    """
     named = {slot.candidate.name for slot in explanation.slots}
     tried = [each for each in candidates if each.name in (*RIVALS, *named)]
     if "signal_delay" in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
         return None
-    turning = expand_around(runs, crane, seed, loads, expansion, explanation, tried, turning=True)
+    turning = cleaned(expand_around(runs, crane, seed, loads, expansion, explanation, tried, turning=True))
     chosen = [run for run in turning.runs if run.name in train and run.moving.any()]
     if sum(int(run.moving.sum()) for run in chosen) < FEWEST_BLOCKS:
         return None
@@ -61,7 +65,7 @@ def search_turning(
         return None
     p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
-    gain = 1.0 - np.sqrt(trials[best].loss / base.loss)
+    gain = cross.gain(base, trials[best])
     shape = trials[best].slots[-1].variant.shape
     if shape.get("d_z", 1.0) <= min(SHAPES["d_z"]):  # so short a travel is within the timing's own blur
         return None

@@ -29,13 +29,13 @@ class Verdict:
     refused: str = ""
 
 
-def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) -> Verdict:
-    """`left`: what signals predict of the final explanation's remainder."""
+def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], rippled: bool = False) -> Verdict:
+    """`left`: what signals predict of the final explanation's remainder; `rippled`: a ripple may be part of it."""
     before, excess = _steady_excess(cross, selection.base), _steady_excess(cross, selection.final)
     before = max(before, 1e-9)
     depends = [d for d in left if d.p_value <= SIGNIFICANCE]
     if not selection.found:
-        strong = any(d.share >= LEAST_UNEXPLAINED for d in depends) or before > NEVER_NOISE
+        strong = any(d.share >= LEAST_UNEXPLAINED for d in depends) or (before > NEVER_NOISE and not rippled)
         return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
     implausible = [f.slot.candidate.name for f in selection.found if _at_bound(cross, selection, f)]
     if implausible:
@@ -46,7 +46,9 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence]) ->
     remains |= excess > LARGE_EXCESS and excess / before > SMALL_LEFT_OVER
     obvious = excess > OBVIOUS_EXCESS or any(d.share >= 0.5 * LEAST_UNEXPLAINED for d in depends)
     count = float(cross.problem.grams.count.sum())
-    whole, whole_before = selection.final.loss / count - 1.0, max(selection.base.loss / count - 1.0, 1e-9)
+    floor = count + cross.unresolved
+    whole = (selection.final.loss - floor) / count
+    whole_before = max((selection.base.loss - floor) / count, 1e-9)
     elsewhere = whole > LEAST_EXCESS and whole / whole_before > LEFT_OVER
     elsewhere &= any(d.share >= LEAST_UNEXPLAINED for d in depends)
     if (remains and obvious) or elsewhere:
@@ -64,8 +66,8 @@ def _steady_excess(cross: CrossFit, explanation: Explanation) -> float:
     left = remainder(cross, explanation)
     acceleration = np.abs(cross.problem.blocks.features["acceleration"])
     steady = acceleration <= STEADY * np.percentile(acceleration, 99)
-    chosen = left[steady] if steady.sum() >= FEWEST_STEADY else left
-    return float(np.mean(chosen**2)) - 1.0
+    chosen = steady if steady.sum() >= FEWEST_STEADY else np.ones_like(steady)
+    return float(np.mean(left[chosen] ** 2 - 1.0 - cross.problem.unresolved[chosen]))
 
 
 def _at_bound(cross: CrossFit, selection: Selection, found: Found) -> bool:
@@ -79,8 +81,3 @@ def _at_bound(cross: CrossFit, selection: Selection, found: Found) -> bool:
 def _plain_term(cross: CrossFit, found: Found) -> bool:
     """A plain term that the model lacked from the start: several of them may be missing without being an imitation."""
     return all(cross.problem.upper[column] >= UNBOUNDED for column in found.slot.columns)
-
-
-def rms_ratio(cross: CrossFit, losses: np.ndarray) -> float:
-    """Root mean square residual in units of the noise."""
-    return float(np.sqrt(losses.sum() / cross.problem.grams.count.sum()))

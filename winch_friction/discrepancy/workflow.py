@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,13 @@ from winch_friction.discrepancy.repair import Estimate, repair, with_turning
 from winch_friction.discrepancy.result import Effect, GapResult, Side, relative_error
 from winch_friction.discrepancy.ripple import Ripple
 from winch_friction.discrepancy.selection import Found, Selection, select
-from winch_friction.discrepancy.side_findings import find_ripple, leakage_effect, ripple_effect, without_ripple
+from winch_friction.discrepancy.side_findings import (
+    find_ripple,
+    leakage_effect,
+    ripple_effect,
+    ripple_waves,
+    without_ripple,
+)
 from winch_friction.discrepancy.turning import TurningFinding, search_turning
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.errors import InputError
@@ -34,6 +41,7 @@ from winch_friction.physics.winch import Crane
 
 MOST_SIGNALS = 3
 MOST_EXPANSIONS = 2
+MOST_KEPT_NOISE, MOST_KEPT = 3.0, 0.05  # times the noise, and share of the excess, that locked runs may keep
 LEAST_NAMED_SHARE = 0.02  # of the remainder, that a signal must predict to be named before those that predict more
 
 
@@ -62,12 +70,29 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     result = _assemble(split, crane, model, options, search, rng)
     if len(split.train) < FEWEST_RUNS and result.effects and not _proved(result):
         return _assemble(split, crane, model, options, _withdrawn(search), rng)
+    if result.effects and _refuted(result):
+        return _assemble(split, crane, model, options, _unexplained(search, rng), rng)
     return result
 
 
 def _proved(result: GapResult) -> bool:
     """Whether the locked runs' gap came down below the interval that it had before."""
     return result.holdout.size_after.value < result.holdout.size_before.interval[0]
+
+
+def _refuted(result: GapResult) -> bool:
+    """Whether the locked runs keep far more than their noise, and not only because there was so much before."""
+    before, after, noise = result.holdout.size_before.value, result.holdout.size_after.value, result.holdout.noise_floor
+    kept = (after**2 - noise**2) / max(before**2 - noise**2, 1e-9)
+    return after > MOST_KEPT_NOISE * noise and kept > MOST_KEPT
+
+
+def _unexplained(search: "_Search", rng: np.random.Generator) -> "_Search":
+    """The search with what it found refused."""
+    names = ", ".join(found.slot.candidate.name for found in search.selection.found)
+    left = dependences(search.cross, remainder(search.cross, search.selection.base), rng)
+    verdict = Verdict(UNEXPLAINED, f"{names} does not hold on the locked runs")
+    return replace(search, verdict=verdict, left=tuple(left), turning=None)
 
 
 def _withdrawn(search: "_Search") -> "_Search":
@@ -120,13 +145,15 @@ def _search(split: Split, crane: Crane, model: FrictionModel, options: GapOption
         if not any(slot.candidate.continuous for slot in selection.final.slots):
             break
     left = dependences(cross, remainder(cross, selection.final), rng)
-    verdict = decide(cross, selection, left)
+    verdict = decide(cross, selection, left, ripple is not None)
     if verdict.kind == UNEXPLAINED:
         left = dependences(cross, remainder(cross, selection.base), rng)
     kept = selection.base if verdict.kind in (UNEXPLAINED, NOTHING) else selection.final
     turning = None
     if verdict.kind != UNEXPLAINED:
-        turning = search_turning(split.runs, crane, model, loads, expansion, kept, usable, split.train, rng)
+        # just after reversals there is too little of a run to tell a ripple from what is looked for
+        cleaned = partial(_cleaned, ripple=ripple, waves=ripple_waves(around.runs, ripple) if ripple else None)
+        turning = search_turning(split.runs, crane, model, loads, expansion, kept, usable, split.train, rng, cleaned)
     leakage = leakage_effect(own_runs, own_prepared)
     side = ([ripple_effect(ripple)] if ripple else []) + ([leakage] if leakage else [])
     if verdict.kind == NOTHING and (turning or side):
@@ -142,10 +169,12 @@ def _refined(candidates: Sequence[Candidate], explanation: Explanation) -> list[
     return [refined(each, found[each.name]) if each.name in found else each for each in candidates]
 
 
-def _cleaned(expansion: Expansion, ripple: Ripple | None) -> Expansion:
+def _cleaned(expansion: Expansion, ripple: Ripple | None, waves: Mapping[str, FloatArray] | None = None) -> Expansion:
+    """The runs without the ripple: that of `waves`, or else what each has of it."""
     if ripple is None:
         return expansion
-    return replace(expansion, runs=tuple(without_ripple(run, ripple) for run in expansion.runs))
+    waves = ripple_waves(expansion.runs, ripple) if waves is None else waves
+    return replace(expansion, runs=tuple(without_ripple(run, ripple, waves[run.name]) for run in expansion.runs))
 
 
 def _assemble(
@@ -268,9 +297,9 @@ def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
 
 def _unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:
     """Share of the gap above the noise floor that no named effect explains."""
-    count = float(cross.problem.grams.count.sum())
-    before = max(selection.base.loss / count - 1.0, 1e-9)
-    after = max(selection.final.loss / count - 1.0, 0.0)
+    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
+    before = max(selection.base.loss - floor, 1e-9)
+    after = max(selection.final.loss - floor, 0.0)
     if verdict.kind == NOTHING:
         return 0.0
     return float(min(after / before, 1.0)) if selection.found else 1.0

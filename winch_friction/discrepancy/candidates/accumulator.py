@@ -32,10 +32,12 @@ def accumulator_columns(run: PreparedRun, shape: Shape) -> FloatArray:
 
 
 def _one_side(group: GroupSignals, run: PreparedRun, tau: float) -> FloatArray:
-    torque = group.count * group.displacement * group.pressure
+    # of the calculated pressure, which the excess temperature scales
+    port = 0.5 * (group.pressure_sum + group.logged)
+    torque = group.count * group.displacement * port
     fading = np.exp(-run.time / tau)
-    # ln p moves with ln V; what has relaxed of it is its low-passed change
-    change = np.log(np.maximum(group.pressure, 1.0) / max(group.pressure[0], 1.0))
+    # the calculated ln p moves with ln V; what has relaxed of it is its low-passed change
+    change = np.log(np.maximum(port, 1.0) / max(port[0], 1.0))
     keep = np.exp(-run.dt / tau)
     relaxed = lfilter([1.0 - keep], [1.0, -keep], change)
     return np.column_stack([torque * fading, -torque * relaxed])

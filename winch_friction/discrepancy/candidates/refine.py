@@ -8,7 +8,7 @@ from functools import partial
 from winch_friction.discrepancy.candidates.candidate import Candidate, Variant
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 
-STEPS = (1.0 / 3.0, 2.0 / 3.0)  # of the way to the neighbour, in the logarithm
+STEPS = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
 
 def refined(candidate: Candidate, variant: Variant) -> Candidate:

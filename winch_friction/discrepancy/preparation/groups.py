@@ -43,7 +43,7 @@ def _measured(
     if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
         raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
     drop, total, low = (smooth(each, 2 * window) for each in (a - b, a + b, np.minimum(a, b)))
-    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances)
+    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop)
 
 
 def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:

@@ -20,6 +20,7 @@ class GroupSignals:
     low_pressure: FloatArray
     displacement: FloatArray
     balances: bool  # closes the torque balance: its pressure is predicted
+    logged: FloatArray  # signed drop as it was measured, smoothed
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; 
 # where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
 SETTLED = 4.0  # decay times, down to 2 %
-MOST_SPREAD = 0.35  # of the runs' damping, in its logarithm; one wire has one damping
+MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
 
 
 @dataclass(frozen=True)

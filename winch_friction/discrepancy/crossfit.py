@@ -77,7 +77,14 @@ class CrossFit:
 
     def gain(self, before: Explanation, after: Explanation) -> FloatArray:
         """Share of the held-out error that `after` saves, beside what matters to nobody."""
-        return np.asarray(1.0 - np.sqrt((after.loss + self.unresolved) / (before.loss + self.unresolved)))
+        return self._saved(before.loss, after.loss)
+
+    def inside_gain(self, before: Explanation, after: Explanation) -> FloatArray:
+        """The same on the runs that both were fitted to."""
+        return self._saved(before.train_loss, after.train_loss)
+
+    def _saved(self, before: float, after: float) -> FloatArray:
+        return np.asarray(1.0 - np.sqrt((after + self.unresolved) / (before + self.unresolved)))
 
     def jackknife_p_value(self, explanation: Explanation) -> float:
         """Two-sided p-value of the last effect's amplitude, from how much it changes when a fold is left out.

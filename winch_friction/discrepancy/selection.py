@@ -67,10 +67,12 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         relative = np.array([cross.gain(current, each) for each in trials])
         worth = np.array([current.loss - each.loss for each in trials])
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
-        worthy = _significant(p, relative) & (relative >= LEAST_GAIN) & (worth >= least)
+        # what only steadies the fit of another effect when a run is left out is no effect itself
+        inside = np.array([cross.inside_gain(current, each) for each in trials])
+        worthy = _significant(p, relative) & (np.minimum(relative, inside) >= LEAST_GAIN) & (worth >= least)
         order = np.argsort([each.loss for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
-        considered += [_considered(trials[k], relative[k], p[k], stage, worthy[k], k == best) for k in order]
+        considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
             break
         p_values[trials[best].slots[-1].candidate.name] = float(p[best])
@@ -98,7 +100,9 @@ def _significant(p: FloatArray, gain: FloatArray) -> np.ndarray:
     return np.asarray(p <= enough)
 
 
-def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: bool, best: bool) -> Considered:
+def _considered(
+    trial: Explanation, gain: float, inside: float, p: float, stage: int, worthy: bool, best: bool
+) -> Considered:
     own = trial.slots[-1]
     if best:
         verdict = "taken"
@@ -106,8 +110,9 @@ def _considered(trial: Explanation, gain: float, p: float, stage: int, worthy: b
         verdict = "significant and useful, but outdone in held-out loss by the one taken"
     elif not _significant(np.asarray(p), np.asarray(gain)):
         verdict = f"not significant on held-out segments (p = {p:.2g})"
-    elif gain < LEAST_GAIN:
-        verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
+    elif gain < LEAST_GAIN or inside < LEAST_GAIN:
+        saved, where = min((gain, "held-out error"), (inside, "error on the runs it is fitted to"))
+        verdict = f"gains only {100 * saved:.1f} % of the {where}, less than {100 * LEAST_GAIN:g} %"
     else:
         verdict = f"explains less than {100 * LEAST_SHARE:g} % of what the first effect did: its own second order"
     return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)
@@ -156,7 +161,10 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
         weakest, last = smaller[k], cross.explain((*smaller[k].slots, current.slots[k]))
         p = _evidence(cross, [last], (weakest.losses - current.losses)[None], rng)[0]
         gain = cross.gain(weakest, current)
-        if _significant(np.asarray(p), np.asarray(gain)) and gain >= LEAST_GAIN:
+        if (
+            _significant(np.asarray(p), np.asarray(gain))
+            and min(gain, cross.inside_gain(weakest, current)) >= LEAST_GAIN
+        ):
             break
         current = weakest
     return current

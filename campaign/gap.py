@@ -32,7 +32,8 @@ TABLE = Path("docs/campaign_gap.md")
 
 def diagnose(case: Case) -> dict[str, Any]:
     """Generate one data set, run the workflow on it, judge its answer."""
-    from winch_friction.discrepancy.workflow import GapOptions, find_gap
+    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.signals import Run
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model

@@ -1,6 +1,7 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
-from winch_friction.discrepancy.workflow import GapOptions, find_gap
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -59,7 +59,8 @@ def run_gap(
     paths: list[Path], crane: str, model: str, out: Path, holdout: float, seed: int, effects: Path | None, report: bool
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.discrepancy.workflow import GapOptions, find_gap
+    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane

@@ -34,7 +34,8 @@ def _text(value: Any) -> str:
 
 
 def _trial(number: int, crane: str, model: str, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
-    from winch_friction.discrepancy.workflow import GapOptions, find_gap
+    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model

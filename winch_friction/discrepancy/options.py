@@ -1,0 +1,17 @@
+"""What a user of the workflow may choose."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from winch_friction.discrepancy.candidates.candidate import Candidate
+
+
+@dataclass(frozen=True)
+class GapOptions:
+    """`holdout` is the share of runs locked for the proof; `seed` drives every random choice."""
+
+    holdout: float = 0.25
+    seed: int = 0
+    effects_file: Path | None = None
+    plan: bool = True  # look for the experiment that separates rivals
+    candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given

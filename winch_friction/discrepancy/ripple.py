@@ -23,8 +23,10 @@ LONGEST_SPECTRUM = 1 << 18
 NEIGHBOURHOOD = 401  # lines whose median is the background
 WINDOW = 15  # samples; slower than this is friction, not ripple
 SPEED_CLASSES = 3  # parts of a run
-MOST_OF_ONE_PART = 5.0  # of a line's power over its background
-SIGNIFICANT = 2e-5  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
+MOST_OF_ONE_PART, MOST_OF_ONE_RUN = 5.0, 12.0  # of a line's power over its background
+# family-wise significance of a line in the whole runs, whose background is lumpy, and its own in their parts
+IN_RUNS, IN_PARTS = 1e-10, 1e-3
+SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
@@ -69,15 +71,26 @@ def _search(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, 
     size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
     orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
     use = (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
-    power, parts = np.zeros(use.sum()), 0
+    whole, power, parts = np.zeros(use.sum()), np.zeros(use.sum()), 0
     for angle, torque, static, speed in tables:
+        weighted = torque * static
+        whole += np.minimum(_prominence(angle, weighted, size, use), MOST_OF_ONE_RUN)
         for part in _speed_classes(speed):
-            line = _power(angle[part], (torque * static)[part], size)[use]
-            background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
             # an encoder's steps beat with the sampling at one speed, in every run that has it: no part may decide alone
-            power += np.minimum(line / background, MOST_OF_ONE_PART)
+            power += np.minimum(_prominence(angle[part], weighted[part], size, use), MOST_OF_ONE_PART)
             parts += 1
-    return _strongest(orders[use], power, parts, [table[:3] for table in tables])
+    # whole runs see a small ripple better, but it must be in their parts as well
+    whole[gamma.sf(power, parts) > IN_PARTS] = 0.0
+    own = [table[:3] for table in tables]
+    of_runs = _strongest(orders[use], whole, len(tables), own)
+    return of_runs if of_runs.p_value < IN_RUNS else _strongest(orders[use], power, parts, own)
+
+
+def _prominence(angle: FloatArray, torque: FloatArray, size: int, use: np.ndarray) -> FloatArray:
+    """Power of each line over its neighbours', exponentially distributed with mean 1 where there is nothing."""
+    line = _power(angle, torque, size)[use]
+    background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
+    return np.asarray(line / background)
 
 
 def _speed_classes(speed: FloatArray) -> list[np.ndarray]:

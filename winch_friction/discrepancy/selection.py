@@ -13,6 +13,7 @@ from winch_friction.physics.signals import FloatArray
 # the smaller it is the surer, for a fading warmth shows in few segments, but a large gain is not chance
 SIGNIFICANCE = ((0.1, 0.05), (0.02, 0.01), (0.01, 0.001))
 LEAST_GAIN = min(gain for gain, _ in SIGNIFICANCE)
+LEAST_INSIDE = 2e-3  # of the RMSE on the runs it is fitted to, where the base takes a part of every small effect
 LEAST_SHARE = 1e-3  # of what is explained already
 MOST_EFFECTS = 4
 RIVAL_P = 0.05
@@ -69,7 +70,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
         # what only steadies the fit of another effect when a run is left out is no effect itself
         inside = np.array([cross.inside_gain(current, each) for each in trials])
-        worthy = _significant(p, relative) & (np.minimum(relative, inside) >= LEAST_GAIN) & (worth >= least)
+        worthy = _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LEAST_INSIDE) & (worth >= least)
         order = np.argsort([each.loss for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
@@ -110,9 +111,10 @@ def _considered(
         verdict = "significant and useful, but outdone in held-out loss by the one taken"
     elif not _significant(np.asarray(p), np.asarray(gain)):
         verdict = f"not significant on held-out segments (p = {p:.2g})"
-    elif gain < LEAST_GAIN or inside < LEAST_GAIN:
-        saved, where = min((gain, "held-out error"), (inside, "error on the runs it is fitted to"))
-        verdict = f"gains only {100 * saved:.1f} % of the {where}, less than {100 * LEAST_GAIN:g} %"
+    elif gain < LEAST_GAIN:
+        verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
+    elif inside < LEAST_INSIDE:
+        verdict = "only steadies the fit of another effect: it explains next to nothing of the runs it is fitted to"
     else:
         verdict = f"explains less than {100 * LEAST_SHARE:g} % of what the first effect did: its own second order"
     return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)

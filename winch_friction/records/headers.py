@@ -73,4 +73,6 @@ def _registry() -> Any:
     registry: Any = pint.UnitRegistry(on_redefinition="ignore", autoconvert_offset_to_baseunit=True)
     for definition in ("radian = [angle] = rad", "revolution = 2 * pi * radian = rev", "rpm = rev / minute"):
         registry.define(definition)
+    if "percent" not in registry:  # Ubuntu 24.04's pint does not know it
+        registry.define("percent = 0.01")
     return registry

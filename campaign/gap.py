@@ -11,7 +11,6 @@ import json
 import multiprocessing
 import os
 import resource
-import subprocess
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before numpy: one process per core, not several threads in each
 
+from campaign.commit import commit  # noqa: E402
 from campaign.gap_cases import QUICK, Case, Counts, all_cases  # noqa: E402
 from campaign.gap_report import write_table  # noqa: E402
 from campaign.gap_score import score  # noqa: E402
@@ -89,21 +89,15 @@ def run(cases: Iterable[Case], processes: int, path: Path, until: float = float(
     done = finished(path)
     waiting = [case for case in cases if case.key not in done]
     path.parent.mkdir(parents=True, exist_ok=True)
-    commit = _commit()
+    measured = commit()
     with path.open("a") as out, multiprocessing.get_context("spawn").Pool(processes) as pool:
         for k, row in enumerate(pool.imap(diagnose_or_say, waiting)):
-            out.write(json.dumps(row | {"commit": commit}) + "\n")
+            out.write(json.dumps(row | {"commit": measured}) + "\n")
             out.flush()
             print(f"{k + 1}/{len(waiting)} {row['key']}: {row.get('error', row.get('verdict'))}", flush=True)
             if time.time() > until:
                 pool.terminate()
                 return
-
-
-def _commit() -> str:
-    """The commit that runs; a copy of the files alone has to be told."""
-    found = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return found.stdout.strip() or os.environ.get("GAP_COMMIT", "unknown")
 
 
 def main() -> None:

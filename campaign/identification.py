@@ -14,9 +14,10 @@ from typing import Any
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before numpy: one core
 
+from campaign.commit import commit  # noqa: E402
 from campaign.identification_crane import study  # noqa: E402
 from campaign.identification_motors import LOSSES, MOTORS, fitters, held_out, recovery  # noqa: E402
-from campaign.identification_table import commit, page  # noqa: E402
+from campaign.identification_table import page  # noqa: E402
 from winch_friction.records.atomic import write_text  # noqa: E402
 
 FIRST_SEED = 5000

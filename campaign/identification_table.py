@@ -1,6 +1,5 @@
 """The page of the identification campaign, from its results."""
 
-import subprocess
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
@@ -35,12 +34,6 @@ def page(results: dict[str, Any]) -> str:
         _cranes(results["cranes"]),
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def commit() -> str:
-    """The commit that runs."""
-    found = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
-    return found.stdout.strip() or "unknown"
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:

@@ -6,7 +6,6 @@ Every row runs the same simulated crane, controller, sea and noise; only the fee
 
 import argparse
 import math
-import subprocess
 import sys
 import time
 from collections import defaultdict
@@ -14,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from campaign.commit import commit
 from campaign.loop_cases import (
     DRIVES,
     LOADS,
@@ -164,12 +164,6 @@ def verdicts(study: Study) -> str:
             for text, value, limit in checks
         ]
     return table(["drive", "bar", "measured", "met"], lines)
-
-
-def commit() -> str:
-    """The commit that is being measured."""
-    shown = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
-    return shown.stdout.strip() or "unknown"
 
 
 def report(studies: dict[str, Study], extra: str, command: str, measured: str, seconds: float) -> str:

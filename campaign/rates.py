@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from campaign.commit import commit
+
 RATES = (50, 100, 200)  # Hz
 STARTING = 90.0  # s that the nodes get to start
 AFTERWARDS = 3.0  # s for the last diagnostics
@@ -90,11 +92,10 @@ def _row(rate: int, listener: Any, cpu: dict[str, float]) -> Row:
 
 def table(rows: list[Row], minutes: float, priority: int) -> str:
     """Markdown with command and commit."""
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     load = ", ".join(f"{each:.1f}" for each in os.getloadavg())
     head = (
         "# Nodes at 50, 100 and 200 Hz\n\n"
-        f"`{' '.join(['python -m campaign.rates', *sys.argv[1:]])}`, commit {commit}, {os.cpu_count()} cores "
+        f"`{' '.join(['python -m campaign.rates', *sys.argv[1:]])}`, commit {commit()}, {os.cpu_count()} cores "
         f"(shared: load average at the end {load}; the nodes ran at nice {priority}).\n\n"
         f"{minutes:g} minutes each, real time: simulator, compensator and estimator as processes over Fast DDS, "
         "fourteen input topics, best-effort subscriptions. Lost: published by the simulator, not counted by the node. "

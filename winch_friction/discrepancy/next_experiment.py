@@ -1,9 +1,8 @@
 """The experiment that would separate rivals best: T-optimality (Atkinson and Fedorov 1975) over feasible scenarios.
 
 Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size
-is the
-truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together. What the
-rival cannot imitate, in standard deviations of the measurement, is the expected separation.
+is the truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together.
+What the rival cannot imitate, in standard deviations of the measurement, is the expected separation.
 """
 
 from collections.abc import Mapping, Sequence

@@ -68,12 +68,13 @@ def search_runs(
     usable, blind = testable(options.candidates or all_candidates(options.effects_file), prepared, model)
     candidates = [each for each in usable if each.regime == "moving"]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
-    cross = _cleaned(at_seed, ripple).cross(split.train)
+    cross = _cleaned(at_seed, ripple, _waves(at_seed, ripple)).cross(split.train)
     expansion, selection = at_seed, select(cross, rng, 1)
     for _ in range(MOST_EXPANSIONS):
         candidates, usable = (_refined(each, selection.final) for each in (candidates, usable))
         around = expand_around(split.runs, crane, model, loads, expansion, selection.final, candidates)
-        expansion = _cleaned(around, ripple)
+        waves = _waves(around, ripple)
+        expansion = _cleaned(around, ripple, waves)
         cross = expansion.cross(split.train, selection.final.slots)
         selection = select(cross, rng)
         if not any(slot.candidate.continuous for slot in selection.final.slots):
@@ -82,12 +83,13 @@ def search_runs(
     verdict = decide(cross, selection, left, ripple is not None)
     if verdict.kind == UNEXPLAINED:
         left = dependences(cross, remainder(cross, selection.base), rng)
-    kept = selection.base if verdict.kind in (UNEXPLAINED, NOTHING) else selection.final
     turning = None
     if verdict.kind != UNEXPLAINED:
         # just after reversals there is too little of a run to tell a ripple from what is looked for
-        cleaned = partial(_cleaned, ripple=ripple, waves=ripple_waves(around.runs, ripple) if ripple else None)
-        turning = search_turning(split.runs, crane, model, loads, expansion, kept, usable, split.train, rng, cleaned)
+        cleaned = partial(_cleaned, ripple=ripple, waves=waves)
+        turning = search_turning(
+            split.runs, crane, model, loads, expansion, selection.final, usable, split.train, rng, cleaned
+        )
     leakage = leakage_effect(own_runs, own_prepared)
     side = ([ripple_effect(ripple)] if ripple else []) + ([leakage] if leakage else [])
     if verdict.kind == NOTHING and (turning or side):
@@ -101,9 +103,13 @@ def _refined(candidates: Sequence[Candidate], explanation: Explanation) -> list[
     return [refined(each, found[each.name]) if each.name in found else each for each in candidates]
 
 
-def _cleaned(expansion: Expansion, ripple: Ripple | None, waves: Mapping[str, FloatArray] | None = None) -> Expansion:
-    """The runs without the ripple: that of `waves`, or else what each has of it."""
+def _waves(expansion: Expansion, ripple: Ripple | None) -> Mapping[str, FloatArray]:
+    """What each run has of the ripple."""
+    return ripple_waves(expansion.runs, ripple) if ripple else {}
+
+
+def _cleaned(expansion: Expansion, ripple: Ripple | None, waves: Mapping[str, FloatArray]) -> Expansion:
+    """The runs without these waves of the ripple."""
     if ripple is None:
         return expansion
-    waves = ripple_waves(expansion.runs, ripple) if waves is None else waves
     return replace(expansion, runs=tuple(without_ripple(run, ripple, waves[run.name]) for run in expansion.runs))

@@ -35,7 +35,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     result = assemble(split, crane, model, options, search, rng)
     if len(split.train) < FEWEST_RUNS and result.effects and not _proved(result):
         return assemble(split, crane, model, options, _withdrawn(search), rng)
-    if search.selection.found and result.effects and _refuted(result):
+    if search.explanation.slots and _refuted(result):
         return assemble(split, crane, model, options, _unexplained(search, rng), rng)
     return result
 

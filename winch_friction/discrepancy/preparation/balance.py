@@ -1,6 +1,7 @@
 """The torque balance at the motor shaft: what was measured and what the base model predicts."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -82,9 +83,7 @@ class Balancing:
         return Balance(measured, predicted, (), point, self.model.jacobian(point), float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
-        columns = self.grid.columns
-        groups = measured_groups(columns, self.run, self.crane, self.motion.window)
-        measured = self._smoothed(drive_torque(columns, groups))
+        groups, measured = self._measured
         groups = corrected(groups, self.found.passive_error)
         predicted = frictionless
         for _ in range(FIXED_POINT_STEPS):
@@ -94,6 +93,12 @@ class Balancing:
         own = next(g for g in groups if g.balances)
         unit = BAR * own.count * float(np.median(own.displacement))
         return Balance(measured, predicted, groups, point, self.model.jacobian(point), unit)
+
+    @cached_property
+    def _measured(self) -> tuple[Groups, FloatArray]:
+        """Groups with their measured pressures and the drive torque that these make, whatever the load does."""
+        groups = measured_groups(self.grid.columns, self.run, self.crane, self.motion.window)
+        return groups, self._smoothed(drive_torque(self.grid.columns, groups))
 
     def _smoothed(self, torque: FloatArray) -> FloatArray:
         """With the acceleration's kernel: what that takes out of one side must not stay in the other."""

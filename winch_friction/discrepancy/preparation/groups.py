@@ -12,6 +12,7 @@ from winch_friction.discrepancy.preparation.smoothing import smooth
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
+from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
 MIN_DISPLACEMENT_SHARE = 0.05
 BALANCING = ("active", "main")  # the groups that close the balance where they run
@@ -48,8 +49,8 @@ def _measured(
 
 def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:
     """Measured torque of all motors at the shaft, N m, from the pressures as they were logged."""
-    drops = [columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups]
-    return np.asarray(sum(g.count * g.displacement * drop for g, drop in zip(groups, drops, strict=True)))
+    drops = (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups)
+    return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
 
 
 def corrected(groups: Groups, error: FloatArray | float) -> Groups:
@@ -60,7 +61,7 @@ def corrected(groups: Groups, error: FloatArray | float) -> Groups:
 
 def with_predicted_pressure(groups: Groups, torque: FloatArray) -> Groups:
     """Groups of which the balancing one has the pressure that a drive torque (N m) at the shaft takes."""
-    rest = torque - sum(g.count * g.displacement * g.pressure for g in groups if not g.balances)
+    rest = torque - hydraulic_torque((g.count, g.displacement, g.pressure) for g in groups if not g.balances)
     return tuple(_loaded(g, rest) if g.balances else g for g in groups)
 
 

@@ -42,12 +42,8 @@ def prepare(
     """
     grid = uniform(run)
     motion = motion_of(grid, crane, run.name, turning)
-    hanging = load_of(grid, motion, crane, load)
     balancing = Balancing(run, crane, model, grid, motion, found or Found())
-    if mode is None:
-        mode = _wire_mode(balancing, hanging)
-    hanging = hanging.on_wire(grid.dt, mode)
-    balance = balancing.of(hanging)
+    mode, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
     used = motion.used & _settled(grid, mode)
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
@@ -64,12 +60,24 @@ def prepare(
     )  # fmt: skip
 
 
-def _wire_mode(balancing: Balancing, load: SuspendedLoad) -> tuple[float, float]:
+def _on_wire(
+    balancing: Balancing, load: SuspendedLoad, mode: tuple[float, float] | None
+) -> tuple[tuple[float, float], SuspendedLoad, Balance]:
+    """The wire's mode, looked for unless given, the load behind it and the balance with that."""
+    if mode is None:
+        rigid = balancing.of(load)
+        mode = _wire_mode(balancing, load, rigid)
+        if mode[1] <= 0.0:
+            return mode, load, rigid
+    hanging = load.on_wire(balancing.grid.dt, mode)
+    return mode, hanging, balancing.of(hanging)
+
+
+def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tuple[float, float]:
     """Frequency and damping of the load's swinging, where the wire's stiffness is known."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
         return 0.0, 0.0
-    rigid = balancing.of(load)
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
     swing = swinging_load(
         rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,

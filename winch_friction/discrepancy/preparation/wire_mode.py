@@ -94,10 +94,8 @@ class _Judge:
         self._stretch = np.concatenate([[0], np.cumsum(np.diff(self._samples) > 1)])
         self._size = np.bincount(self._stretch)
         self._gap = gap[self._samples]
-        friction = np.zeros((len(gap), 0)) if friction is None else friction
-        self._friction = np.column_stack(
-            [self._levelled(each) for each in friction[self._samples].T] or [0.0 * self._gap]
-        )
+        friction = np.zeros((len(gap), 1)) if friction is None else friction
+        self._friction = np.column_stack([self._levelled(each) for each in friction[self._samples].T])
         self._solve = np.linalg.pinv(self._friction)
 
     def variance(self, change: FloatArray | float) -> float:
@@ -123,8 +121,8 @@ def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) ->
 
 
 def settling_time(frequency: float, ratio: float) -> float:
-    """Seconds in which a swing that began before the record dies out; 0 for a rigid wire."""
-    return SETTLED / (ratio * frequency) if ratio > 0.0 else 0.0
+    """Seconds in which a swing on an elastic wire that began before the record dies out."""
+    return SETTLED / (ratio * frequency)
 
 
 def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterable[float]:

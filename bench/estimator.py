@@ -1,22 +1,16 @@
-"""What one estimator step costs, beside filterpy's own extended Kalman filter of the same size.
-
-python bench/estimator.py
-"""
-
-from typing import Any
+"""What one estimator step costs, beside filterpy's own extended Kalman filter of the same size."""
 
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
-from pairs import figure, paired
-from seas import sea
 
+from bench.measuring import Row, paired, sea, sea_seconds
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 
 
-def measure() -> dict[str, Any]:
-    """Step time in us over a simulated sea, and its ratio to `predict` and `update` of a bare filter."""
-    crane, model, _, samples = sea()
-    size = FrictionEstimator(crane, model, EstimatorConfig())._filter.dim_x
+def measure(smoke: bool = False) -> list[Row]:
+    """Step time over a simulated sea, and its ratio to `predict` and `update` of a bare filter."""
+    crane, model, _, samples = sea(sea_seconds(smoke))
+    size = FrictionEstimator(crane, model, EstimatorConfig()).size
 
     def steps() -> None:
         estimator = FrictionEstimator(crane, model, EstimatorConfig())
@@ -31,10 +25,10 @@ def measure() -> dict[str, Any]:
             kalman.predict()
             kalman.update(np.array([[sample.motor_speed]]), lambda _: row, lambda x: row @ x)
 
-    ours, theirs, ratio = paired(steps, bare)
-    against = f"bare filterpy EKF of {size} states, {1e6 * theirs / len(samples):.0f} us"
-    return {"estimator: one step": figure(1e6 * ours / len(samples), "us", against, ratio, "ratio <= 1.3")}
-
-
-if __name__ == "__main__":
-    print(measure())
+    found, each = paired(steps, bare, smoke), 1e6 / len(samples)
+    return [
+        Row(
+            f"estimator: one step, {size} states", found.ours * each, "us", "bare filterpy EKF of that size",
+            found.theirs * each, found.ratio, found.spread, at_most=1.3,
+        )
+    ]  # fmt: skip

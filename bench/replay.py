@@ -1,27 +1,22 @@
-"""What replaying a bag costs, beside reading it.
-
-python bench/replay.py
-"""
+"""What replaying a bag costs, beside reading it."""
 
 import tempfile
 from pathlib import Path
 from typing import Any
 
-from pairs import figure, paired
-from seas import sea
-
+from bench.measuring import Row, paired, sea, sea_seconds
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.records.runs import read_run, write_run
 from winch_friction.replay.compensator import replay_compensator
 from winch_friction.replay.estimator import replay_estimator
 
-REPEATS = 3
+GOALS = {"compensator": 1.2, "estimator": 1.5}
 
 
-def measure() -> dict[str, Any]:
-    """Samples per second through each object from a bag, and the ratio to reading the bag into a run."""
-    crane, model, run, samples = sea()
+def measure(smoke: bool = False) -> list[Row]:
+    """Time per sample through each object from a bag, and the ratio to reading the bag into a run."""
+    crane, model, run, samples = sea(sea_seconds(smoke))
     with tempfile.TemporaryDirectory() as folder:
         path = write_run(run, Path(folder) / "bag")
 
@@ -34,14 +29,13 @@ def measure() -> dict[str, Any]:
         def estimated() -> None:
             replay_estimator(read(), FrictionEstimator(crane, model, EstimatorConfig()))
 
-        rows = {}
+        rows, each = [], 1e6 / len(samples)
         for name, work in (("compensator", compensated), ("estimator", estimated)):
-            ours, theirs, ratio = paired(work, read, REPEATS)
-            against = f"reading the bag, {1e6 * theirs / len(samples):.0f} us"
-            value = 1e6 * ours / len(samples)
-            rows[f"replay: bag through the {name}, per sample"] = figure(value, "us", against, ratio, "ratio <= 1.5")
+            found = paired(work, read, smoke)
+            rows.append(
+                Row(
+                    f"replay: bag through the {name}, per sample", found.ours * each, "us", "reading the bag",
+                    found.theirs * each, found.ratio, found.spread, at_most=GOALS[name],
+                )
+            )  # fmt: skip
     return rows
-
-
-if __name__ == "__main__":
-    print(measure())

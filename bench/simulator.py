@@ -1,56 +1,52 @@
-"""How fast the simulated crane runs: times real time per core, cold start, and the cost of one step from Python.
+"""How fast the simulated crane runs: times real time per core, the first step, and the closed loop from Python."""
 
-python bench/simulator.py [--json]
-"""
-
-import json
+import subprocess
 import sys
-import time
-from typing import Any
+from statistics import median
 
+from bench.measuring import REPEATS, Row, seconds
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import Simulator
+
+STEPS = 5000
+FIRST_STEP = """
+import time
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.simulation import Simulator, load_scenario
+crane, model, scenario = load_crane("crane_150t"), load_model("a6vm215_crane2"), load_scenario("ahc_irregular")
+begin = time.process_time()
+Simulator(scenario, crane, model).step(0.0)
+print(time.process_time() - begin)
+"""
 
-REPEATS = 5
 
-
-def measure() -> dict[str, Any]:
-    """Figures of one process; times are of this process's processor, not of the wall clock, medians of five."""
+def measure(smoke: bool = False) -> list[Row]:
+    """Processor time, medians; the first step in a process of its own that finds the cache filled."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-    scenario = load_scenario("ahc_irregular")
-    begin = time.process_time()
+    scenario = load_scenario("ahc_irregular").override({"duration": 5.0} if smoke else {})
     Simulator(scenario, crane, model).step(0.0)
-    start = time.process_time() - begin
-    whole = sorted(_whole_run(scenario, crane, model) for _ in range(REPEATS))[REPEATS // 2]
-    step = sorted(_one_step(scenario, crane, model) for _ in range(REPEATS))[REPEATS // 2]
-    return {
-        "simulator: first step, s": start,
-        "simulator: plant and controller, x real time": scenario.duration / whole,
-        "simulator: one step from Python, us": 1e6 * step,
-        "simulator: closed loop from Python, x real time": scenario.control_period / step,
-    }
+    repeats, steps = (1, 50) if smoke else (REPEATS, STEPS)
+
+    def stepping(each: Simulator) -> None:
+        for _ in range(steps):
+            each.step(0.0)
+
+    whole = median(seconds(Simulator(scenario, crane, model).run) for _ in range(repeats))
+    simulators = [Simulator(scenario, crane, model) for _ in range(repeats)]
+    step = median(seconds(lambda each=each: stepping(each)) for each in simulators) / steps
+    real_time, control = "x real time", scenario.control_period
+    return [
+        Row("simulator: first step, cache filled", _first_step(1 if smoke else 3), "s", at_most=0.3),
+        Row("simulator: plant and controller", scenario.duration / whole, real_time, at_least=2000.0),
+        Row("simulator: closed loop from Python", control / step, real_time, at_least=600.0),
+    ]
 
 
-def _whole_run(scenario: Any, crane: Any, model: Any) -> float:
-    simulator = Simulator(scenario, crane, model)
-    begin = time.process_time()
-    simulator.run()
-    return time.process_time() - begin
+def _first_step(repeats: int) -> float:
+    def once() -> float:
+        return float(subprocess.run([sys.executable, "-c", FIRST_STEP], capture_output=True, check=True).stdout)
 
-
-def _one_step(scenario: Any, crane: Any, model: Any, steps: int = 5000) -> float:
-    simulator = Simulator(scenario, crane, model)
-    begin = time.process_time()
-    for _ in range(steps):
-        simulator.step(0.0)
-    return (time.process_time() - begin) / steps
-
-
-if __name__ == "__main__":
-    figures = measure()
-    if "--json" in sys.argv:
-        print(json.dumps(figures))
-    else:
-        for name, value in figures.items():
-            print(f"{name:55s} {value:10.4g}")
+    return median(once() for _ in range(repeats))

@@ -2,6 +2,7 @@
 
 import importlib
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,11 +12,10 @@ from winch_friction.cli.console import progress, show_json, show_table
 from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
 
-_SUPPORT = ("pairs", "seas")  # what the benchmarks share
-
 
 def command(
     names: Annotated[OptionalTexts, typer.Argument(help="Which benchmarks; all without a name.")] = None,
+    smoke: Annotated[bool, typer.Option("--smoke", help="Only show that every benchmark runs.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
 ) -> None:
     """Measure speed as ratios against what one would use instead, side by side in one process.
@@ -26,34 +26,35 @@ def command(
 
       winch-friction bench estimator replay --json
     """
-    figures = {}
+    rows: list[Any] = []
     for name in progress(_chosen(names or []), "measuring"):
-        figures.update(importlib.import_module(name).measure())
-    rows = {name: value if isinstance(value, dict) else {"value": value} for name, value in figures.items()}
+        rows += importlib.import_module(f"bench.{name}").measure(smoke)
     if as_json:
-        show_json(rows)
+        show_json({row.name: asdict(row) | {"goal": row.goal, "met": row.met} for row in rows})
         return
-    columns = ("figure", "value", "unit", "against", "ratio", "wanted")
-    show_table("Bench", columns, [[name, *_cells(row)] for name, row in rows.items()])
+    columns = ("figure", "value", "unit", "against", "ratio", "spread", "goal", "met")
+    show_table("Bench", columns, [_cells(row) for row in rows])
 
 
-def _cells(row: dict[str, Any]) -> list[Any]:
-    ratio = row.get("ratio")
-    shown = f"{ratio:.3g}" if ratio is not None else ""
-    return [f"{row['value']:.4g}", row.get("unit", ""), row.get("against", ""), shown, row.get("bar", "")]
+def _cells(row: Any) -> list[Any]:
+    against = f"{row.against}, {row.other:.3g} {row.unit}" if row.other is not None else row.against
+    ratio = f"{row.ratio:.3g}" if row.ratio is not None else ""
+    spread = f"{row.spread[0]:.3g} ... {row.spread[1]:.3g}" if row.spread else ""
+    met = {True: "yes", False: "no", None: ""}[row.met]
+    return [row.name, f"{row.value:.4g}", row.unit, against, ratio, spread, row.goal, met]
 
 
 def _chosen(names: list[str]) -> list[str]:
     """Modules of bench/, made importable; an unknown name raises `InputError` with those there are."""
-    folder = Path(__file__).resolve().parents[2] / "bench"
-    if not folder.is_dir():
+    root = Path(__file__).resolve().parents[2]
+    if not (root / "bench" / "__init__.py").is_file():
         raise InputError(
-            f"{folder}: not found; the benchmarks are part of the source checkout, not of the installation"
+            f"{root / 'bench'}: not found; the benchmarks are part of the source checkout, not of the installation"
         )
-    known = sorted(each.stem for each in folder.glob("*.py") if each.stem not in _SUPPORT)
+    if str(root) not in sys.path:
+        sys.path.insert(0, str(root))
+    known = list(importlib.import_module("bench").NAMES)
     unknown = [name for name in names if name not in known]
     if unknown:
         raise InputError(f"benchmark '{unknown[0]}' does not exist; there are {', '.join(known)}")
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
     return names or known

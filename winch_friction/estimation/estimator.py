@@ -176,6 +176,11 @@ class FrictionEstimator:
 
     # -- what is known
     @property
+    def size(self) -> int:
+        """Number of states of the filter."""
+        return self._filter.size
+
+    @property
     def drum_torque(self) -> float:
         """Estimated T_d in N m: the hook load's and what the balance adds to it."""
         measured = self._load.shaft_torque(self._last.layer if self._last else NAN)

@@ -1,4 +1,4 @@
-"""The verbs fleet, bench and convert, as a person calls them."""
+"""The verbs fleet and convert, as a person calls them."""
 
 import json
 
@@ -79,15 +79,3 @@ def test_convert_keeps_every_digit(runs, tmp_path, capsys):
     assert main.run(["convert", "run", str(runs / "one.csv"), targets[-1]]) == 2
     assert "exists already" in capsys.readouterr().err
     assert main.run(["convert", "emps", str(runs / "one.csv"), str(tmp_path / "e.csv")]) == 2
-
-
-def test_bench_tells_what_there_is(capsys):
-    assert main.run(["bench", "nothing"]) == 2
-    assert "compensator" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_bench_measures(capsys):
-    assert main.run(["bench", "identification", "--json"]) == 0
-    rows = json.loads(capsys.readouterr().out)
-    assert rows["fit of MJ4: model evaluations"]["ratio"] > 100

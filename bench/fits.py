@@ -1,0 +1,30 @@
+"""What a fit takes: variable projection beside Box's complex method, on the same table."""
+
+from bench.measuring import Row, paired, seconds
+from winch_friction.identification.fit import fit
+from winch_friction.identification.motor_models import initial_model, motor_model_named
+from winch_friction.identification.supplier_file import read_supplier_table
+from winch_friction.records.paths import config_directory
+
+MODEL, TABLE = "MJ4", "a6vm215_generated.csv"
+
+
+def measure(smoke: bool = False) -> list[Row]:
+    """Time and model evaluations of both methods, and the costs that they reach."""
+    table = read_supplier_table(config_directory() / "suppliers" / TABLE)
+    start, data = initial_model(motor_model_named(MODEL), float(table.displacement.max())), table.fit_data()
+    ours = fit(start, data, method="least_squares")
+    if smoke:
+        return [Row("fit of MJ4: time", seconds(lambda: fit(start, data, method="least_squares")), "s")]
+    theirs = fit(start, data, method="complex")
+    time = paired(
+        lambda: fit(start, data, method="least_squares"), lambda: fit(start, data, method="complex"), repeats=3
+    )
+    faster, spread = time.inverse
+    note = f"the complex method's cost is {theirs.cost / ours.cost:.6f} x ours"
+    fewer = theirs.evaluations / ours.evaluations
+    against = "Box's complex method"
+    return [
+        Row("fit of MJ4: time", time.ours, "s", against, time.theirs, faster, spread, at_least=50.0, note=note),
+        Row("fit of MJ4: model evaluations", ours.evaluations, "1", against, theirs.evaluations, fewer, at_least=100.0),
+    ]

@@ -1,0 +1,104 @@
+"""Two things measured side by side in one process: the ratio survives a noisy machine, single times do not."""
+
+import gc
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from statistics import median
+from typing import Any
+
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.hold import InputHold
+from winch_friction.physics.signals import Run, Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import simulate
+
+REPEATS = 7  # the median of seven ratios stands three disturbed pairs
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table.
+
+    `value` in `unit`, `against` whose value `other`: `ratio` is the median over pairs and `spread` its smallest and
+    largest; the goal is met when the ratio (without one: the value) is at most `at_most`, at least `at_least`.
+    """
+
+    name: str
+    value: float
+    unit: str
+    against: str = ""
+    other: float | None = None
+    ratio: float | None = None
+    spread: tuple[float, float] | None = None
+    at_most: float | None = None
+    at_least: float | None = None
+    note: str = ""
+
+    @property
+    def goal(self) -> str:
+        """The goal in words; empty without one."""
+        if self.at_most is not None:
+            return f"<= {self.at_most:g}"
+        return f">= {self.at_least:g}" if self.at_least is not None else ""
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the goal is met; None without one."""
+        found = self.value if self.ratio is None else self.ratio
+        if self.at_most is not None:
+            return found <= self.at_most
+        return found >= self.at_least if self.at_least is not None else None
+
+
+@dataclass(frozen=True)
+class Paired:
+    """Median processor times of both in s, and the ratio ours / theirs: median, smallest, largest."""
+
+    ours: float
+    theirs: float
+    ratio: float
+    spread: tuple[float, float]
+
+    @property
+    def inverse(self) -> tuple[float, tuple[float, float]]:
+        """How many times faster ours is: median and spread."""
+        return 1.0 / self.ratio, (1.0 / self.spread[1], 1.0 / self.spread[0])
+
+
+def seconds(work: Callable[[], Any], clock: Callable[[], float] = time.process_time) -> float:
+    """Processor time of one call, garbage collected before and not during it."""
+    gc.collect()
+    gc.disable()
+    try:
+        begin = clock()
+        work()
+        return clock() - begin
+    finally:
+        gc.enable()
+
+
+def paired(ours: Callable[[], Any], theirs: Callable[[], Any], smoke: bool = False, repeats: int = REPEATS) -> Paired:
+    """Both measured in turn, A B A B ..., after a warm-up; a smoke run takes one pair without a warm-up."""
+    if not smoke:
+        ours(), theirs()
+    times = [(seconds(ours), seconds(theirs)) for _ in range(1 if smoke else repeats)]
+    ratios = [a / max(b, 1e-9) for a, b in times]
+    return Paired(median(a for a, _ in times), median(b for _, b in times), median(ratios), (min(ratios), max(ratios)))
+
+
+@lru_cache(maxsize=4)
+def sea(duration: float = 60.0) -> tuple[Crane, FrictionModel, Run, list[Sample]]:
+    """Crane, model, and a simulated heave compensation at 50 Hz of so many s, as a run and as samples."""
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    run = simulate(load_scenario("ahc_irregular").override({"duration": duration}), crane, model, seed=5).run
+    return crane, model, run, list(InputHold(run.groups).samples(run))
+
+
+def sea_seconds(smoke: bool) -> float:
+    """How long a sea the steps are measured over."""
+    return 2.0 if smoke else 60.0

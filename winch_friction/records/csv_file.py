@@ -26,12 +26,13 @@ def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) 
     place: Place = lambda row: f"line {lines[row + 1]}"
     cells = list(zip(*rows[1:], strict=True)) or [()] * len(headers)
     columns, aside = {}, {}
+    bare = [header.name for header in headers if header.known and not header.unit]
     for header, values in zip(headers, cells, strict=True):
         if header.known:
             columns[header.name] = header.to_si(_numbers(path, header, values, place), str(path))
         else:
             aside[header.text] = _numbers_or_text(values)
-    return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside)
+    return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare)
 
 
 def write_csv_run(run: Run, path: Path) -> Path:

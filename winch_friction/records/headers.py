@@ -11,9 +11,20 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, column_unit
+from winch_friction.records.unit_names import pint_name
 
 # what people write for the units a winch is logged in; quoted in error messages
 _EXAMPLES = {"rad/s": "rpm", "Pa": "bar", "m^3/rad": "cm^3/rev", "kg": "t", "s": "ms", "rad": "deg", "N*m": "kN*m"}
+
+_SI_NAMES = {"1": "dimensionless"}
+_DEFINITIONS = (
+    "radian = [angle] = rad",
+    "revolution = 2 * pi * radian = rev",
+    "rpm = rev / minute",
+    "gravity = 9.80665 * meter / second ** 2",
+    "bar_absolute = 100000 * pascal; offset: -101325",  # to the gauge pressure that a run holds
+    "psi_absolute = 6894.757293168 * pascal; offset: -101325",
+)
 
 
 @dataclass(frozen=True)
@@ -57,13 +68,13 @@ def header_text(column: str) -> str:
 @lru_cache(maxsize=256)
 def conversion_to_si(unit: str, expected: str, where: str) -> tuple[float, float]:
     """Scale and offset that take values in `unit` to `expected`; raises `InputError` for a unit that does not fit."""
-    registry = _registry()
+    registry, name = _registry(), pint_name(unit, expected, where)
     try:
-        at = [registry.Quantity(np.float64(value), unit).to(expected).magnitude for value in (0.0, 1.0)]
+        at = [registry.Quantity(np.float64(value), name).to(_SI_NAMES.get(expected, expected)) for value in (0.0, 1.0)]
     except Exception as error:  # pint raises whatever its tokenizer and parser meet
         example = f", e.g. '{_EXAMPLES[expected]}'" if expected in _EXAMPLES else ""
         raise InputError(f"{where}: unit '{unit}' cannot be read as {expected}{example}") from error
-    return float(at[1] - at[0]), float(at[0])
+    return float(at[1].magnitude - at[0].magnitude), float(at[0].magnitude)
 
 
 @lru_cache(maxsize=1)
@@ -71,8 +82,9 @@ def _registry() -> Any:
     import pint
 
     registry: Any = pint.UnitRegistry(on_redefinition="ignore", autoconvert_offset_to_baseunit=True)
-    for definition in ("radian = [angle] = rad", "revolution = 2 * pi * radian = rev", "rpm = rev / minute"):
+    for definition in _DEFINITIONS:
         registry.define(definition)
+    registry._build_cache()  # pint keeps what it worked out of the old radian: 'rev' would not be a 'rad'
     if "percent" not in registry:  # Ubuntu 24.04's pint does not know it
         registry.define("percent = 0.01")
     return registry

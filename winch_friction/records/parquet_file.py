@@ -23,13 +23,16 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
     headers = unique_headers([parse_header(name, str(path)) for name in table.column_names], path)
     place: Place = lambda row: f"row {row + 1}"
     columns, aside = {}, {}
+    bare = [header.name for header in headers if header.known and not header.unit]
     for header, chunked in zip(headers, table.columns, strict=True):
         if header.known:
             columns[header.name] = header.to_si(_numbers(path, header, chunked), str(path))
         else:
             aside[header.text] = chunked.to_numpy()
     metadata = json.loads((table.schema.metadata or {}).get(_METADATA, b"{}"))
-    return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata)
+    return checked_run(
+        path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare
+    )
 
 
 def write_parquet_run(run: Run, path: Path) -> Path:

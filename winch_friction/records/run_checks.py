@@ -14,6 +14,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bare_units import remarks_on_bare_columns
 
 GAP = 5.0  # times the median step counts as a gap
 SHORT = 1.0  # s
@@ -33,9 +34,13 @@ def checked_run(
     aside: Mapping[str, Any] | None = None,
     warnings: Sequence[str] = (),
     metadata: Mapping[str, Any] | None = None,
+    bare: Sequence[str] = (),
 ) -> Run:
-    """A run of columns in SI after all checks; `complete=False` asks for `time` alone. Raises `InputError`."""
-    said, aside = list(warnings), dict(aside or {})
+    """A run of columns in SI after all checks; `complete=False` asks for `time` alone. Raises `InputError`.
+
+    `bare` names the columns whose header had no unit.
+    """
+    said, aside = [*warnings, *remarks_on_bare_columns(name, columns, bare)], dict(aside or {})
     if aside:
         said.append(f"{name}: unknown columns kept aside: {', '.join(aside)}")
     _check_time(name, columns, place)

@@ -94,11 +94,7 @@ def _header(text: str, path: Path) -> tuple[str, str]:
 
 def _factor(unit: str, si_unit: str, where: str) -> float:
     """Factor from a header's unit to SI; no bracket means SI already."""
-    return 1.0 if unit in ("", si_unit) else conversion_to_si(_spelled(unit), _spelled(si_unit), where)[0]
-
-
-def _spelled(unit: str) -> str:
-    return {"%": "percent", "-": "dimensionless", "1": "dimensionless"}.get(unit, unit)
+    return 1.0 if unit in ("", si_unit) else conversion_to_si(unit, si_unit, where)[0]
 
 
 def write_table(path: Path, columns: Mapping[str, Iterable[Any]], comments: Iterable[str] = ()) -> Path:

@@ -37,9 +37,8 @@ def test_a_unit_as_people_write_it(unit, si_unit, scale, offset):
 
 @pytest.mark.parametrize("si_unit", SPELLINGS)
 def test_no_spelling_stands_for_two_units(si_unit):
-    spelled = [
-        plain_spelling(s) for name, all_of in SPELLINGS[si_unit].items() for s in {plain_spelling(name), *all_of}
-    ]
+    names = SPELLINGS[si_unit].items()
+    spelled = [each for name, others in names for each in {plain_spelling(each) for each in (name, *others)}]
     assert sorted(set(spelled)) == sorted(spelled)
     assert not set(spelled) & set(AMBIGUOUS.get(si_unit, ()))
 

@@ -35,6 +35,7 @@ EXTRAS = {
         "typer>=0.9",
         "rich>=13",
     ],
+    "xarray": ["xarray>=2023.6"],
     "fleet": ["dask[distributed]>=2024.1"],
     "test": [
         "pytest>=7.4",
@@ -48,13 +49,13 @@ EXTRAS = {
         "colcon-common-extensions>=0.3",
     ],
 }
-EXTRAS["all"] = [requirement for extra in ("desk", "ros", "fleet", "test") for requirement in EXTRAS[extra]]
+EXTRAS["all"] = [requirement for extra in ("desk", "xarray", "ros", "fleet", "test") for requirement in EXTRAS[extra]]
 
 setup(
     name=PACKAGE,
     version="0.1.0",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.j2", "**/*.css"]},
+    package_data={PACKAGE: ["py.typed", "*.pyi", "**/*.html", "**/*.j2", "**/*.css"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (SHARE, ["package.xml"]),

@@ -117,6 +117,34 @@ class Run:
         """A column, or `default` throughout when it is absent."""
         return self.columns[name] if name in self.columns else np.full(len(self), default)
 
+    @property
+    def units(self) -> dict[str, str]:
+        """SI unit of every column; '1' for a plain number."""
+        return {name: column_unit(name) or "1" for name in self.columns}
+
+    def to_frame(self) -> Any:
+        """The run as a pandas DataFrame over `time`, SI; `frame.attrs["units"]` names the units."""
+        from winch_friction.physics.frames import run_frame
+
+        return run_frame(self, self.units)
+
+    def to_xarray(self) -> Any:
+        """The run as an xarray Dataset over `time`, SI, the unit in each variable's attributes."""
+        from winch_friction.physics.frames import run_dataset
+
+        return run_dataset(self, self.units)
+
+    def __repr__(self) -> str:
+        span = f"{self.time[0]:.6g} ... {self.time[-1]:.6g} s" if len(self) else "empty"
+        return f"Run '{self.name}': {len(self)} samples, {span}, columns {', '.join(self.columns)}"
+
+    def _repr_html_(self) -> str:
+        from winch_friction.physics.frames import html_table
+
+        rows = [(n, self.units[n], float(np.nanmin(v)), float(np.nanmax(v)), int(np.isnan(v).sum()))
+                for n, v in self.columns.items() if np.isfinite(v).any()]  # fmt: skip
+        return html_table(repr(self).partition(", columns")[0], ("column", "unit", "least", "largest", "missing"), rows)
+
     def samples(self) -> Iterator[Sample]:
         """The run as samples, in order: what a node would have been given."""
         scalars = [name for name in SAMPLE_SCALARS if name in self.columns]

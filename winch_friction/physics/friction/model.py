@@ -79,6 +79,24 @@ class FrictionModel:
         """Standard deviations, zero without covariance."""
         return np.zeros(len(self.values)) if self.covariance is None else np.sqrt(np.diag(self.covariance))
 
+    # -- for people
+    def to_frame(self) -> Any:
+        """The parameters as a pandas DataFrame: value, std, unit, bounds, term, meaning."""
+        from winch_friction.physics.frames import model_frame
+
+        return model_frame(self)
+
+    def __repr__(self) -> str:
+        known = "with covariance" if self.covariance is not None else "without covariance"
+        return f"FrictionModel '{self.name}': {' + '.join(self.term_names)}; {len(self.values)} parameters, {known}"
+
+    def _repr_html_(self) -> str:
+        from winch_friction.physics.frames import html_table
+
+        rows = [(p.name, v, s if self.covariance is not None else "-", p.unit, p.doc)
+                for p, v, s in zip(self.parameters, self.values, self.std.tolist(), strict=True)]  # fmt: skip
+        return html_table(repr(self).partition(";")[0], ("parameter", "value", "std", "unit", "meaning"), rows)
+
     # -- variants
     def with_values(self, values: Mapping[str, float] | Sequence[float]) -> "FrictionModel":
         """The same model with other values: all of them, or some by name."""

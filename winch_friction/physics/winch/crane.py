@@ -48,6 +48,20 @@ class Crane:
     wire_stiffness: float = float("inf")
     absolute_torque_limit: float = float("inf")
 
+    def _repr_html_(self) -> str:
+        from winch_friction.physics.frames import html_table
+
+        layers = ", ".join(f"{radius:.4g}" for radius in self.drum.layer_radii)
+        rows = [
+            ("drive", "electric" if self.electric else "hydraulic", ""),
+            ("motors by group", ", ".join(f"{name} {count}" for name, count in self.groups.items()) or "1", ""),
+            ("gear ratio", self.gear_ratio, "-"), ("rope radius by layer", layers, "m"),
+            ("inertia at the motor shaft", self.inertia, "kg*m^2"),
+            ("largest displacement", self.max_displacement, "m^3/rad"),
+            ("torque limit", self.absolute_torque_limit, "N*m"),
+        ]  # fmt: skip
+        return html_table(f"Crane '{self.name}'", ("", "value", "unit"), rows)
+
     def motor_total(self, groups: Sequence[str]) -> int:
         """Number of motors on the shaft when these groups drive it."""
         return sum(self.motor_count(group) for group in groups) if groups else sum(self.groups.values()) or 1

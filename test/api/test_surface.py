@@ -1,0 +1,94 @@
+"""The public surface: frozen, small, lazy, documented with examples that run."""
+
+import doctest
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import winch_friction as wf
+
+PUBLIC = {
+    "Crane", "FeedforwardCompensator", "FrictionEstimator", "FrictionModel", "GroupSample", "InputError", "Run",
+    "Sample", "contributions", "fit", "friction_curve", "from_frame", "gap", "jacobian", "load_crane", "load_model",
+    "read_run", "replay", "save_model", "simulate", "terms", "torque", "write_run",
+}  # fmt: skip
+NO_LOAD = {"time": [0, 1], "motor_speed": [1, 1], "motor_torque": [0, 0]}
+EXAMPLES = ("api.files", "api.runs", "api.evaluate", "api.work", "terms")
+
+
+def test_the_surface_is_what_was_promised():
+    """A name more or less is a decision: change it here, in the stub, in the docs and in the changelog."""
+    assert set(wf.__all__) == PUBLIC
+    assert len(PUBLIC) <= 25
+    stub = Path(wf.__file__).with_suffix(".pyi").read_text()
+    assert set(re.findall(r" as (\w+)$", stub, re.MULTILINE)) == PUBLIC
+
+
+@pytest.mark.parametrize("name", sorted(PUBLIC))
+def test_every_public_name_is_there_and_documented(name):
+    assert (getattr(wf, name).__doc__ or "").strip()
+    assert name in dir(wf)
+
+
+def test_a_private_name_is_refused_with_the_public_ones():
+    with pytest.raises(AttributeError, match="no public name 'records_'"):
+        wf.records_  # noqa: B018
+
+
+def test_importing_the_package_costs_nothing():
+    code = "import sys, winch_friction; print(sorted({'numpy', 'sympy', 'scipy', 'pandas'} & set(sys.modules)))"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("module", EXAMPLES)
+def test_the_examples_in_the_docstrings_run(module):
+    found = doctest.testmod(importlib.import_module(f"winch_friction.{module}"))
+    assert found.attempted
+    assert not found.failed
+
+
+def test_runs_survive_pandas_and_xarray():
+    run = wf.from_frame({"time": [0.0, 0.5], "motor_speed [rpm]": [60.0, 120.0], "motor_torque": [1.0, 2.0]}, "a")
+    for table in (run.to_frame(), run.to_xarray()):
+        back = wf.from_frame(table, "a")
+        assert set(back.columns) == set(run.columns)
+        assert np.array_equal(back["motor_speed"], run["motor_speed"])
+    assert run.to_xarray()["motor_speed"].attrs["units"] == "rad/s"
+
+
+def test_what_is_shown_in_a_notebook_says_something():
+    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    assert "gear ratio" in crane._repr_html_()
+    assert "stribeck" in repr(model)
+    assert "Coulomb" in model._repr_html_()
+
+
+def test_a_friction_curve_adds_up_and_balances_the_load():
+    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    curve = wf.friction_curve(model, crane, load=55e3)
+    parts = curve[list(model.term_names)].sum(axis=1)
+    assert np.allclose(parts, curve["torque"])
+    carried = curve["pressure"] * crane.max_displacement * crane.groups["main"]
+    assert np.allclose(carried, crane.drum_torque(55e3) / crane.gear_ratio + curve["torque"], rtol=1e-4)
+    assert (curve["std"] > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda m, c: wf.friction_curve(m, c, load=-1.0), "hanging mass"),
+        (lambda m, c: wf.friction_curve(m, c, displacement=1.0), "outside"),
+        (lambda m, c: wf.torque(m, wf.from_frame(NO_LOAD), c), "load="),
+        (lambda m, c: wf.from_frame([1, 2]), "no table"),
+        (lambda m, c: wf.fit([]), "crane"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_said_in_one_line(call, said):
+    with pytest.raises(wf.InputError, match=said):
+        call(wf.load_model("a6vm215_crane2"), wf.load_crane("crane_150t"))

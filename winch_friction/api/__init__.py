@@ -1,0 +1,1 @@
+"""What `import winch_friction as wf` gives: a few functions over the layers below, SI, each with a tested example."""

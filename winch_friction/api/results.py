@@ -1,0 +1,136 @@
+"""What the jobs return: the result behind a few properties, with a summary in words and a table in a notebook."""
+
+from pathlib import Path
+from typing import Any
+
+from winch_friction.physics.frames import html_table, library
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.signals import Run
+
+
+class Fit:
+    """A fitted model: `model` with covariance, `rms` in N m per motor, `details` of the method."""
+
+    def __init__(self, model: FrictionModel, rms: float, details: Any) -> None:
+        self.model, self.rms, self.details = model, rms, details
+
+    def summary(self) -> str:
+        """What was fitted and how well, in one line."""
+        terms, count = " + ".join(self.model.term_names), len(self.model.values)
+        return f"{terms}: {count} parameters, RMS {self.rms:.3g} N m per motor"
+
+    def __repr__(self) -> str:
+        return f"Fit: {self.summary()}"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{self.summary()}</p>{self.model._repr_html_()}"
+
+
+class Replay:
+    """A recording through compensator and estimator: outputs as runs, the learned model, its parameters."""
+
+    def __init__(self, result: Any, seed: FrictionModel) -> None:
+        self.result, self.seed = result, seed
+
+    @property
+    def model(self) -> FrictionModel:
+        """The learned model."""
+        return self.result.model
+
+    @property
+    def compensator(self) -> Run:
+        """What was fed forward: `friction_torque` N m, `speed` rad/s and more, over the recording's time."""
+        return self.result.compensator
+
+    @property
+    def estimator(self) -> Run:
+        """What the estimator gave: `friction_torque` N m, each parameter and its `_std`."""
+        return self.result.estimator
+
+    @property
+    def parameters(self) -> Any:
+        """One row per parameter: unit, seed, learned, sigma, status."""
+        rows = self._content()["parameters"]
+        return library("pandas", "desk").DataFrame(rows).set_index("parameter")
+
+    def _content(self) -> dict[str, Any]:
+        from winch_friction.replay.summary import summary
+
+        return summary(self.result)
+
+    def summary(self) -> str:
+        """Length, share of time in action, level of the torque and what was learned, in words."""
+        content = self._content()
+        learned = [p for p in content["parameters"] if p["status"] == "estimated"]
+        names = ", ".join(f"{p['parameter']} {p['seed']:.3g} -> {p['learned']:.3g} {p['unit']}" for p in learned)
+        return (
+            f"{content['duration_s']:.0f} s, feedforward active {content['active_share']:.0%} of the time, "
+            f"{content['feedforward_rms_Nm']:.3g} N m RMS, {content['feedforward_peak_Nm']:.3g} at most; "
+            f"learned: {names or 'nothing beyond the seed'}"
+        )
+
+    def __repr__(self) -> str:
+        return f"Replay: {self.summary()}"
+
+    def _repr_html_(self) -> str:
+        frame = self.parameters
+        return html_table(repr(self), ["parameter", *frame.columns], frame.reset_index().values.tolist())
+
+
+class Gap:
+    """What the discrepancy workflow found: the verdict, the effects, the repaired model and the proof."""
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+
+    @property
+    def verdict(self) -> str:
+        """missing_effect, nothing_missing, ambiguous, unexplained or insufficient."""
+        return self.result.verdict
+
+    @property
+    def model(self) -> FrictionModel:
+        """The repaired model; equal to the given one where nothing was added."""
+        return self.result.model
+
+    @property
+    def effects(self) -> Any:
+        """One row per missing effect: what it cannot be told from, its parameters with std and unit, the evidence."""
+        rows = [
+            {"effect": e["name"], "indistinguishable_from": ", ".join(e["indistinguishable_from"]),
+             "parameters": ", ".join(f"{k} = {p['value']:.4g} ± {p['std']:.2g} {p['unit']}"
+                                     for k, p in e["parameters"].items()),
+             **e["evidence"]}
+            for e in self.content()["effects"]
+        ]  # fmt: skip
+        columns = ["effect", "indistinguishable_from", "parameters", "p_value", "cv_gain", "selection_frequency"]
+        frame = library("pandas", "desk").DataFrame(rows, columns=None if rows else columns)
+        return frame.set_index("effect")
+
+    def content(self) -> dict[str, Any]:
+        """The content of gap.json (docs/interfaces.md)."""
+        return self.result.content()
+
+    def summary(self) -> str:
+        """The verdict in a sentence, and the gap on the locked runs before and after."""
+        from winch_friction.report.gap import verdict_sentence
+
+        gap = self.content()["gap"]
+        locked, unit = gap["holdout"], gap["unit"]
+        return (
+            f"{verdict_sentence(self.result)} Gap on locked runs: {locked['before']:.3g} {unit} before, "
+            f"{locked['after']:.3g} after; noise {locked['noise_floor']:.3g} {unit}."
+        )
+
+    def to_html(self, path: str | Path) -> Path:
+        """Write the report page, which works offline; returns its path."""
+        from winch_friction.report.gap import write_gap_report
+
+        return write_gap_report(Path(path), self.result)
+
+    def __repr__(self) -> str:
+        return f"Gap: {self.summary()}"
+
+    def _repr_html_(self) -> str:
+        frame = self.effects
+        return html_table(self.summary(), ["effect", *frame.columns], frame.reset_index().values.tolist())

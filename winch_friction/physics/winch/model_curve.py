@@ -1,0 +1,86 @@
+"""A model as a friction curve: the torque over speed at one load and displacement, the winch in balance."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import RPM
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.operating_point import operating_point
+
+TOP_SPEED = 2000.0 * RPM  # rad/s; supplier tables and the paper's tests end near it
+LOWEST_SPEED = 5.0 * RPM  # rad/s; at rest friction is whatever holds the load
+_BALANCE_STEPS = 4  # the pressure that carries the friction moves the friction by under 2 %: each step gains two digits
+
+
+@dataclass(frozen=True)
+class ModelCurve:
+    """Friction over speed while turning steadily: all arrays (n,), speed rad/s (negative: lowering), torque N m at the
+    motor shaft (all motors), `std` N m (NaN without covariance), `parts` torque by term, `pressure` drop in Pa (zero on
+    an electric drive).
+    """
+
+    model: str
+    load: float
+    displacement: float
+    speed: FloatArray
+    torque: FloatArray
+    std: FloatArray
+    parts: dict[str, FloatArray]
+    pressure: FloatArray
+
+
+def model_curve(
+    model: FrictionModel,
+    crane: Crane,
+    *,
+    load: float = 0.0,
+    displacement: float | None = None,
+    speed: Sequence[float] | FloatArray | None = None,
+) -> ModelCurve:
+    """The friction of `model` on `crane` at a hanging mass `load` kg and a motor setting `displacement` m^3/rad.
+
+    `speed` in rad/s, default 5 ... 2000 rpm hoisting; the group that drives is `main`, or the crane's first. Raises
+    `InputError` for a load, setting or speed that cannot be.
+    """
+    setting = crane.max_displacement if displacement is None else float(displacement)
+    if load < 0.0 or not np.isfinite(load):
+        raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")
+    if not crane.electric and not 0.0 < setting <= 1.001 * crane.max_displacement:
+        raise InputError(f"displacement {setting:g} m^3/rad is outside 0 ... {crane.max_displacement:g} of the motor")
+    omega = np.asarray(np.linspace(LOWEST_SPEED, TOP_SPEED, 200) if speed is None else speed, float)
+    if omega.ndim != 1 or not omega.size or not np.isfinite(omega).all():
+        raise InputError("speed: give one finite speed or more, rad/s")
+    group = "main" if "main" in crane.groups else next(iter(crane.groups), "")
+    count = 1 if crane.electric else crane.motor_count(group)
+    drum, sign = np.full_like(omega, crane.drum_torque(load)), np.sign(omega)
+
+    def points(drop: FloatArray) -> tuple[FloatArray, ...]:
+        groups = (
+            [] if crane.electric else [(np.full_like(omega, count), abs(drop), abs(drop), np.full_like(omega, setting))]
+        )
+        total = np.full_like(omega, crane.motor_total((group,) if group else ()))
+        return operating_point(direction=sign, speed=omega, drum_torque=drum, groups=groups, motor_total=total)
+
+    drop = np.zeros_like(omega)
+    if not crane.electric:
+        for _ in range(_BALANCE_STEPS):
+            drop = (drum / crane.gear_ratio + _torque(model, points(drop))) / (count * setting)
+    at = points(drop)
+    parts = {name: np.array(part, float) for name, part in model.contributions(at).items()}
+    return ModelCurve(model.name, load, setting, omega, _torque(model, at), _std(model, at), parts, drop)
+
+
+def _torque(model: FrictionModel, at: tuple[FloatArray, ...]) -> FloatArray:
+    return np.array(np.broadcast_to(model.torque(at), at[0].shape), float)
+
+
+def _std(model: FrictionModel, at: tuple[FloatArray, ...]) -> FloatArray:
+    if model.covariance is None:
+        return np.full(at[0].shape, np.nan)
+    jacobian = model.jacobian(at)
+    return np.sqrt(np.einsum("ni,ij,nj->n", jacobian, model.covariance, jacobian))

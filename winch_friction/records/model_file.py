@@ -14,6 +14,7 @@ from winch_friction.physics.friction.symbols import CONSTANTS
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import factor_to_si
 from winch_friction.records.atomic import write_text
+from winch_friction.records.corrections import corrections_content, read_corrections
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml
 
@@ -58,6 +59,8 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
         bounds={entry.name: entry.bounds for entry in entries if entry.bounds},
         constants=_constants(top),
         provenance=dict(top.get("provenance") or {}),
+        corrections=read_corrections(top),
+        crane=top.text("crane", ""),
     )
     top.get("description")
     top.close()
@@ -124,13 +127,18 @@ def _constants(top: Section) -> dict[str, float]:
 
 
 def _content(model: FrictionModel) -> dict[str, Any]:
-    content: dict[str, Any] = {"schema": SCHEMA, "name": model.name, "terms": list(model.term_names)}
+    content: dict[str, Any] = {"schema": SCHEMA, "name": model.name}
+    if model.crane:
+        content["crane"] = model.crane
+    content["terms"] = list(model.term_names)
     if model.constants:
         units = {each.name: each.unit for each in CONSTANTS}
         content["constants"] = {k: {"value": float(v), "unit": units[k]} for k, v in model.constants.items()}
     content["parameters"] = {p.name: _entry_content(model, k, p) for k, p in enumerate(model.parameters)}
     if model.covariance is not None and np.any(model.covariance - np.diag(np.diag(model.covariance))):
         content["correlation"] = _correlation(model.covariance)
+    if model.corrections:
+        content["corrections"] = corrections_content(model.corrections)
     if model.provenance:
         content["provenance"] = _plain(model.provenance)
     return content

@@ -8,6 +8,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.compiled import CompiledTerms, broadcast_columns, compiled, unique_parameters
+from winch_friction.physics.friction.correction import Correction, check_corrections
 from winch_friction.physics.friction.state import advance_all
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, TIME_INDEX, WINCH_SIGNALS
 from winch_friction.physics.friction.term import Parameter, Term
@@ -20,7 +21,8 @@ class FrictionModel:
 
     `values` has one entry per parameter in the order of `parameters`, SI; `covariance` is (n, n) or None; `bounds`
     overrides the declared bounds by name; `constants` holds maximum displacement (m^3/rad), density, viscosity, gear
-    ratio.
+    ratio. `corrections` say what is wrong with the signals, geometry, load and inertia of the machine that it was
+    identified on (`physics.corrections` takes it out); `crane` names that crane, empty where it is not known.
     Raises `InputError` for missing, unknown or non-finite values and for a covariance that is not one.
     """
 
@@ -31,8 +33,11 @@ class FrictionModel:
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    corrections: tuple[Correction, ...] = ()
+    crane: str = ""
 
     def __post_init__(self) -> None:
+        check_corrections(self.corrections)
         names = self.parameter_names
         if len(self.values) != len(names):
             raise InputError(f"model '{self.name}': {len(self.values)} values for {len(names)} parameters {names}")

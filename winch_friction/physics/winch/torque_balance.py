@@ -6,11 +6,18 @@ with T_friction = sgn(omega) (sum_g n_g T_fm,g + N T_fs) + torques of fixed dire
 N times the measured torque.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from winch_friction.physics.signals import Run, Sample
 from winch_friction.physics.winch.crane import Crane
+
+DRIVING = ("active", "main")  # the groups that carry what the others leave, where they run
+
+
+def driving_group(groups: Sequence[str]) -> str:
+    """The motor group that closes the torque balance, of the names of those that run."""
+    return next((name for name in DRIVING if name in groups), groups[0])
 
 
 def sample_drive_torque(sample: Sample, crane: Crane) -> float:

@@ -1,12 +1,11 @@
 """Effects that the model of gears, drum, wire and oil can lack (docs/discrepancy.md)."""
 
-import math
-
 import sympy as sp
 
 from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, oil_temperature, s, shaft_angle, time, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.viscosity import LEVEL, SLOPE
 
 e_g = Parameter("e_g", "1", 0.006, lower=-0.1, upper=0.1, doc="difference of gear loss by direction, share of T_d/i")
 b_g = Parameter(
@@ -23,15 +22,10 @@ a_r = Parameter("a_r", "1", 0.01, lower=-0.2, upper=0.2, doc="sine amplitude of 
 b_r = Parameter("b_r", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude of the torque ripple, share of T_d/i")
 k_r = Parameter("k_r", "1", 1.0, lower=1e-3, upper=100.0, shape=True, doc="periods per revolution of the motor shaft")
 
-# Walther's line through 134 cSt at 20 degC and 21 cSt at 60 degC (docs/discrepancy.md); relative to 40 degC
-_LOG_20, _LOG_60 = (math.log10(math.log10(nu + 0.7)) for nu in (134.0, 21.0))
-_SLOPE = (_LOG_20 - _LOG_60) / (math.log10(333.15) - math.log10(293.15))
-_LEVEL = _LOG_20 + _SLOPE * math.log10(293.15)
-
 
 def walther(celsius: sp.Expr | float) -> sp.Expr:
     """Kinematic viscosity in cSt at a temperature in degC: log10 log10(nu + 0.7) = A - B log10 T (ASTM D341)."""
-    return sp.Pow(10, sp.Pow(10, _LEVEL - _SLOPE * sp.log(celsius + 273.15) / sp.log(10))) - 0.7
+    return sp.Pow(10, sp.Pow(10, LEVEL - SLOPE * sp.log(celsius + 273.15) / sp.log(10))) - 0.7
 
 
 _NU_40 = float(walther(40.0))

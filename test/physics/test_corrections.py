@@ -1,0 +1,252 @@
+"""Corrections: every one declared is visited, and what it says is wrong is taken out of runs, samples and cranes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.corrections import (
+    DECLARED,
+    Action,
+    Correction,
+    SampleCorrector,
+    corrected,
+    corrected_crane,
+)
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.gas import relaxed_compression
+from winch_friction.physics.signals import Run
+from winch_friction.physics.units import BAR, CM3_PER_REV
+from winch_friction.physics.viscosity import relative_viscosity
+from winch_friction.physics.winch import Drum
+
+GROUPS = ("active", "passive")
+
+
+@pytest.fixture
+def truth():
+    """A minute of heave at 50 Hz with every channel, nothing wrong with it."""
+    time = np.arange(0.0, 60.0, 0.02)
+    wave = np.sin(2.0 * np.pi * time / 10.0)
+    columns = {
+        "time": time + 1.7e9,
+        "motor_speed": 180.0 * wave,
+        "speed_reference": 181.0 * wave,
+        "shaft_angle": -280.0 * np.cos(2.0 * np.pi * time / 10.0),
+        "hook_load": np.full(len(time), 55e3),
+        "oil_temperature": 30.0 + 0.2 * time,
+        "wire_layer": np.full(len(time), 6.0),
+        "wire_out": 100.0 - 3.0 * wave,
+        "motor_torque": 50.0 * wave,
+    }
+    for k, group in enumerate(GROUPS):
+        columns[f"{group}.pressure_a"] = (220.0 + 40.0 * wave + 20.0 * k) * BAR
+        columns[f"{group}.pressure_b"] = (25.0 + 2.0 * wave) * BAR
+        columns[f"{group}.displacement"] = np.full(len(time), 150.0 * CM3_PER_REV)
+    return Run("truth", columns)
+
+
+def ties(name):
+    """What a correction of that name has to be given beside its value."""
+    own = DECLARED[name]
+    more = {"groups": ("active",)} if own.by_group else {}
+    return more | ({"time_constant": 60.0} if own.has_time_constant else {})
+
+
+def typical(name, sign=1.0):
+    lower = DECLARED[name].parameter.lower
+    return Correction(name, (sign if lower < 0.0 else 1.0) * DECLARED[name].parameter.typical, **ties(name))
+
+
+def spoiled(run, correction):
+    """The run as a machine with this error logs it: written here on its own, from the words of the declarations."""
+    e, action, columns = correction.value, correction.declared.action, dict(run.columns)
+    time = run.time - run.time[0]
+    for channel in correction.declared.channels:
+        names = [name for name in (channel, f"active.{channel}") if name in columns]
+        if action is Action.DELAY:
+            names = [name for name in columns if name.rpartition(".")[2] == channel]
+        for name in names:
+            true = columns[name]
+            if action is Action.OFFSET:
+                columns[name] = true + e
+            elif action is Action.SCALE:
+                columns[name] = true * (1.0 + e)
+            elif action is Action.DELAY:
+                columns[name] = np.interp(time - e, time, true)
+            elif action is Action.MASS:
+                columns[name] = true - e * (columns["wire_out"] if correction.declared.reads else 1.0)
+            elif action is Action.WARMTH:
+                columns[name] = true / (1.0 + e * np.exp(-time / correction.time_constant))
+            elif action is Action.HEAT:
+                calculated = true.copy()
+                for _ in range(40):  # the calculated pressure stands on both sides
+                    calculated = true / (1.0 - e * relaxed_compression(time, calculated, correction.time_constant))
+                columns[name] = calculated
+            elif action is Action.SLIP:
+                drop = columns["active.pressure_a"] - columns["active.pressure_b"]
+                thin = 1.0 / relative_viscosity(columns["oil_temperature"])
+                columns[name] = true + e * drop / columns["active.displacement"] * thin
+    return replace(run, columns=columns)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("name", DECLARED)
+def test_every_correction_gives_the_truth_back(name, sign, truth, crane_150t, crane2_model):
+    correction = typical(name, sign)
+    logged = spoiled(truth, correction)
+    changed = [c for c in truth.columns if not np.array_equal(logged[c], truth[c])]
+    model = replace(crane2_model, corrections=(correction,))
+    run, crane = corrected(logged, crane_150t, model)
+    if correction.declared.kind in ("geometry", "inertia"):
+        assert crane != crane_150t
+        assert not changed
+    else:
+        assert changed, "the error must show in the log, or this test proves nothing"
+        assert crane is crane_150t
+    keep = np.isin(truth.time, run.time)
+    # a delay does not know what came before the log began, and loses what it shifts at one end
+    inner = slice(60, -60) if correction.declared.action is Action.DELAY else slice(None)
+    for column in truth.columns:
+        np.testing.assert_allclose(run[column][inner], truth[column][keep][inner], rtol=1e-3, atol=1e-2)
+    assert run.metadata["corrections"] == (name,)
+
+
+def test_a_delay_of_whole_samples_is_exact(truth, crane_150t, crane2_model):
+    correction = Correction("signal_delay", 0.1)
+    model = replace(crane2_model, corrections=(correction,))
+    run, _ = corrected(spoiled(truth, correction), crane_150t, model)
+    assert len(run) == len(truth) - 5
+    np.testing.assert_allclose(run["motor_speed"], truth["motor_speed"][:-5], atol=1e-4)
+    np.testing.assert_array_equal(run["active.pressure_a"], truth["active.pressure_a"][:-5])
+
+
+def test_offset_and_gain_of_one_transducer_come_out_together(truth, crane_150t, crane2_model):
+    gain, offset = Correction("pressure_scale", 0.05), Correction("pressure_offset", 2 * BAR)
+    logged = spoiled(spoiled(spoiled(truth, replace(gain, groups=("active",))), offset), Correction("tare_load", 1e3))
+    offset, gain = replace(offset, groups=("active",)), replace(gain, groups=("active",))
+    for order in ((offset, gain), (gain, offset)):
+        model = replace(crane2_model, corrections=(*order, Correction("tare_load", 1e3)))
+        run, _ = corrected(logged, crane_150t, model)
+        np.testing.assert_allclose(run["active.pressure_a"], truth["active.pressure_a"], rtol=1e-12)
+        np.testing.assert_allclose(run["hook_load"], truth["hook_load"], rtol=1e-12)
+
+
+def test_only_the_named_groups_are_touched(truth, crane_150t, crane2_model):
+    model = replace(crane2_model, corrections=(Correction("pressure_offset", BAR, groups=("passive",)),))
+    run, _ = corrected(truth, crane_150t, model)
+    np.testing.assert_array_equal(run["active.pressure_a"], truth["active.pressure_a"])
+    np.testing.assert_allclose(run["passive.pressure_a"], truth["passive.pressure_a"] - BAR)
+
+
+def test_layers_and_inertia_go_into_the_crane(crane_150t):
+    old = crane_150t.drum.layer_radii
+    found = corrected_crane(
+        crane_150t, (Correction("layer_radius", 0.01), Correction("layer_radius", -0.05, layers=(3,)))
+    )
+    assert found.drum.layer_radii == pytest.approx([r + 0.01 - (0.05 if k == 2 else 0.0) for k, r in enumerate(old)])
+    assert corrected_crane(crane_150t, (Correction("inertia", 0.2),)).inertia == pytest.approx(1.74)
+
+
+@pytest.mark.parametrize("name", [n for n, d in DECLARED.items() if d.live])
+def test_a_sample_is_corrected_like_its_run(name, truth, crane_150t, crane2_model):
+    model = replace(crane2_model, corrections=(typical(name),))
+    logged = spoiled(truth, typical(name))
+    run, crane = corrected(logged, crane_150t, model)
+    corrector = SampleCorrector(crane_150t, model)
+    assert corrector.crane == crane
+    for given, right in zip(list(logged.samples())[::200], list(run.samples())[::200], strict=True):
+        before = repr(given)
+        assert corrector(given) == right
+        assert repr(given) == before
+        assert corrector.uncorrected == ()
+
+
+@pytest.mark.parametrize("name", [n for n, d in DECLARED.items() if not d.live])
+def test_a_running_node_refuses_by_name_what_it_cannot_take_out(name, truth, crane_150t, crane2_model):
+    model = replace(crane2_model, corrections=(typical(name), Correction("pressure_offset", BAR)))
+    with pytest.raises(InputError, match=name):
+        SampleCorrector(crane_150t, model)
+    corrector = SampleCorrector(crane_150t, model, refuse=False)
+    assert corrector.uncorrected == (name,)
+    sample = next(iter(truth.samples()))
+    assert corrector(sample).groups["active"].pressure_a == sample.groups["active"].pressure_a - BAR
+
+
+def test_a_sample_without_the_wire_keeps_its_load_and_says_so(truth, crane_150t, crane2_model):
+    corrector = SampleCorrector(crane_150t, replace(crane2_model, corrections=(typical("wire_weight"),)))
+    sample = replace(next(iter(truth.samples())), wire_out=float("nan"))
+    assert corrector(sample).hook_load == sample.hook_load
+    assert corrector.uncorrected == ("wire_weight",)
+    assert corrector(next(iter(truth.samples()))).hook_load == pytest.approx(55e3 + 12.0 * 100.0)
+    assert corrector.uncorrected == ()
+
+
+def test_without_corrections_nothing_is_touched(truth, crane_150t, crane2_model):
+    assert corrected(truth, crane_150t, crane2_model) == (truth, crane_150t)
+    sample = next(iter(truth.samples()))
+    assert SampleCorrector(crane_150t, crane2_model)(sample) is sample
+
+
+@pytest.mark.parametrize("name", [n for n, d in DECLARED.items() if d.channels and d.action is not Action.DELAY])
+def test_a_missing_channel_is_one_line_by_name(name, truth, crane_150t, crane2_model):
+    own = DECLARED[name]
+    for channel in (*own.channels, *own.reads):
+        column = channel if channel in truth else f"active.{channel}"
+        run = replace(truth, columns={k: v for k, v in truth.columns.items() if k != column})
+        with pytest.raises(InputError) as error:
+            corrected(run, crane_150t, replace(crane2_model, corrections=(typical(name),)))
+        assert column in str(error.value)
+        assert name in str(error.value)
+        assert "\n" not in str(error.value)
+
+
+def test_a_group_that_does_not_run_needs_no_correction(truth, crane_150t, crane2_model):
+    alone = replace(truth, columns={k: v for k, v in truth.columns.items() if not k.startswith("passive.")})
+    model = replace(crane2_model, corrections=(Correction("pressure_offset", BAR, groups=("passive",)),))
+    run, _ = corrected(alone, crane_150t, model)
+    np.testing.assert_array_equal(run["active.pressure_a"], alone["active.pressure_a"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"name": "rope_weight", "value": 1.0}, "not known; known corrections are pressure_offset"),
+        ({"name": "wire_weight", "value": -18.9}, "-18.9 kg/m is outside 0"),
+        ({"name": "wire_weight", "value": 1.0, "lower": -5.0}, "bounds -5 .* must lie inside 0"),
+        ({"name": "tare_load", "value": float("nan")}, "nan kg is outside"),
+        ({"name": "tare_load", "value": 1.0, "std": float("nan")}, "std must be a finite number"),
+        ({"name": "tare_load", "value": 1.0, "groups": ("active",)}, "cannot be tied to motor groups"),
+        ({"name": "pressure_offset", "value": 1.0, "layers": (1,)}, "cannot be tied to wire layers"),
+        ({"name": "accumulator_warmth", "value": 0.01}, "needs a time_constant"),
+        ({"name": "inertia", "value": 0.1, "time_constant": 3.0}, "has no time_constant"),
+    ],
+)
+def test_what_is_not_physical_is_refused(arguments, message):
+    with pytest.raises(InputError, match=message):
+        Correction(**arguments)
+
+
+def test_the_same_correction_twice_is_refused(crane2_model):
+    twice = (Correction("tare_load", 1.0), Correction("tare_load", 2.0))
+    with pytest.raises(InputError, match="tare_load.*twice"):
+        replace(crane2_model, corrections=twice)
+
+
+@pytest.mark.parametrize(
+    ("corrections", "message"),
+    [
+        ((Correction("pressure_offset", 1.0, groups=("activ",)),), "no motor group 'activ'"),
+        ((Correction("layer_radius", 0.01, layers=(7,)),), "no wire layer 7"),
+        ((Correction("inertia", -1.6),), "at or below zero"),
+    ],
+)
+def test_a_correction_that_the_crane_cannot_have_is_refused(corrections, message, truth, crane_150t, crane2_model):
+    with pytest.raises(InputError, match=message):
+        corrected(truth, crane_150t, replace(crane2_model, corrections=corrections))
+    with pytest.raises(InputError, match=message):
+        SampleCorrector(crane_150t, replace(crane2_model, corrections=corrections))
+
+
+def test_a_drum_of_one_layer_keeps_its_type(crane_150t):
+    assert isinstance(corrected_crane(crane_150t, (Correction("layer_radius", 0.1),)).drum, Drum)

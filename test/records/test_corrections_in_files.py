@@ -1,0 +1,89 @@
+"""Corrections and the crane's name in model files: round trip, units, and what is refused."""
+
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from winch_friction.physics.corrections import DECLARED, Correction
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.units import BAR, CM3_PER_REV
+from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.paths import config_directory
+
+
+def every_correction():
+    found = []
+    for name, own in DECLARED.items():
+        more = {"time_constant": 45.0} if own.has_time_constant else {}
+        lower = 0.0 if own.parameter.lower == 0.0 else 0.5 * own.parameter.lower
+        value = own.parameter.typical / 3.0
+        found.append(Correction(name, value, 0.1 * value, lower, 2.0 * own.parameter.typical, "a test", **more))
+        if own.by_group:
+            found.append(Correction(name, value, None, groups=("active", "passive"), **more))
+        if own.by_layer:
+            found.append(Correction(name, -value, layers=(2, 3), **more))
+    return tuple(found)
+
+
+def test_every_correction_survives_the_file(crane2_model, tmp_path):
+    model = replace(crane2_model, corrections=every_correction(), crane="crane_150t")
+    again = load_model(save_model(model, tmp_path / "model.yaml"))
+    assert again.corrections == model.corrections
+    assert again.crane == "crane_150t"
+    assert model_to_text(again) == model_to_text(model)
+
+
+def with_section(section):
+    data = yaml.safe_load((config_directory() / "models" / "a6vm215_crane2.yaml").read_text())
+    return yaml.safe_dump(data | {"corrections": section})
+
+
+@pytest.mark.parametrize(
+    ("name", "entry", "value"),
+    [
+        ("pressure_offset", {"value": 1.5, "unit": "bar"}, 1.5 * BAR),
+        ("pressure_offset", {"value": 20, "unit": "psi"}, 20 * 6894.757),
+        ("displacement_offset", {"value": -2, "unit": "cm^3/rev"}, -2 * CM3_PER_REV),
+        ("displacement_scale", {"value": 2, "unit": "percent"}, 0.02),
+        ("displacement_scale", {"value": 2, "unit": "%"}, 0.02),
+        ("signal_delay", {"value": 50, "unit": "ms"}, 0.05),
+        ("tare_load", {"value": 2.5, "unit": "t"}, 2500.0),
+        ("tare_load", {"value": 1000, "unit": "lb"}, 453.59237),
+        ("layer_radius", {"value": "67e0", "unit": "mm", "layers": [6]}, 0.067),
+    ],
+)
+def test_units_are_converted(name, entry, value):
+    (found,) = model_from_text(with_section({name: entry})).corrections
+    assert found.value == pytest.approx(value, rel=1e-6)
+
+
+def test_std_and_bounds_have_the_unit_of_the_value():
+    entry = {"value": 1.5, "unit": "bar", "std": 0.2, "lower": -3, "upper": 3}
+    (found,) = model_from_text(with_section({"pressure_offset": entry})).corrections
+    assert (found.std, *found.bounds) == pytest.approx((0.2 * BAR, -3 * BAR, 3 * BAR))
+
+
+@pytest.mark.parametrize(
+    ("section", "message"),
+    [
+        ([], "expected a mapping"),
+        ({"friction": {"value": 1, "unit": "bar"}}, "friction: correction 'friction' is not known"),
+        ({"tare_load": 3}, "tare_load: expected a mapping"),
+        ({"tare_load": {"unit": "t"}}, "tare_load: key 'value' is missing"),
+        ({"tare_load": {"value": 3}}, "tare_load: key 'unit' is missing"),
+        ({"tare_load": {"value": 3, "unit": "bananas"}}, "tare_load: unit 'bananas' cannot be read as kg"),
+        ({"tare_load": {"value": 3, "unit": "bar"}}, "tare_load: unit 'bar'"),
+        ({"tare_load": {"value": 3, "unit": "t", "sigma": 1}}, "unknown key 'sigma'"),
+        ({"wire_weight": {"value": -18.9, "unit": "kg/m"}}, "wire_weight: .*outside 0"),
+        ({"tare_load": [{"value": 3, "unit": "t"}, {"value": 4, "unit": "t"}]}, "stands twice"),
+        ({"pressure_offset": {"value": 3, "unit": "bar", "groups": "active"}}, "groups must be a list"),
+        ({"pressure_offset": [{"value": 3, "unit": "bar", "groups": []}]}, r"pressure_offset\[1\]: groups must be"),
+        ({"layer_radius": {"value": 3, "unit": "mm", "layers": ["6"]}}, "layers must be a list"),
+        ({"accumulator_heat": {"value": 0.5, "unit": "1"}}, "needs a time_constant"),
+    ],
+)
+def test_what_is_not_a_correction_is_refused_in_one_line(section, message):
+    with pytest.raises(InputError, match=message) as error:
+        model_from_text(with_section(section), "model.yaml")
+    assert "\n" not in str(error.value)

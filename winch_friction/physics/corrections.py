@@ -1,0 +1,215 @@
+"""Corrections taken out: of whole runs, of live samples, of the crane (declared in `physics.friction.correction`).
+
+What happens to a channel on its way into the log is a delay, then a gain, then an offset; they are taken out in the
+opposite order. Loads, calculated gas pressures and the commanded speed follow, from signals that are right by then.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import (
+    DECLARED,
+    Action,
+    Correction,
+    DeclaredCorrection,
+    check_corrections,
+    declared_correction,
+)
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.gas import relaxed_compression
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, GroupSample, Run, Sample
+from winch_friction.physics.viscosity import relative_viscosity
+from winch_friction.physics.winch.crane import Crane, Drum
+from winch_friction.physics.winch.torque_balance import driving_group
+
+__all__ = [
+    "DECLARED", "Action", "Correction", "DeclaredCorrection", "SampleCorrector", "check_corrections", "corrected",
+    "corrected_crane", "declared_correction",
+]  # fmt: skip
+
+Columns = dict[str, FloatArray]
+SIGNAL_ORDER = (Action.OFFSET, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP)
+
+
+def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]:
+    """A run and a crane without the errors that the model knows of.
+
+    A delay shortens the run by what it shifts. Raises `InputError`, one line for all of it, where the run lacks a
+    channel that a correction needs or the crane a group or layer that one names.
+    """
+    if not model.corrections:
+        return run, crane
+    problems = [each for one in model.corrections for each in _missing(one, run)]
+    if problems:
+        raise InputError(f"{run.name}: {'; '.join(problems)} (model '{model.name}')")
+    right = corrected_crane(crane, model.corrections)
+    columns: Columns = dict(run.columns)
+    for action in SIGNAL_ORDER:
+        for each in model.corrections:
+            if each.declared.action is action:
+                columns = _ON_RUNS[action](columns, run, each)
+    names = tuple(dict.fromkeys(each.name for each in model.corrections))
+    return replace(run, columns=columns, metadata={**run.metadata, "corrections": names}), right
+
+
+def corrected_crane(crane: Crane, corrections: Sequence[Correction]) -> Crane:
+    """The crane with the geometry and the inertia that corrections give it; unknown groups or layers, and what would
+    leave a radius or an inertia at or below zero, raise `InputError`."""
+    radii, inertia = list(crane.drum.layer_radii), crane.inertia
+    for each in corrections:
+        for group in each.groups:
+            crane.motor_count(group)
+        if each.declared.action is Action.RADIUS:
+            for layer in each.layers or range(1, len(radii) + 1):
+                if not 1 <= layer <= len(radii):
+                    raise InputError(f"correction '{each.name}': crane '{crane.name}' has no wire layer {layer}")
+                radii[layer - 1] += each.value
+        elif each.declared.action is Action.INERTIA:
+            inertia += each.value
+    if min(radii) <= 0.0 or inertia <= 0.0:
+        raise InputError(f"crane '{crane.name}': corrections leave a rope radius or the inertia at or below zero")
+    same = tuple(radii) == crane.drum.layer_radii and inertia == crane.inertia
+    return crane if same else replace(crane, drum=Drum(tuple(radii)), inertia=inertia)
+
+
+def affected(correction: Correction, groups: Iterable[str]) -> tuple[str, ...]:
+    """Run columns that a correction changes, for a run with these motor groups."""
+    chosen = [group for group in groups if not correction.groups or group in correction.groups]
+    columns: list[str] = []
+    for channel in correction.declared.channels:
+        columns += [f"{g}.{channel}" for g in chosen] if channel in GROUP_CHANNELS else [channel]
+    return tuple(columns)
+
+
+def _missing(correction: Correction, run: Run) -> list[str]:
+    """What a run lacks for one correction, in words; a motor group that does not run needs none."""
+    own = correction.declared
+    wanted = [*own.channels, *own.reads]
+    if own.action is Action.DELAY:  # whatever of these a run has is late by the same
+        return []
+    whole = [channel for channel in wanted if channel not in GROUP_CHANNELS]
+    groups = [g for g in run.groups if not correction.groups or g in correction.groups]
+    needed = whole + [f"{g}.{channel}" for g in groups for channel in wanted if channel in GROUP_CHANNELS]
+    return [f"column '{name}' is missing; correction {correction.name} needs it" for name in needed if name not in run]
+
+
+# -- whole runs
+def _offset(columns: Columns, run: Run, c: Correction) -> Columns:
+    return columns | {name: columns[name] - c.value for name in affected(c, run.groups) if name in columns}
+
+
+def _scale(columns: Columns, run: Run, c: Correction) -> Columns:
+    return columns | {name: columns[name] / (1.0 + c.value) for name in affected(c, run.groups) if name in columns}
+
+
+def _delay(columns: Columns, run: Run, c: Correction) -> Columns:
+    """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
+    time = columns["time"]
+    late = [name for name in affected(c, run.groups) if name in columns]
+    if not late or len(time) < 2:
+        return columns
+    inside = (time + c.value <= time[-1]) & (time + c.value >= time[0])
+    if inside.sum() < 2:
+        raise InputError(f"{run.name}: too short for a {c.name} of {c.value:g} s")
+    shifted = {name: np.interp(time + c.value, time, columns[name]) for name in late}
+    return {name: values[inside] for name, values in (columns | shifted).items()}
+
+
+def _mass(columns: Columns, run: Run, c: Correction) -> Columns:
+    length = columns["wire_out"] if "wire_out" in c.declared.reads else 1.0
+    return columns | {"hook_load": columns["hook_load"] + c.value * length}
+
+
+def _warmth(columns: Columns, run: Run, c: Correction) -> Columns:
+    fading = np.exp(-(columns["time"] - run.time[0]) / c.time_constant)
+    return columns | {name: columns[name] * (1.0 + c.value * fading) for name in affected(c, run.groups)}
+
+
+def _heat(columns: Columns, run: Run, c: Correction) -> Columns:
+    assert c.time_constant is not None
+    changed = {
+        name: columns[name] * (1.0 - c.value * relaxed_compression(columns["time"], columns[name], c.time_constant))
+        for name in affected(c, run.groups)
+    }
+    return columns | changed
+
+
+def _slip(columns: Columns, run: Run, c: Correction) -> Columns:
+    groups = [g for g in run.groups if not c.groups or g in c.groups]
+    if not groups:
+        return columns
+    driving = driving_group(groups)
+    drop = columns[f"{driving}.pressure_a"] - columns[f"{driving}.pressure_b"]
+    thinness = 1.0 / relative_viscosity(columns["oil_temperature"]) if "oil_temperature" in columns else 1.0
+    lost = c.value * drop / columns[f"{driving}.displacement"] * thinness
+    return columns | {"speed_reference": columns["speed_reference"] - lost}
+
+
+_ON_RUNS: dict[Action, Callable[[Columns, Run, Correction], Columns]] = {
+    Action.OFFSET: _offset,
+    Action.SCALE: _scale,
+    Action.DELAY: _delay,
+    Action.MASS: _mass,
+    Action.WARMTH: _warmth,
+    Action.HEAT: _heat,
+    Action.SLIP: _slip,
+}
+
+
+# -- live samples
+class SampleCorrector:
+    """Takes a model's corrections out of one sample after the other; `crane` is the crane as corrected.
+
+    What a running node cannot take out (a delay, a gas that cools) is refused with `InputError`, by name, unless
+    `refuse` is False: then `uncorrected` names it, together with what the latest sample lacked the channel for.
+    """
+
+    def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True) -> None:
+        self.crane = corrected_crane(crane, model.corrections)
+        self.impossible = tuple(dict.fromkeys(c.name for c in model.corrections if not c.declared.live))
+        if refuse and self.impossible:
+            raise InputError(
+                f"model '{model.name}': a running node cannot take out {', '.join(self.impossible)}; "
+                "mend it at its source and take it out of the model's corrections"
+            )
+        live = [c for c in model.corrections if c.declared.live]
+        self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
+        self._lacking: tuple[str, ...] = ()
+
+    @property
+    def uncorrected(self) -> tuple[str, ...]:
+        """Names of corrections that the latest sample went without."""
+        return self.impossible + self._lacking
+
+    def __call__(self, sample: Sample) -> Sample:
+        """The sample without its errors; the given one is left as it is."""
+        if not self._signals:
+            return sample
+        groups = {name: replace(member) for name, member in sample.groups.items()}
+        out = replace(sample, groups=groups)
+        self._lacking = tuple(c.name for c in self._signals if not _correct(out, c))
+        return out
+
+
+def _correct(sample: Sample, c: Correction) -> bool:
+    """Correct a sample in place; False where it lacks what that takes."""
+    if c.declared.action is Action.MASS:
+        length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
+        if length == length:
+            sample.hook_load += c.value * length
+        return length == length or sample.hook_load != sample.hook_load
+    for name, member in sample.groups.items():
+        if not c.groups or name in c.groups:
+            _correct_group(member, c)
+    return True
+
+
+def _correct_group(member: GroupSample, c: Correction) -> None:
+    for channel in c.declared.channels:
+        value: Any = getattr(member, channel)
+        right = value - c.value if c.declared.action is Action.OFFSET else value / (1.0 + c.value)
+        setattr(member, channel, right)

@@ -1,0 +1,210 @@
+"""What may be wrong with signals, geometry, load and inertia: every correction declared once, as data.
+
+A friction term says what the machine loses; a correction says what its log or its crane file has wrong. The value is
+the error itself: `pressure_offset` = +1.5 bar means that the log shows 1.5 bar too much. `physics.corrections` takes it
+out of runs, samples and cranes; the simulator puts it into its sensors from the same declarations.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.term import Parameter
+from winch_friction.physics.units import BAR, CM3_PER_REV
+
+
+class Action(Enum):
+    """What an error of value e does; the true value stands on the right."""
+
+    OFFSET = "offset"  # measured = true + e
+    SCALE = "scale"  # measured = true (1 + e)
+    DELAY = "delay"  # measured(t) = true(t - e)
+    MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
+    RADIUS = "radius"  # rope radius = crane file's + e
+    INERTIA = "inertia"  # inertia at the shaft = crane file's + e
+    WARMTH = "warmth"  # true gas pressure = calculated (1 + e exp(-t/tau)), tau the correction's time constant
+    HEAT = "heat"  # true gas pressure = calculated (1 - e <ln p>_tau), what has relaxed of ln p since the start
+    SLIP = "slip"  # speed_reference = true + e dp/D times mu_40/mu: what leaks away is not reached
+
+
+@dataclass(frozen=True)
+class DeclaredCorrection:
+    """One kind of error.
+
+    `parameter`: its unit, typical size and the bounds beyond which it is not physical. `kind`: signal, geometry, load
+    or inertia. `channels`: the run columns (a group's channel without the group) that are wrong; `reads`: further
+    columns that the correction needs. `by_group`, `by_layer`: whether it may be tied to motor groups or wire layers;
+    `has_time_constant`: whether it fades over one; `live`: whether a running node can take it out.
+    """
+
+    name: str
+    parameter: Parameter
+    kind: str
+    action: Action
+    channels: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ()
+    by_group: bool = False
+    by_layer: bool = False
+    has_time_constant: bool = False
+    live: bool = True
+
+    @property
+    def doc(self) -> str:
+        """What it is, in words."""
+        return self.parameter.doc
+
+
+_PRESSURES = ("pressure_a", "pressure_b")
+_SPEED = ("motor_speed", "drum_speed", "shaft_angle")
+_DRIVE = (*_PRESSURES, "motor_torque")
+
+
+def _signal(
+    name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, live: bool = True
+) -> DeclaredCorrection:
+    parameter = Parameter(name, unit, typical, lower=-reach, upper=reach, doc=doc)
+    by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action is not Action.DELAY
+    return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, live=live)
+
+
+def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> DeclaredCorrection:
+    # a running node does not know when the gas was last at rest
+    return DeclaredCorrection(
+        name, Parameter(name, "1", typical, lower=-reach, upper=reach, doc=doc), "signal", action, ("pressure_a",),
+        reads=("pressure_b",), by_group=True, has_time_constant=True, live=False,
+    )  # fmt: skip
+
+
+_DECLARED = (
+    _signal(
+        "pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
+        "pressure_a",
+    ),
+    _signal(
+        "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES
+    ),
+    _signal("pressure_scale_a", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducer at port A", "pressure_a"),
+    _signal(
+        "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
+        "zero error of the displacement feedback", "displacement",
+    ),
+    _signal(
+        "displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback", "displacement"
+    ),
+    _signal("signal_delay", Action.DELAY, "s", 0.05, 0.5, "how late the speed is logged", *_SPEED, live=False),
+    _signal(
+        "pressure_delay", Action.DELAY, "s", 0.05, 0.5, "how late the pressures (or the motor torque) are logged",
+        *_DRIVE, live=False,
+    ),
+    DeclaredCorrection(
+        "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),
+        "geometry", Action.RADIUS, by_layer=True,
+    ),
+    DeclaredCorrection(
+        "tare_load", Parameter("tare_load", "kg", 2000.0, -2e4, 2e4, doc="mass that hook_load does not contain"),
+        "load", Action.MASS, ("hook_load",),
+    ),
+    DeclaredCorrection(
+        "wire_weight",
+        Parameter("wire_weight", "kg/m", 12.0, 0.0, 200.0, doc="weight of the wire paid out, not in hook_load"),
+        "load", Action.MASS, ("hook_load",), reads=("wire_out",),
+    ),
+    DeclaredCorrection(
+        "inertia", Parameter("inertia", "kg*m^2", 0.2, -100.0, 100.0, doc="inertia that the crane file lacks"),
+        "inertia", Action.INERTIA,
+    ),
+    _gas(
+        "accumulator_warmth", Action.WARMTH, 0.02, 0.2,
+        "relative excess temperature of the gas at the start, of a pressure that is calculated",
+    ),
+    _gas(
+        "accumulator_heat", Action.HEAT, 1.0, 10.0,
+        "share of the compression's heat that the wall takes, of a pressure that is calculated",
+    ),
+    DeclaredCorrection(
+        "slip_leakage",
+        Parameter("slip_leakage", "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, doc="leakage per motor at 40 degC that slows it"),
+        "signal", Action.SLIP, ("speed_reference",), reads=("pressure_a", "pressure_b", "displacement"),
+        by_group=True, live=False,
+    ),
+)  # fmt: skip
+DECLARED: dict[str, DeclaredCorrection] = {each.name: each for each in _DECLARED}
+
+
+def declared_correction(name: str) -> DeclaredCorrection:
+    """The declaration of that name; an unknown one raises `InputError` with the names there are."""
+    if name not in DECLARED:
+        raise InputError(f"correction '{name}' is not known; known corrections are {', '.join(DECLARED)}")
+    return DECLARED[name]
+
+
+@dataclass(frozen=True)
+class Correction:
+    """One correction of a model, SI: the error's value, its standard deviation (None: unknown), bounds and source.
+
+    `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade. Bounds that are not given are
+    the declared ones. Raises `InputError` for a value, bounds or ties that the declaration does not allow.
+    """
+
+    name: str
+    value: float
+    std: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    source: str = ""
+    groups: tuple[str, ...] = ()
+    layers: tuple[int, ...] = ()
+    time_constant: float | None = None
+
+    def __post_init__(self) -> None:
+        own = self.declared
+        for bound in ("lower", "upper"):
+            if getattr(self, bound) is None:
+                object.__setattr__(self, bound, getattr(own.parameter, bound))
+        self._check_bounds()
+        if self.std is not None and not 0.0 <= self.std < float("inf"):
+            raise InputError(f"correction '{self.name}': std must be a finite number from 0, found {self.std:g}")
+        if self.groups and not own.by_group:
+            raise InputError(f"correction '{self.name}' cannot be tied to motor groups")
+        if self.layers and not own.by_layer:
+            raise InputError(f"correction '{self.name}' cannot be tied to wire layers")
+        if own.has_time_constant != (self.time_constant is not None):
+            needs = "needs a time_constant in s" if own.has_time_constant else "has no time_constant"
+            raise InputError(f"correction '{self.name}' {needs}")
+        if self.time_constant is not None and not 0.0 < self.time_constant < float("inf"):
+            raise InputError(f"correction '{self.name}': time_constant must be above 0 s, found {self.time_constant:g}")
+
+    @property
+    def declared(self) -> DeclaredCorrection:
+        """What is said of every correction of this name."""
+        return declared_correction(self.name)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper bound, SI."""
+        return self.lower, self.upper  # type: ignore[return-value]
+
+    @property
+    def ties(self) -> tuple[tuple[str, ...], tuple[int, ...]]:
+        """What it is restricted to: motor groups, wire layers."""
+        return self.groups, self.layers
+
+    def _check_bounds(self) -> None:
+        own, (lower, upper) = self.declared.parameter, self.bounds
+        if not own.lower <= lower <= upper <= own.upper:
+            raise InputError(
+                f"correction '{self.name}': bounds {lower:g} ... {upper:g} {own.unit} must lie inside "
+                f"{own.lower:g} ... {own.upper:g} {own.unit}"
+            )
+        if not lower <= self.value <= upper:
+            raise InputError(
+                f"correction '{self.name}': {self.value:g} {own.unit} is outside {lower:g} ... {upper:g} {own.unit}"
+            )
+
+
+def check_corrections(corrections: tuple[Correction, ...]) -> None:
+    """Raise `InputError` where one correction stands twice for the same groups and layers."""
+    seen = [(each.name, each.ties) for each in corrections]
+    for name, ties in seen:
+        if seen.count((name, ties)) > 1:
+            raise InputError(f"correction '{name}' stands twice for the same motor groups; give one value")

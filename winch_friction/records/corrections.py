@@ -1,0 +1,99 @@
+"""The section `corrections` of a model file: what is wrong with signals, geometry, load and inertia.
+
+`{pressure_offset: {value: 1.5, unit: bar, std: 0.1, source: zero check, groups: [active]}}`; the same correction for
+several groups or layers is a list under its name.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction, declared_correction
+from winch_friction.physics.units import factor_to_si
+from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.strict_yaml import Section, as_quantity, finite
+
+KEY = "corrections"
+
+
+def read_corrections(top: Section) -> tuple[Correction, ...]:
+    """The corrections of a model file in SI; raises `InputError`, naming file and entry, for what is not one."""
+    if KEY not in top:
+        return ()
+    section = top.section(KEY)
+    found = []
+    for name in section.content:
+        entry = section.get(name)
+        entries = entry if isinstance(entry, list) else [entry]
+        many = isinstance(entry, list)
+        for k, each in enumerate(entries):
+            where = f"{section.where}: {name}" + (f"[{k + 1}]" if many else "")
+            found.append(_correction(str(name), Section(each, where)))
+    return tuple(found)
+
+
+def corrections_content(corrections: Sequence[Correction]) -> dict[str, Any]:
+    """Corrections as plain data for a model file."""
+    content: dict[str, Any] = {}
+    for each in corrections:
+        content.setdefault(each.name, []).append(_entry(each))
+    return {name: entries[0] if len(entries) == 1 else entries for name, entries in content.items()}
+
+
+def _correction(name: str, section: Section) -> Correction:
+    try:
+        declared = declared_correction(name)
+    except InputError as error:
+        raise InputError(f"{section.where}: {error}") from None
+    factor = _factor(section, declared.parameter.unit)
+
+    def number(key: str) -> float | None:
+        return finite(section.get(key), f"{section.where}: {key}") * factor if key in section else None
+
+    value, tau = section.number("value") * factor, section.get("time_constant")
+    fields = {key: number(key) for key in ("std", "lower", "upper")}
+    groups, layers, source = _names(section, "groups", str), _names(section, "layers", int), section.text("source", "")
+    section.close()
+    time_constant = None if tau is None else as_quantity(tau, "s", f"{section.where}: time_constant")
+    try:
+        return Correction(
+            name, value, source=source, groups=groups, layers=layers, time_constant=time_constant, **fields
+        )
+    except InputError as error:
+        raise InputError(f"{section.where}: {error}") from None
+
+
+def _factor(section: Section, si_unit: str) -> float:
+    """Factor from the entry's unit to SI; a unit that the nodes' own table does not know is left to pint."""
+    unit = {"%": "percent"}.get(section.text("unit"), section.text("unit"))
+    try:
+        return factor_to_si(unit, si_unit, section.where)
+    except InputError:
+        return conversion_to_si(unit, si_unit, section.where)[0]
+
+
+def _names(section: Section, key: str, kind: type) -> tuple[Any, ...]:
+    if key not in section:
+        return ()
+    given = section.get(key)
+    whole = isinstance(given, list) and all(isinstance(each, kind) and not isinstance(each, bool) for each in given)
+    if not whole or not given or len(set(given)) != len(given):
+        what = "motor groups" if kind is str else "wire layers, from 1"
+        raise InputError(f"{section.where}: {key} must be a list of different {what}, found {given!r}")
+    return tuple(given)
+
+
+def _entry(c: Correction) -> dict[str, Any]:
+    entry: dict[str, Any] = {"value": float(c.value), "unit": c.declared.parameter.unit}
+    if c.std is not None:
+        entry["std"] = float(c.std)
+    entry |= {"lower": float(c.bounds[0]), "upper": float(c.bounds[1])}
+    if c.source:
+        entry["source"] = c.source
+    if c.groups:
+        entry["groups"] = list(c.groups)
+    if c.layers:
+        entry["layers"] = list(c.layers)
+    if c.time_constant is not None:
+        entry["time_constant"] = {"value": float(c.time_constant), "unit": "s"}
+    return entry

@@ -7,20 +7,19 @@ import pytest
 from filterpy.kalman import ExtendedKalmanFilter
 from scipy.linalg import expm
 
-from winch_friction.estimation import EstimatorConfig, prediction
-from winch_friction.estimation.consistency import Consistency, VarianceFactor, nis_band
-from winch_friction.estimation.excitation import Excitation
-from winch_friction.estimation.friction import Friction, mean_direction
-from winch_friction.estimation.kalman import SpeedFilter
+from winch_friction.estimation import EstimatorConfig, dynamics
+from winch_friction.estimation.answers import ParameterStatus
+from winch_friction.estimation.dynamics import Friction, wire_step
+from winch_friction.estimation.filter import SpeedFilter
+from winch_friction.estimation.interval import mean_direction
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.status import ParameterStatus
-from winch_friction.estimation.wire import wire_step
+from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
 from winch_friction.physics.friction.seed_range import seed_range
 
 
 def some_filter(size=9, seed=1):
     rng = np.random.default_rng(seed)
-    each = SpeedFilter(prediction.measurement(size))
+    each = SpeedFilter(dynamics.measurement(size))
     root = rng.normal(size=(size, size))
     each.P, each.x = root @ root.T, rng.normal(size=(size, 1))
     return each
@@ -56,17 +55,17 @@ def test_the_jacobian_is_that_of_the_propagation(crane, seed):
     parameters = ScaledParameters(seed, config)
     gradient = np.random.default_rng(3).normal(size=len(seed.values)) / parameters.scale
     wire = wire_step(crane, 55e3, 6, 50.0, 1.5e5, 0.02)
-    size = prediction.FIRST_PARAMETER + parameters.size
+    size = dynamics.FIRST_PARAMETER + parameters.size
 
     def moved(x):
-        theta = parameters.values(x[prediction.FIRST_PARAMETER :, 0])
+        theta = parameters.values(x[dynamics.FIRST_PARAMETER :, 0])
         torque = float(gradient @ (theta - np.array(seed.values)))
-        step = prediction.Step(100.0, 1.0, 0.5, 0.02, wire, Friction(torque, gradient, 500.0), False)
-        return prediction.propagate(x, step, config), step
+        step = dynamics.Step(100.0, 1.0, 0.5, 0.02, wire, Friction(torque, gradient, 500.0), False)
+        return dynamics.propagate(x, step, config), step
 
     x = np.random.default_rng(2).normal(size=(size, 1)) * 0.1
     base, step = moved(x)
-    matrix = prediction.jacobian(size, step, config, parameters)
+    matrix = dynamics.jacobian(size, step, config, parameters)
     for column in range(size):
         shifted = x.copy()
         shifted[column, 0] += 1e-4
@@ -75,7 +74,7 @@ def test_the_jacobian_is_that_of_the_propagation(crane, seed):
 
 def test_an_ordinary_correction_is_filterpys():
     each, plain = some_filter(), ExtendedKalmanFilter(9, 1)
-    row = prediction.measurement(9)
+    row = dynamics.measurement(9)
     plain.x, plain.P = each.x.copy(), each.P.copy()
     plain.update(np.array([[0.7]]), lambda _: row, lambda x: row @ x, R=0.3)
     each.correct(0.7, 0.3, considered=0)
@@ -98,10 +97,10 @@ def test_considered_states_keep_value_and_variance_and_the_rest_is_no_surer_than
 def test_forgetting_goes_to_the_seed_and_never_beyond(seed):
     config = EstimatorConfig(forgetting_time=10.0)
     parameters = ScaledParameters(seed, config)
-    size = prediction.FIRST_PARAMETER + parameters.size
+    size = dynamics.FIRST_PARAMETER + parameters.size
     covariance = np.eye(size)
     covariance[-1, -1] = 0.01  # learned; the others are as in the seed
-    noise = prediction.forgotten(covariance, 1.0, config, np.eye(parameters.size))
+    noise = dynamics.forgotten(covariance, 1.0, config, np.eye(parameters.size))
     assert noise[-1, -1] == pytest.approx(0.1 * 0.99)
     noise[-1, -1] = 0.0
     assert not noise.any()
@@ -110,7 +109,7 @@ def test_forgetting_goes_to_the_seed_and_never_beyond(seed):
 def test_projection_moves_correlated_parameters_along(seed):
     config = EstimatorConfig(seed_range=0.5)
     parameters = ScaledParameters(seed, config)
-    size = prediction.FIRST_PARAMETER + parameters.size
+    size = dynamics.FIRST_PARAMETER + parameters.size
     covariance = np.eye(size)
     covariance[-1, -2] = covariance[-2, -1] = 0.8
     x = np.zeros((size, 1))
@@ -119,7 +118,7 @@ def test_projection_moves_correlated_parameters_along(seed):
     assert out[-1, 0] == pytest.approx(parameters.upper[-1])
     assert out[-2, 0] == pytest.approx(-0.8)
     limits = seed_range(seed, 0.5)
-    for name, value in zip(seed.parameter_names, parameters.values(out[prediction.FIRST_PARAMETER :, 0]), strict=True):
+    for name, value in zip(seed.parameter_names, parameters.values(out[dynamics.FIRST_PARAMETER :, 0]), strict=True):
         assert limits[name][0] <= value <= limits[name][1]
 
 

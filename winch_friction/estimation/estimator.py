@@ -5,23 +5,21 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from winch_friction.estimation.accepted import Accepted, accepted
+from winch_friction.estimation.answers import (
+    Estimate,
+    ParameterEstimate,
+    ParameterStatuses,
+    learned_model,
+    parameter_estimates,
+)
 from winch_friction.estimation.checkpoint import filter_state, restored_state
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.consistency import Consistency
-from winch_friction.estimation.drive import saturated, usable
-from winch_friction.estimation.estimate import Estimate, ParameterEstimate
-from winch_friction.estimation.excitation import Excitation
-from winch_friction.estimation.friction import FrictionFunctions
-from winch_friction.estimation.gate import InnovationGate
-from winch_friction.estimation.interval import Intervals
-from winch_friction.estimation.learned import learned_model, parameter_estimates
-from winch_friction.estimation.load import HangingLoad
-from winch_friction.estimation.motion import fresh_motion
+from winch_friction.estimation.dynamics import Step, fresh_motion
+from winch_friction.estimation.filter import StateFilter
+from winch_friction.estimation.interval import FrictionFunctions, Intervals
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.prediction import Step
-from winch_friction.estimation.state_filter import StateFilter
-from winch_friction.estimation.status import ParameterStatuses
+from winch_friction.estimation.sample import Accepted, HangingLoad, accepted, saturated, usable
+from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane

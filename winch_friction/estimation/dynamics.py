@@ -1,19 +1,76 @@
-"""One step of the filter's states: shaft, wire and load, what is not explained, the encoder, the parameters."""
+"""How the filter's states go from one sample to the next, with what noise, and how they begin.
+
+Shaft, elastic wire and hanging mass are one linear system, stepped by the trapezoidal (Tustin) rule:
+
+    J domega/dt = torque - r (k stretch + c rate)
+    dstretch/dt = rate = v_heave + r omega - v_load
+    m dv_load/dt = k stretch + c rate
+
+with r = R/i the rope speed per shaft speed and stretch counted from the static one. A payload taken as rigid with the
+shaft would leave the wire's mode (1.5 to 3 Hz), which every reversal excites, to be explained by friction.
+"""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.friction import Friction
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.wire import WireStep
-from winch_friction.physics.signals import FloatArray
+from winch_friction.estimation.sample import heave_velocity
+from winch_friction.physics.signals import FloatArray, Sample
+from winch_friction.physics.winch.crane import Crane
 
 SPEED, STRETCH, LOAD_SPEED, LOAD, DISTURBANCE, ENCODER, ENCODER_CHANGE, FIRST_PARAMETER = range(8)
 
 STICK_IGNORANCE = 30.0  # times the friction level
+UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
+UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
+STIFFEST = 40.0  # rad/s; a wire of unknown stiffness is taken as this stiff against the hanging mass
+
+FreshState = tuple[int, float, float]  # which state, its value, its variance
+
+
+@dataclass(frozen=True, slots=True)
+class WireStep:
+    """One step of [omega, stretch, v_load]: transition (3, 3), and what torque (N m) and heave velocity (m/s) add
+    (3,)."""
+
+    transition: FloatArray
+    by_torque: FloatArray
+    by_heave: FloatArray
+
+
+def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> WireStep:
+    """The step for a hanging mass in kg on `length` m of wire, damped by `damping` N s/m; without a mass the shaft is
+    alone."""
+    if mass <= 0.0:
+        return WireStep(np.eye(3), np.array([dt / crane.inertia, 0.0, 0.0]), np.zeros(3))
+    r = crane.drum.radius(layer) / crane.gear_ratio
+    k = min(crane.wire_stiffness / length, mass * STIFFEST**2)
+    shaft = r / crane.inertia
+    rates = np.array(
+        [
+            [-damping * r * shaft, -k * shaft, damping * shaft],
+            [r, 0.0, -1.0],
+            [damping * r / mass, k / mass, -damping / mass],
+        ]
+    )
+    solved = np.linalg.inv(np.eye(3) - 0.5 * dt * rates)
+    by_torque = np.asarray(dt / crane.inertia * solved[:, 0], float)
+    by_heave = np.asarray(dt * (solved @ np.array([-damping * shaft, 1.0, damping / mass])), float)
+    return WireStep(solved @ (np.eye(3) + 0.5 * dt * rates), by_torque, by_heave)
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Friction at one operating point, N m: torque, its derivatives by the parameters, and what a full direction
+    would make of it."""
+
+    torque: float
+    by_parameters: Sequence[float]
+    magnitude: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,3 +160,28 @@ def forgotten(covariance: FloatArray, duration: float, config: EstimatorConfig, 
     """
     share = min(1.0, duration / config.forgetting_time)
     return share * (prior - covariance[FIRST_PARAMETER:, FIRST_PARAMETER:])
+
+
+def fresh_motion(sample: Sample, crane: Crane, config: EstimatorConfig, speed_variance: float) -> list[FreshState]:
+    """Everything that moves, with the load following the wire; `speed_variance` in (rad/s)^2."""
+    r = crane.drum.radius(sample.wire_layer) / crane.gear_ratio
+    speed = sample.motor_speed
+    variance = speed_variance + 2.0 * rounding_variance(config)
+    return [
+        (SPEED, speed, variance),
+        (STRETCH, 0.0, UNKNOWN_STRETCH**2),
+        (LOAD_SPEED, heave_velocity(sample) + r * speed, r * r * variance + UNKNOWN_LOAD_SPEED**2),
+        (DISTURBANCE, 0.0, config.disturbance_std**2),
+        (ENCODER, 0.0, rounding_variance(config)),
+        (ENCODER_CHANGE, 0.0, 0.0),
+    ]
+
+
+def replaced(x: FloatArray, covariance: FloatArray, fresh: list[FreshState]) -> tuple[FloatArray, FloatArray]:
+    """State (n, 1) and covariance (n, n) with these states taken anew, correlated with nothing; the rest is kept."""
+    x, covariance = x.copy(), covariance.copy()
+    for state, value, variance in fresh:
+        covariance[state, :] = covariance[:, state] = 0.0
+        covariance[state, state] = variance
+        x[state, 0] = value
+    return x, covariance

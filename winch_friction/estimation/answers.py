@@ -1,12 +1,71 @@
-"""What may be said about a parameter: seed, learning, learned, frozen or invalid, with hysteresis."""
+"""What an estimator says: at one instant, about one parameter, and how far a parameter may be believed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.parameters import ScaledParameters
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Outcome of one step.
+
+    `accepted`: the sample changed the filter; `innovation` rad/s, its variance and `nis`, the squared ratio (NaN when
+    nothing was predicted); `state`: learning, or why not: waiting, disabled, rejected, stick, saturation, no
+    excitation, restarted;
+    `friction_torque`: N m at the shaft by the learned mean; `speed` rad/s; `drum_torque` N m.
+    """
+
+    time: float
+    accepted: bool
+    state: str
+    innovation: float
+    innovation_variance: float
+    nis: float
+    speed: float
+    drum_torque: float
+    friction_torque: float
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterEstimate:
+    """One parameter: SI value, standard deviation, and status seed / learning / learned / frozen / invalid."""
+
+    name: str
+    unit: str
+    value: float
+    std: float
+    seed_value: float
+    seed_std: float
+    status: str
+
+
+def learned_model(parameters: ScaledParameters, phi: FloatArray, scaled: FloatArray, **origin: object) -> FrictionModel:
+    """The seed's terms with the values of `phi` (n,) and the scaled covariance (n, n); `origin` goes into the
+    provenance."""
+    seed = parameters.seed
+    provenance = {"method": "online estimate (extended Kalman filter)", "seed": seed.name, **origin}
+    values = tuple(parameters.values(phi).tolist())
+    return replace(seed, values=values, covariance=parameters.covariance(scaled), provenance=provenance)
+
+
+def parameter_estimates(
+    parameters: ScaledParameters, model: FrictionModel, statuses: Sequence[str]
+) -> list[ParameterEstimate]:
+    """Value, standard deviation and status of every parameter of the learned model."""
+    seed = parameters.seed
+    seed_std = np.sqrt(np.diag(parameters.covariance(parameters.prior)))
+    return [
+        ParameterEstimate(
+            p.name, p.unit, model.values[k], float(model.std[k]), seed.values[k], float(seed_std[k]), text
+        )
+        for k, (p, text) in enumerate(zip(seed.parameters, statuses, strict=True))
+    ]
 
 
 class ParameterStatus:

@@ -1,15 +1,66 @@
-"""The estimator's filter: shaft, wire, load, disturbance, encoder and the scaled parameters as one state."""
+"""The filter: filterpy's, over shaft, wire, load, disturbance, encoder and scaled parameters as one state."""
+
+from typing import Any
 
 import numpy as np
+from filterpy.kalman import ExtendedKalmanFilter
 
-from winch_friction.estimation import prediction
+from winch_friction.estimation import dynamics
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.consistency import VarianceFactor
-from winch_friction.estimation.kalman import SpeedFilter
-from winch_friction.estimation.motion import FreshState, replaced
+from winch_friction.estimation.dynamics import FIRST_PARAMETER, LOAD, SPEED, FreshState, Step, replaced
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.prediction import FIRST_PARAMETER, LOAD, SPEED, Step
+from winch_friction.estimation.trust import VarianceFactor
 from winch_friction.physics.signals import FloatArray
+
+
+class SpeedFilter(ExtendedKalmanFilter):
+    """An extended Kalman filter with one measurement that is linear in the states.
+
+    `predict_with` takes the propagated state and its Jacobian; filterpy multiplies x by F, which would linearise the
+    motion.
+    """
+
+    x: FloatArray
+    P: FloatArray
+
+    def __init__(self, measurement: FloatArray) -> None:
+        super().__init__(dim_x=measurement.shape[1], dim_z=1)
+        self._next: FloatArray = np.zeros((self.dim_x, 1))
+        self._measurement = measurement
+
+    def predict_x(self, u: Any = 0) -> None:
+        """The state that `predict_with` was given."""
+        self.x = self._next
+
+    def predict_with(self, x: FloatArray, jacobian: FloatArray, noise: FloatArray) -> None:
+        """Propagate to `x` (n, 1) with Jacobian and process noise (n, n)."""
+        self._next, self.F, self.Q = x, jacobian, noise
+        self.predict()
+
+    def innovation(self, measured: float, variance: float) -> tuple[float, float]:
+        """Difference between a measured speed and the predicted one, rad/s, and its variance."""
+        row = self._measurement
+        return measured - float((row @ self.x)[0, 0]), float((row @ self.P @ row.T)[0, 0]) + variance
+
+    def correct(self, measured: float, variance: float, considered: int) -> None:
+        """Take a measured speed; the last `considered` states keep their values and variances.
+
+        Schmidt's consider filter: their gain is zero, while their uncertainty and their correlation with the others
+        stay in the
+        account (Schmidt 1966; Simon, Optimal State Estimation, section 10.1).
+        """
+        row = self._measurement
+        if not considered:
+            self.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=variance)
+            return
+        innovation, total = self.innovation(measured, variance)
+        gain = self.P @ row.T / total
+        gain[-considered:] = 0.0
+        self.x = self.x + gain * innovation
+        left = np.eye(self.dim_x) - gain @ row
+        frozen = self.P[-considered:, -considered:].copy()
+        self.P = left @ self.P @ left.T + variance * gain @ gain.T
+        self.P[-considered:, -considered:] = frozen
 
 
 class StateFilter:
@@ -20,7 +71,7 @@ class StateFilter:
 
     def __init__(self, config: EstimatorConfig, parameters: ScaledParameters) -> None:
         self._config, self._parameters = config, parameters
-        self._filter = SpeedFilter(prediction.measurement(FIRST_PARAMETER + parameters.size))
+        self._filter = SpeedFilter(dynamics.measurement(FIRST_PARAMETER + parameters.size))
         self._filter.P = np.zeros_like(self._filter.P)
         self._filter.P[FIRST_PARAMETER:, FIRST_PARAMETER:] = parameters.prior
         self._factor = VarianceFactor(config.adaptation_time)
@@ -79,12 +130,12 @@ class StateFilter:
     def predict(self, step: Step, learning: bool, load_known: bool) -> None:
         """Go one step on."""
         x, covariance = self._filter.x, self._filter.P
-        noise = prediction.process_noise(len(x), step, self._config, self._factor.value, load_known)
+        noise = dynamics.process_noise(len(x), step, self._config, self._factor.value, load_known)
         if learning:
-            forgotten = prediction.forgotten(covariance, step.duration, self._config, self._parameters.prior)
+            forgotten = dynamics.forgotten(covariance, step.duration, self._config, self._parameters.prior)
             noise[FIRST_PARAMETER:, FIRST_PARAMETER:] = forgotten
-        transition = prediction.jacobian(len(x), step, self._config, self._parameters)
-        self._filter.predict_with(prediction.propagate(x, step, self._config), transition, noise)
+        transition = dynamics.jacobian(len(x), step, self._config, self._parameters)
+        self._filter.predict_with(dynamics.propagate(x, step, self._config), transition, noise)
 
     def innovation(self, measured: float) -> tuple[float, float]:
         """Difference between a measured speed and the predicted one, rad/s, and its variance."""

@@ -1,0 +1,101 @@
+"""What one sample says: whether it is usable, the drive's torque and its noise, the hanging load."""
+
+import math
+from dataclasses import dataclass
+
+from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.physics.plausible import plausible
+from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.torque_balance import sample_drive_torque
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """Time s, drive torque N m, measured speed rad/s, heave velocity m/s, wire layer (NaN: not measured)."""
+
+    time: float
+    drive: float
+    speed: float
+    heave: float
+    layer: float
+
+
+def accepted(sample: Sample, crane: Crane) -> Accepted:
+    """What is kept of this sample."""
+    drive = sample_drive_torque(sample, crane)
+    return Accepted(sample.time, drive, sample.motor_speed, heave_velocity(sample), sample.wire_layer)
+
+
+def heave_velocity(sample: Sample) -> float:
+    """Velocity of the crane tip, m/s; a crane that does not say stands still."""
+    return sample.heave_velocity if math.isfinite(sample.heave_velocity) else 0.0
+
+
+def usable(sample: Sample, crane: Crane) -> bool:
+    """Whether the sample has a time, plausible speed and drive, and a wire layer that the drum has (or none)."""
+    if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
+        return False
+    if not crane.drum.has(sample.wire_layer):
+        return False
+    if crane.electric:
+        return plausible("motor_torque", sample.motor_torque)
+    channels = [(channel, getattr(group, channel)) for group in sample.groups.values() for channel in GROUP_CHANNELS]
+    return bool(channels) and all(plausible(channel, value) for channel, value in channels)
+
+
+def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:
+    """Whether the drive is at a limit, where what is measured is not what acts."""
+    if crane.electric:
+        return abs(sample.motor_torque) > config.saturation_torque
+    limit = config.saturation_pressure
+    return any(max(group.pressure_a, group.pressure_b) > limit for group in sample.groups.values())
+
+
+def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> float:
+    """Variance of the drive torque in (N m)^2 from the noise of pressures and displacements, or of the motor torque."""
+    if crane.electric:
+        return (crane.motor_total(()) * config.torque_noise) ** 2
+    total = 0.0
+    for name, group in sample.groups.items():
+        full = crane.motor_count(name) * group.displacement
+        by_displacement = full * (group.pressure_a - group.pressure_b) * config.displacement_noise
+        total += 2.0 * (full * config.pressure_noise) ** 2 + by_displacement**2
+    return total
+
+
+PICKED_UP = 0.1  # a relative change of the measured mass beyond this is another load, not noise
+
+
+class HangingLoad:
+    """Low-passed hook load and what follows from it."""
+
+    def __init__(self, crane: Crane, time_constant: float) -> None:
+        self._crane = crane
+        self._time_constant = time_constant
+        self.mass = math.nan  # kg; NaN: not measured
+
+    def following(self, sample: Sample, dt: float) -> float:
+        """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
+        measured = sample.hook_load
+        if not math.isfinite(measured) or measured < 0.0:
+            return self.mass
+        if not abs(measured - self.mass) <= PICKED_UP * self.mass:
+            return measured
+        return self.mass + (measured - self.mass) * dt / (dt + self._time_constant)
+
+    @property
+    def measured(self) -> bool:
+        """Whether a mass is known from a load cell."""
+        return math.isfinite(self.mass)
+
+    def shaft_torque(self, layer: float) -> float:
+        """T_d / i of the measured mass, N m; 0 without one."""
+        return self._crane.drum_torque(self.mass, layer) / self._crane.gear_ratio if self.measured else 0.0
+
+    def mass_by(self, shaft_torque: float, layer: float) -> float:
+        """The measured mass, else the one that a load torque at the shaft means; kg."""
+        if self.measured:
+            return self.mass
+        return max(0.0, shaft_torque * self._crane.gear_ratio / (GRAVITY * self._crane.drum.radius(layer)))

@@ -1,134 +1,131 @@
-"""`winch-friction fleet`: the same verbs over many recordings, on Dask."""
+"""`winch-friction fleet`: the same verbs over many recordings of many cranes, on Dask."""
 
-import contextlib
-import io
 import json
-import time
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.fleet_work import VERBS, Task, carry_out, dated_rows, plan
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
+from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
 from winch_friction.physics.errors import InputError
-
-# verb -> where its result goes below --out
-OUTPUTS = {"replay": "{name}.parquet", "gap": "{name}"}
-RUN_SUFFIXES = (".csv", ".parquet", ".mcap", ".db3")
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What one recording gave: exit status, seconds, the verb's own JSON (or its error line)."""
-
-    recording: str
-    status: int
-    seconds: float
-    result: Any
-    message: str
 
 
 def command(
-    verb: Annotated[str, typer.Argument(help=f"One of {', '.join(OUTPUTS)}.")],
-    recordings: Annotated[
-        list[Path], typer.Argument(help="Bags or run files; for gap also folders of a crane's runs.")
+    verb: Annotated[str, typer.Argument(help=f"One of {', '.join(VERBS)}.")],
+    sources: Annotated[
+        list[str], typer.Argument(help="Bags, run files, folders of them, or addresses such as s3://bucket/prefix.")
     ],
-    out: Annotated[Path, typer.Option(help="Folder for the results and fleet.json.")],
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
-    model: Annotated[str, typer.Option(help="Model file or shipped name.")],
+    out: Annotated[Path, typer.Option(help="Folder for results, fleet.json, the store and the summary page.")],
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name; {crane} is the recording's folder.")],
+    model: Annotated[
+        str, typer.Option(help="Model file or shipped name (for identify the motor's); {crane} likewise.")
+    ],
     option: Annotated[OptionalTexts, typer.Option(help="Option for the verb, NAME=VALUE or NAME; repeatable.")] = None,
+    storage: Annotated[OptionalTexts, typer.Option(help="Option of the storage, NAME=VALUE; repeatable.")] = None,
     workers: Annotated[
         OptionalInt, typer.Option(min=0, help="Processes; 0: this one. Default: as many as cores.")
     ] = None,
     scheduler: Annotated[str, typer.Option(help="Address of a Dask scheduler; empty: a cluster on this machine.")] = "",
+    anew: Annotated[bool, typer.Option("--anew", help="Do again what fleet.jsonl says is done.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="All outcomes as JSON.")] = False,
 ) -> None:
-    """Run a verb over many recordings; one that fails does not stop the others.
+    """Run a verb over many recordings; one that fails does not stop the others, and a killed run goes on where it was.
+
+    The folder that a recording lies in is its crane. Recordings with Unix time are followed over the months.
 
     Examples:
 
-      winch-friction fleet replay bags/* --crane crane_150t --model a6vm215_crane2 --out fleet/
+      winch-friction fleet replay bags/ --crane crane_150t --model a6vm215_crane2 --out fleet/
 
-      winch-friction fleet gap cranes/* --crane crane_150t --model a6vm215_crane2 --out fleet/ --option holdout=0.3
+      winch-friction fleet gap cranes/ --crane cranes/{crane}.yaml --model seed.yaml --out fleet/ --option holdout=0.3
+
+      winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
-    if verb not in OUTPUTS:
-        raise InputError(f"fleet knows the verbs {', '.join(OUTPUTS)}, not '{verb}'")
-    tasks = _tasks(verb, recordings, out, ["--crane", crane, "--model", model, *_flags(option or [])])
-    out.mkdir(parents=True, exist_ok=True)
-    outcomes = list(progress(_outcomes(tasks, workers, scheduler), "fleet", total=len(tasks)))
-    outcomes.sort(key=lambda each: each.recording)
-    content = [asdict(each) for each in outcomes]
-    (out / "fleet.json").write_text(json.dumps(content, indent=1), encoding="utf-8")
+    from winch_friction.fleet.recordings import find_recordings
+
+    options = _storage_options(storage or [])
+    recordings = find_recordings(sources, options)
+    tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
+    outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)
+    content = {"verb": verb, "outcomes": [asdict(each) for each in outcomes], **_over_time(outcomes, out)}
+    _write(out, content, verb, outcomes)
     if as_json:
         show_json(content)
     else:
-        rows = [(o.recording, o.status, o.seconds, o.message or "done") for o in outcomes]
-        show_table(f"{verb} over {len(outcomes)} recordings", ("recording", "exit", "seconds", "outcome"), rows)
+        rows = [(o.recording, o.status, o.seconds, verdict_of(o)) for o in outcomes]
+        show_table(f"{verb} over {len(recordings)} recordings", ("recording", "exit", "seconds", "outcome"), rows)
+        _show_changes(content)
     raise typer.Exit(_status(outcomes))
 
 
-def carry_out(recording: str, arguments: list[str]) -> Outcome:
-    """One verb on one recording, in whichever process this is called."""
-    from winch_friction.cli.main import run
+def _done(tasks: list[Task], ledger: Ledger, workers: int | None, scheduler: str, anew: bool) -> list[Outcome]:
+    """Every task's outcome: from the ledger where it is there, else worked out now and put there at once."""
+    from winch_friction.fleet.schedule import on_dask, on_this_process
 
-    said, complained, begin = io.StringIO(), io.StringIO(), time.monotonic()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
-        status = run(arguments)
-    lines = [line for line in complained.getvalue().splitlines() if line.strip()]
-    result = _parsed(said.getvalue()) if status == 0 else None
-    message = "" if status == 0 else (lines or ["no message"])[-1]
-    return Outcome(recording, status, time.monotonic() - begin, result, message)
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text.strip()
+    known = {} if anew else ledger.latest()
+    waiting = [task for task in tasks if known.get(task.key) is None or known[task.key].status == 1]
+    pieces = [(task,) for task in waiting]
+    local = workers == 0 and not scheduler
+    stream = on_this_process(carry_out, pieces) if local else on_dask(carry_out, pieces, workers, scheduler)
+    if waiting:
+        for outcome in progress(stream, "fleet", total=len(waiting)):
+            ledger.add(outcome)
+            known[outcome.key] = outcome
+    return sorted((known[task.key] for task in tasks), key=lambda each: each.recording)
 
 
-def _tasks(verb: str, recordings: list[Path], out: Path, options: list[str]) -> list[tuple[str, list[str]]]:
-    names = [path.name if path.is_dir() else path.stem for path in recordings]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f"two recordings are named '{name}': their results would overwrite each other; rename one")
-    tasks = []
-    for name, path in zip(names, recordings, strict=True):
-        target = str(out / OUTPUTS[verb].format(name=name))
-        tasks.append((str(path), [verb, *_inputs(verb, path), *options, "--out", target, "--json"]))
-    return tasks
+def _over_time(outcomes: list[Outcome], out: Path) -> dict[str, Any]:
+    """What the dated recordings say of the cranes: steps, and who is unlike the others."""
+    from winch_friction.fleet.drift import find_steps, find_unlike, month_text, monthly
+    from winch_friction.fleet.store import write_store
+
+    rows = dated_rows(outcomes)
+    write_store(out / "store", rows)
+    series: dict[tuple[str, str], list[tuple[float, float, float]]] = {}
+    for row in rows:
+        if row["kind"] == "trait":
+            series.setdefault((row["crane"], row["name"]), []).append((row["time"], row["value"], row["std"]))
+    followed = monthly(series)
+    undated = sum(each.status == 0 for each in outcomes) if not rows else 0
+    return {
+        "steps": [asdict(step) | {"month": month_text(step.month), "unit": "N*m"} for step in find_steps(followed)],
+        "unlike": [asdict(each) | {"unit": "N*m"} for each in find_unlike(followed)],
+        "notes": ["no recording has a Unix time: nothing can be followed over the months"] if undated else [],
+    }
 
 
-def _inputs(verb: str, path: Path) -> list[str]:
-    """The recording itself; for gap, a folder that is no bag stands for the runs in it."""
-    if verb == "gap" and path.is_dir() and not (path / "metadata.yaml").is_file():
-        found = sorted(each for each in path.iterdir() if each.suffix in RUN_SUFFIXES or each.is_dir())
-        return [str(each) for each in found]
-    return [str(path)]
+def _write(out: Path, content: dict[str, Any], verb: str, outcomes: list[Outcome]) -> None:
+    from winch_friction.records.atomic import write_text
+    from winch_friction.report.fleet import write_fleet_report
+
+    write_text(out / "fleet.json", json.dumps(content, indent=1, default=str))
+    write_fleet_report(out / "report.html", verb, outcomes, content, out / "store")
+
+
+def _show_changes(content: dict[str, Any]) -> None:
+    steps = [(s["crane"], s["trait"], s["month"], s["size"], s["p_value"]) for s in content["steps"]]
+    if steps:
+        show_table("changed", ("crane", "what", "month", "size [N m]", "p"), steps)
+    unlike = [(u["crane"], u["trait"], u["level"], u["fleet"], u["score"]) for u in content["unlike"]]
+    if unlike:
+        show_table("unlike the others", ("crane", "what", "level [N m]", "fleet [N m]", "deviations"), unlike)
+    for note in content["notes"]:
+        print(note)
 
 
 def _flags(options: list[str]) -> list[str]:
     return [part for each in options for part in f"--{each}".split("=", 1)]
 
 
-def _outcomes(tasks: list[tuple[str, list[str]]], workers: int | None, scheduler: str) -> Iterator[Outcome]:
-    if workers == 0 and not scheduler:
-        return (carry_out(*task) for task in tasks)
-    return _on_dask(tasks, workers, scheduler)
-
-
-def _on_dask(tasks: list[tuple[str, list[str]]], workers: int | None, scheduler: str) -> Iterator[Outcome]:
-    from dask.distributed import Client, LocalCluster, as_completed
-
-    with contextlib.ExitStack() as stack:
-        local = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 40}
-        cluster = scheduler or stack.enter_context(LocalCluster(**local))
-        client = stack.enter_context(Client(cluster))
-        for future in as_completed([client.submit(carry_out, *task, pure=False, retries=1) for task in tasks]):
-            yield future.result()
+def _storage_options(pairs: list[str]) -> dict[str, Any]:
+    wrong = [each for each in pairs if "=" not in each]
+    if wrong:
+        raise InputError(f"--storage '{wrong[0]}': write NAME=VALUE, e.g. endpoint_url=http://127.0.0.1:9000")
+    return dict(each.split("=", 1) for each in pairs)
 
 
 def _status(outcomes: list[Outcome]) -> int:

@@ -1,0 +1,34 @@
+"""The verb convert, as a person calls them."""
+
+import json
+
+import numpy as np
+import pytest
+
+from winch_friction.cli import main
+from winch_friction.records.runs import read_run, write_run
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import simulate
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory, crane_150t, crane2_model):
+    folder = tmp_path_factory.mktemp("fleet")
+    scenario = load_scenario("ahc_irregular").override({"duration": 4.0})
+    for seed, name in ((1, "one.csv"), (2, "two"), (3, "three.mcap")):
+        write_run(simulate(scenario, crane_150t, crane2_model, seed=seed).run, folder / name)
+    return folder
+
+
+def test_convert_keeps_every_digit(runs, tmp_path, capsys):
+    targets = [str(tmp_path / name) for name in ("a.csv", "a.parquet", "a.mcap", "a")]
+    assert main.run(["convert", "run", str(runs / "one.csv"), *targets, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["written"] == targets
+    first = read_run(runs / "one.csv")
+    for target in targets:
+        back = read_run(target)
+        for column in first.columns:
+            np.testing.assert_allclose(back[column], first[column], rtol=1e-12, atol=1e-9)
+    assert main.run(["convert", "run", str(runs / "one.csv"), targets[-1]]) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert main.run(["convert", "emps", str(runs / "one.csv"), str(tmp_path / "e.csv")]) == 2

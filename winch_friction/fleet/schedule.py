@@ -1,0 +1,39 @@
+"""Work on Dask with back-pressure, in the order in which it ends."""
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+AHEAD = 4  # pieces of work per thread handed to the scheduler at a time: busy workers, small queues
+RETRIES = 2  # for a worker that was killed; a piece of work that fails gives an outcome, not an error
+PATIENCE = 30.0  # s for a scheduler to answer
+
+
+def on_this_process(work: Callable[..., T], pieces: Sequence[tuple[Any, ...]]) -> Iterator[T]:
+    """One after the other, here."""
+    return (work(*piece) for piece in pieces)
+
+
+def on_dask(
+    work: Callable[..., T], pieces: Sequence[tuple[Any, ...]], workers: int | None, address: str
+) -> Iterator[T]:
+    """On the scheduler at `address`, or on a cluster of processes on this machine; results as they come."""
+    from dask.distributed import Client, LocalCluster, as_completed
+
+    with contextlib.ExitStack() as stack:
+        local = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 40}
+        cluster = address or stack.enter_context(LocalCluster(**local))
+        client = stack.enter_context(Client(cluster, timeout=PATIENCE))
+        waiting = iter(pieces)
+
+        def submitted(count: int) -> list[Any]:
+            return [client.submit(work, *piece, pure=False, retries=RETRIES) for piece in islice(waiting, count)]
+
+        ended = as_completed(submitted(AHEAD * max(1, sum(client.nthreads().values()))))
+        for future in ended:
+            yield future.result()
+            future.release()
+            for more in submitted(1):
+                ended.add(more)

@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.blocks import Blocks, Slot, grams
-from winch_friction.discrepancy.candidates.candidate import Candidate, Variant, single_shape
-from winch_friction.discrepancy.crossfit import CrossFit
-from winch_friction.discrepancy.problem import Base, Problem
-from winch_friction.physics.friction.term import Parameter
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
+from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 
 RUNS, BLOCKS = 9, 200
-AMPLITUDE = Parameter("a", "N*m", 1.0, lower=-100.0)
-EFFECT = Slot(
-    Candidate("effect", "a x", (AMPLITUDE,), lambda run, shape: np.zeros((1, 1)), single_shape), Variant(""), (1,)
-)
+EFFECT = Slot("effect", "", (1,))
 
 
 def problem_with(amplitudes, seed=0):
@@ -28,9 +23,8 @@ def problem_with(amplitudes, seed=0):
     one = np.ones(1)
     base = Base(("b",), 1, one, 0.0 * one, -2.0 * one, 2.0 * one)
     bound = np.array([2.0, 100.0])
-    return Problem(
-        base, (EFFECT,), blocks, grams(blocks), np.ones(2), -bound, bound, dict.fromkeys(range(RUNS), 1.0), ()
-    )
+    layout = Layout(base, (EFFECT,), np.ones(2), -bound, bound)
+    return Problem(layout, blocks, grams(blocks), dict.fromkeys(range(RUNS), 1.0))
 
 
 def p_value(problem):

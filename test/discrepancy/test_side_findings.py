@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from campaign.rig import make_dataset
-from winch_friction.discrepancy.candidates.accumulator import accumulator_candidates
-from winch_friction.discrepancy.flow_balance import ORDINARY, lost_speed
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
+from winch_friction.discrepancy.detectors.ripple import angle_ripple
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.ripple import angle_ripple
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -54,13 +54,13 @@ def test_without_a_command_there_is_nothing_to_compare():
 def test_warm_gas_leaves_the_trace_that_its_candidate_expects():
     _, null, _ = _prepared("si_files")
     _, warm, _ = _prepared("si_files", ("accumulator_thermal", 1.0))
-    candidate = accumulator_candidates()[0]
+    candidate = next(each for each in all_candidates() if each.name == "accumulator_thermal")
     k = 8
-    both = null[k].moving & warm[k].moving
+    both = null[k].used & warm[k].used
     trace = (warm[k].gap - null[k].gap)[both]
     left = []
-    for variant in candidate.shapes(warm):
-        columns = candidate.columns(warm[k], variant.shape)[both]
+    for shape in candidate.shapes(warm):
+        columns = candidate.columns(warm[k], shape.values)[both]
         beta, *_ = np.linalg.lstsq(columns, trace, rcond=None)
         left.append(np.var(trace - columns @ beta) / np.mean(trace**2))
     assert min(left) < 0.05

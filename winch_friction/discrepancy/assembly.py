@@ -5,28 +5,30 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Blocks, Slot
-from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.holdout import Split, rms_with_interval
-from winch_friction.discrepancy.linearise import Expansion
+from winch_friction.discrepancy.answer import Effect, GapResult, ParameterEstimate, Side, relative_error
+from winch_friction.discrepancy.detectors.reversals import ReversalFinding
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.interval import rms_with_interval
+from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.engine.omnibus import Dependence
+from winch_friction.discrepancy.engine.problem import Problem
+from winch_friction.discrepancy.engine.regions import find_regions
+from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
-from winch_friction.discrepancy.noise import noise_of_run
-from winch_friction.discrepancy.omnibus import SIGNIFICANCE, Dependence, remainder
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.problem import Problem, build_problem
-from winch_friction.discrepancy.regions import find_regions
-from winch_friction.discrepancy.repair import Estimate, repair, with_turning
-from winch_friction.discrepancy.result import Effect, GapResult, Side, relative_error
+from winch_friction.discrepancy.preparation.prepare import READ_AS
+from winch_friction.discrepancy.regressors import build_problem
+from winch_friction.discrepancy.repair import repair, with_reversal_effect
 from winch_friction.discrepancy.search import Search
-from winch_friction.discrepancy.selection import Found, Selection
-from winch_friction.discrepancy.turning import TurningFinding
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-
-MOST_SIGNALS = 3
-LEAST_NAMED_SHARE = 0.02  # of the remainder, that a signal must predict to be named before those that predict more
 
 
 def assemble(
@@ -40,16 +42,16 @@ def assemble(
     repaired = repair(model, search.expansion, cross, explanation, notes)
     effects = [_effect(each, repaired.parameters) for each in found]
     final_model = repaired.model
-    if search.turning is not None:
-        final_model, parameters = with_turning(repaired.model, search.turning)
-        effects.append(_turning_effect(search.turning, parameters))
+    if search.reversal is not None:
+        final_model, parameters = with_reversal_effect(repaired.model, search.reversal)
+        effects.append(_reversal_effect(search.reversal, parameters))
     experiment = _experiment(crane, search, options) if options.plan else None
     train = _side(search.at_seed, search.expansion, split.train, explanation, rng)
     holdout = _side(search.at_seed, search.expansion, split.holdout, explanation, rng)
     unexplained = verdict.kind == UNEXPLAINED
     return GapResult(
         verdict=verdict.kind, refused=verdict.refused, effects=(*effects, *search.side),
-        regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base))),
+        regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base), READ_AS)),
         unit="N*m" if crane.electric else "bar", train=train, holdout=holdout,
         depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
@@ -69,18 +71,18 @@ def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperi
     return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 
-def _effect(found: Found, parameters: Mapping[str, Mapping[str, Estimate]]) -> Effect:
-    candidate = found.slot.candidate
+def _effect(found: Finding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
+    candidate = found.slot.origin[0]
     return Effect(
-        candidate.name, tuple(rival.candidate.name for rival in found.rivals), found.slot.variant.label, candidate.law,
+        candidate.name, tuple(rival.name for rival in found.rivals), found.slot.label, candidate.law,
         parameters.get(candidate.name, {}), found.p_value, found.gain, found.selection_frequency,
     )  # fmt: skip
 
 
-def _turning_effect(turning: TurningFinding, parameters: Mapping[str, Estimate]) -> Effect:
-    candidate = turning.slot.candidate
+def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, ParameterEstimate]) -> Effect:
+    candidate = finding.slot.origin[0]
     return Effect(
-        candidate.name, (), turning.slot.variant.label, candidate.law, parameters, turning.p_value, turning.gain, 1.0,
+        candidate.name, (), finding.slot.label, candidate.law, parameters, finding.p_value, finding.gain, 1.0,
         "just after reversals",
     )  # fmt: skip
 
@@ -92,7 +94,7 @@ def _provenance(train: Sequence[str], verdict: Verdict, options: GapOptions) -> 
 
 
 def _unweighted(cross: CrossFit, explanation: Explanation) -> FloatArray:
-    return np.asarray(remainder(cross, explanation) / cross.problem.blocks.weight)
+    return np.asarray(cross.remainder(explanation) / cross.problem.blocks.weight)
 
 
 def _side(
@@ -128,13 +130,15 @@ def _problem(expansion: Expansion, names: Sequence[str], slots: Sequence[Slot]) 
 def _measured(expansion: Expansion, blocks: Blocks, names: Sequence[str]) -> FloatArray:
     """RMS-true stand-in for the measured torque of the blocks: each run's own RMS while moving, in the gap's unit."""
     chosen = [run for run in expansion.runs if run.name in names]
-    own = [np.sqrt(np.mean(((r.gap + r.predicted)[r.moving] / r.unit_torque) ** 2)) for r in chosen]
+    own = [np.sqrt(np.mean(((r.gap + r.predicted)[r.used] / r.unit_torque) ** 2)) for r in chosen]
     return np.array(own)[blocks.run]
 
 
 def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
-    significant = [each for each in left if each.p_value <= SIGNIFICANCE and each.share > LEAST_NAMED_SHARE]
-    return tuple((significant or [d for d in left if d.share > 0.0])[:MOST_SIGNALS])
+    significant = [
+        each for each in left if each.p_value <= LIMITS.remainder_p and each.share > LIMITS.least_named_share
+    ]
+    return tuple((significant or [d for d in left if d.share > 0.0])[: LIMITS.most_signals])
 
 
 def _unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Slot
-from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.linearise import Expansion
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.problem import PRIOR_WEIGHT, build_problem
+from winch_friction.discrepancy.regressors import build_problem
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 from winch_friction.records.paths import shipped
 
@@ -25,7 +26,6 @@ EXPERIMENTS = (
     "experiment_zero_check", "experiment_loads", "experiment_displacement_sweep", "experiment_boost_step",
     "experiment_heave_30s", "experiment_slow_ramps", "experiment_hold_times", "ahc_55t_160",
 )  # fmt: skip
-ENOUGH = 3.0  # standard deviations that tell two effects apart
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,11 @@ class NextExperiment:
 
     def content(self) -> dict[str, Any]:
         """The entry of gap.json."""
-        note = "" if self.expected_z >= ENOUGH else "tied in every scenario of the family: another channel must decide"
+        note = (
+            ""
+            if self.expected_z >= LIMITS.enough_separation
+            else "tied in every scenario of the family: another channel must decide"
+        )
         return {
             "scenario": self.file, "separates": list(self.separates), "expected_z": self.expected_z, "note": note,
             "considered": dict(self.alternatives),
@@ -77,7 +81,7 @@ def plan_experiment(
     z_best, rival = separation[best]
     text = shipped("scenarios", best).read_text(encoding="utf-8")
     return NextExperiment(
-        best, text, (own.candidate.name, rival.candidate.name), z_best,
+        best, text, (own.name, rival.name), z_best,
         {name: round(pair[0], 2) for name, pair in sorted(separation.items(), key=lambda item: -item[1][0])},
     )  # fmt: skip
 
@@ -98,7 +102,7 @@ def _separation(cross: CrossFit, new: CrossFit, truth: Explanation, rival: Seque
     b = g[:, true_columns] @ truth.beta
     y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
     beta = cross.problem.fit(g, b, columns.tolist())
-    return float(np.sqrt(max(_loss(g, b, y2, columns, beta), 0.0) / PRIOR_WEIGHT))
+    return float(np.sqrt(max(_loss(g, b, y2, columns, beta), 0.0) / LIMITS.prior_weight))
 
 
 def _loss(g: FloatArray, b: FloatArray, y2: float, columns: np.ndarray, beta: FloatArray) -> float:

@@ -5,20 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from winch_friction.discrepancy.answer import GapResult
 from winch_friction.discrepancy.assembly import assemble
-from winch_friction.discrepancy.crossfit import FEWEST_RUNS
+from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.holdout import lock_holdout
-from winch_friction.discrepancy.omnibus import dependences, remainder
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.result import GapResult
 from winch_friction.discrepancy.search import Search, search_runs
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-
-MOST_KEPT_NOISE, MOST_KEPT = 3.0, 0.05  # times the noise, and share of the excess, that locked runs may keep
 
 
 def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: GapOptions | None = None) -> GapResult:
@@ -33,7 +31,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     rng = np.random.default_rng(options.seed + 1)
     search = search_runs(split, crane, model, options, rng)
     result = assemble(split, crane, model, options, search, rng)
-    if len(split.train) < FEWEST_RUNS and result.effects and not _proved(result):
+    if len(split.train) < LIMITS.fewest_runs and result.effects and not _proved(result):
         return assemble(split, crane, model, options, _withdrawn(search), rng)
     if search.explanation.slots and _refuted(result):
         return assemble(split, crane, model, options, _unexplained(search, rng), rng)
@@ -49,15 +47,15 @@ def _refuted(result: GapResult) -> bool:
     """Whether the locked runs keep far more than their noise, and not only because there was so much before."""
     before, after, noise = result.holdout.size_before.value, result.holdout.size_after.value, result.holdout.noise_floor
     kept = (after**2 - noise**2) / max(before**2 - noise**2, 1e-9)
-    return after > MOST_KEPT_NOISE * noise and kept > MOST_KEPT
+    return after > LIMITS.most_kept_noise * noise and kept > LIMITS.most_kept
 
 
 def _unexplained(search: Search, rng: np.random.Generator) -> Search:
     """The search with what it found refused."""
-    names = ", ".join(found.slot.candidate.name for found in search.selection.found)
-    left = dependences(search.cross, remainder(search.cross, search.selection.base), rng)
+    names = ", ".join(found.slot.name for found in search.selection.found)
+    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
     verdict = Verdict(UNEXPLAINED, f"{names} does not hold on the locked runs")
-    return replace(search, verdict=verdict, left=tuple(left), turning=None)
+    return replace(search, verdict=verdict, left=tuple(left), reversal=None)
 
 
 def _withdrawn(search: Search) -> Search:
@@ -66,7 +64,7 @@ def _withdrawn(search: Search) -> Search:
     """
     selection = replace(search.selection, final=search.selection.base, found=())
     refused = "what seemed to be missing did not shrink the gap on the locked part; bring more runs"
-    return replace(search, selection=selection, verdict=Verdict(NOTHING, refused), turning=None, side=())
+    return replace(search, selection=selection, verdict=Verdict(NOTHING, refused), reversal=None, side=())
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

@@ -5,7 +5,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from winch_friction.discrepancy.result import Effect, GapResult
+from winch_friction.discrepancy.answer import Effect, GapResult
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.gap_pictures import equation, heat_maps, speed_bars, traces
 

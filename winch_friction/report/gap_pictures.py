@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import BLOCK_SAMPLES
+from winch_friction.discrepancy.answer import GapResult, Side
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.result import GapResult, Side
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, RPM
 from winch_friction.report.figures import figure_html, new_figure
@@ -77,10 +77,10 @@ def traces(result: GapResult) -> str:
     figure, axes = new_figure(2, len(chosen), 2.5, squeeze=False, sharex="col")
     for k, number in enumerate(chosen):
         run, own = side.runs[number], side.blocks.run == number
-        own &= side.blocks.position * BLOCK_SAMPLES * run.dt < TRACE_TIME
-        time = side.blocks.position[own] * BLOCK_SAMPLES * run.dt
+        own &= side.blocks.position * LIMITS.block_samples * run.dt < TRACE_TIME
+        time = side.blocks.position[own] * LIMITS.block_samples * run.dt
         measured = _measured(run)[
-            np.minimum(side.blocks.position[own] * BLOCK_SAMPLES + BLOCK_SAMPLES // 2, len(run.time) - 1)
+            np.minimum(side.blocks.position[own] * LIMITS.block_samples + LIMITS.block_samples // 2, len(run.time) - 1)
         ]
         lines = (
             (measured, "measured"),
@@ -117,7 +117,7 @@ def _measured(run: PreparedRun) -> FloatArray:
 
 
 def _with_breaks(time: FloatArray, values: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
-    gaps = np.flatnonzero(np.diff(time) > 3.0 * BLOCK_SAMPLES * dt) + 1
+    gaps = np.flatnonzero(np.diff(time) > 3.0 * LIMITS.block_samples * dt) + 1
     return np.insert(time, gaps, np.nan), np.insert(values, gaps, np.nan)
 
 

@@ -1,60 +1,44 @@
-"""A candidate effect: its law, its parameters, what it needs, and the regressors it would leave in the gap."""
+"""A candidate effect: one object that says all there is to say about it.
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+Its law and parameters, the regressors that it would leave in the gap, what it needs and presumes, what it brings along,
+where it shows, how large it may be, and how it goes into the repaired model.
+"""
 
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import Parameter, Term
-from winch_friction.physics.signals import FloatArray
 
-Shape = Mapping[str, float]
-Columns = Callable[[PreparedRun, Shape], FloatArray]
-Shapes = Callable[[Sequence[PreparedRun]], "list[Variant]"]
+Values = Mapping[str, float]
+Columns = Callable[[PreparedRun, Values], FloatArray]
+Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
+Merge = Callable[[Values, Values], Mapping[str, float]]
+# where an effect shows: in moving samples, just after reversals, over the shaft's angle, in the flow, or nowhere
+MOVING, REVERSALS, ANGLE, FLOW, NOWHERE = "moving", "just after reversals", "angle", "flow", "nowhere"
+REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
 
 @dataclass(frozen=True)
-class Variant:
-    """One shape of an effect: fixed values of its shape parameters, and which of its linear parameters it uses.
+class Shape:
+    """One shape of an effect: fixed values of its shape parameters.
 
-    `carried`: an error of the passive side's signals, so that the driving motors carry other than they seem to.
+    `bounds` of the amplitude in typical sizes, where the shape holds only there; `carried`: an error of the passive
+    side's signals, so that the driving motors carry other than they seem to.
     """
 
     label: str
-    shape: Shape = field(default_factory=dict)
-    bounds: tuple[float, float] | None = None  # of the amplitude in typical sizes, where the shape holds only there
+    values: Values = field(default_factory=dict)
+    bounds: tuple[float, float] | None = None
     carried: bool = False
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """One effect that the model may lack.
-
-    `columns(run, shape)` gives the torque in N m at the shaft that each linear parameter, at one unit, adds to
-    measured minus
-    predicted, shape (samples, parameters). `linear` declares those parameters with typical size and bounds;
-    `plausible` times the
-    typical size is the largest amplitude that is believed. `needs` names run columns; `presumes` names terms of which
-    the model must have one; `term` is the friction term to put into the repaired model, None for what is corrected
-    in a signal.
-    `continuous` names the shape parameters whose values are a grid over a positive quantity, to be refined once found.
-    `brings` names lower-order effects that belong to it. `regime`: 'moving' samples, or 'turning' for what shows
-    only around reversals.
-    """
-
-    name: str
-    law: str
-    linear: tuple[Parameter, ...]
-    columns: Columns
-    shapes: Shapes
-    kind: str = "friction"
-    needs: tuple[str, ...] = ()
-    presumes: tuple[str, ...] = ()
-    term: Term | None = None
-    regime: str = "moving"
-    plausible: float = 6.0
-    hydraulic: bool = False
-    brings: tuple[str, ...] = ()
-    continuous: tuple[str, ...] = ()
+Shapes = Callable[[Sequence[PreparedRun]], list[Shape]]
 
 
 @dataclass(frozen=True)
@@ -67,6 +51,95 @@ class Untestable:
     because: str
 
 
-def single_shape(_: Sequence[PreparedRun]) -> list[Variant]:
+def single_shape(_: Sequence[PreparedRun]) -> list[Shape]:
     """For effects without shape parameters."""
-    return [Variant("")]
+    return [Shape("")]
+
+
+def no_columns(run: PreparedRun, _: Values) -> FloatArray:
+    """For effects that leave the torque balance closed; a detector of their own looks for them."""
+    raise NotImplementedError(run.name)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect that the model may lack.
+
+    `columns(run, values)` gives the torque in N m at the shaft that each linear parameter, at one unit, adds to
+    measured minus predicted, shape (samples, parameters), for given shape parameters. `linear` declares those
+    parameters with typical size and bounds. `kind`: 'friction' is repaired by a `term`, 'signal', 'geometry', 'load'
+    and 'inertia' by a correction.
+    """
+
+    name: str
+    law: str
+    linear: tuple[Parameter, ...] = ()
+    columns: Columns = no_columns
+    shapes: Shapes = single_shape
+    kind: str = "friction"
+    regime: str = MOVING
+    term: Term | None = None  # the friction term to put into the repaired model
+    # -- when it is looked for
+    needs: tuple[str, ...] = ()  # run columns
+    presumes: tuple[str, ...] = ()  # terms of which the model must have one
+    hydraulic: bool = False  # speaks of pressures or displacement
+    blind: Blind | None = None  # (need, reason) where the runs cannot show it for a reason of its own
+    # -- what is believed of it
+    plausible: float = 6.0  # typical sizes
+    plain: bool = False  # a base term that a bare model simply lacks, of any size
+    brings: tuple[str, ...] = ()  # lower-order effects that belong to it
+    continuous: tuple[str, ...] = ()  # shape parameters on a grid over a positive quantity, refined once found
+    reversal_gain: float | None = None  # share of the error just after reversals that names it there; None: never
+    reversal_rival: bool = False  # may explain what happens there
+    shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
+    merge: Merge | None = None  # how its term melts with the same term of another shape; None: values add
+
+    def most_in(self, model: FrictionModel) -> float:
+        """Largest amplitude that is believed, in typical sizes: of a bare model nothing is known yet."""
+        present = self.term is not None and self.term.name in model.term_names
+        bare = len(model.parameters) <= LIMITS.bare
+        return LIMITS.unbounded if bare and self.plain and not present else self.plausible
+
+    def untestable(self, runs: Sequence[PreparedRun]) -> Untestable | None:
+        """Why these runs cannot show it; None where they can."""
+        present = frozenset.intersection(*(run.present for run in runs))
+        if self.hydraulic and not any(run.groups for run in runs):
+            return Untestable(self.name, self.law, "pressures", "an electric drive has none")
+        if self.blind is not None and (reason := self.blind(runs)) is not None:
+            return Untestable(self.name, self.law, *reason)
+        missing = [name for name in self.needs if name not in present]
+        if missing:
+            return Untestable(self.name, self.law, missing[0], f"no run has '{missing[0]}' throughout")
+        return None
+
+    def refined(self, shape: Shape) -> "Candidate":
+        """The candidate with more shapes around one of its own: what a coarse grid leaves over must not pass for a
+        second effect. Itself where it has no grid to refine.
+        """
+        if not self.continuous:
+            return self
+        return replace(self, shapes=partial(_finer, self, shape), continuous=())
+
+
+def _finer(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> list[Shape]:
+    given = candidate.shapes(runs)
+    axes = {name: _between(shape.values[name], (v.values[name] for v in given)) for name in candidate.continuous}
+    points = itertools.product(*axes.values())
+    finer = [{**shape.values, **dict(zip(axes, point, strict=True))} for point in points]
+    return given + [replace(shape, label=label_of(values), values=values) for values in finer if values != shape.values]
+
+
+def _between(value: float, grid: Iterable[float]) -> list[float]:
+    """The value and what lies between it and its neighbours; past the end, as far as on the other side."""
+    values = sorted(set(grid))
+    if len(values) < 2:
+        return [value]
+    k = values.index(value)
+    up = values[k + 1] / value if k + 1 < len(values) else value / values[k - 1]
+    down = values[k - 1] / value if k > 0 else value / values[k + 1]
+    return [value, *(value * ratio**step for ratio in (down, up) for step in REFINEMENT)]
+
+
+def label_of(values: Values) -> str:
+    """A shape in words."""
+    return ", ".join(f"{name} = {value:g}" for name, value in values.items())

@@ -1,113 +1,164 @@
 """Candidates that are declared friction terms: their regressors are the term's own derivatives by its parameters."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
+from scipy.optimize import least_squares
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant
-from winch_friction.discrepancy.candidates.linear_state import state_history
+from winch_friction.discrepancy.candidates.candidate import REVERSALS, Candidate, Shape, Shapes, Values, label_of
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import term_named
-from winch_friction.physics.friction.compiled import broadcast_columns, compiled
-from winch_friction.physics.friction.term import Parameter, Term
-from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.friction.compiled import CompiledTerms, broadcast_columns, compiled
+from winch_friction.physics.friction.term import Term
 
-# shape parameters are profiled over these values; what is not named takes the typical value times 0.5, 1, 2
-SHAPES: dict[str, tuple[float, ...]] = {
-    "n_t": (1.5, 2.0, 2.5),
-    "n_ch": (1.9,),
-    "b_g": (0.0,),
-    "d_z": (0.009, 0.02, 0.04, 0.09),
-    "g_dw": (0.4,),
-    "d_dw": (0.5, 1.0, 2.0, 5.0),
-}
-STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
-SHIPPED = (
-    "viscosity_temperature", "stribeck", "dwell_stiction", "gear_asymmetry", "gear_load_loss", "sheave_bending",
-    "wear_drift",
-    "low_displacement_loss", "port_turbulence", "notch_loss", "churning", "high_pressure_mixed", "line_pressure_drop",
-    "case_pressure", "brake_drag", "coulomb", "viscous", "torque_offset", "direction_asymmetry",
-)  # fmt: skip
-TURNING = ("presliding",)
-NEEDS = {"viscosity_temperature": ("oil_temperature",)}
+Grid = Mapping[str, tuple[float, ...]]
 COULOMB = ("coulomb", "motor_coulomb")
-PRESUMES = {"brake_drag": COULOMB, "sheave_bending": ("gear_load_loss",), "wear_drift": COULOMB}
-# marginality: the slope of what depends on direction is never taken without its intercept
-BRINGS = {"direction_asymmetry": ("torque_offset",)}
+STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
+BRISTLE_TRAVEL = (0.009, 0.02, 0.04, 0.09)  # rad of the shaft, 0.5 to 5 degrees
+TYPICAL_DRUM_TORQUE = 4e5  # N m, to weigh the two coefficients of a Stribeck curve
 
 
 def shipped_friction() -> list[Candidate]:
-    """The catalogue's friction effects and the base terms."""
-    return [friction_candidate(term_named(name)) for name in (*SHIPPED, *TURNING)]
-
-
-def friction_candidate(term: Term) -> Candidate:
-    """A candidate from a declared term, a user's own included."""
-    linear = tuple(p for p in term.parameters if not p.shape)
-    return Candidate(
-        name=term.name,
-        law=term.latex,
-        linear=linear,
-        columns=partial(term_columns, term),
-        shapes=partial(_shapes, term),
-        needs=NEEDS.get(term.name, ()),
-        presumes=PRESUMES.get(term.name, ()),
-        term=term,
-        regime="turning" if term.name in TURNING else "moving",
-        brings=BRINGS.get(term.name, ()),
-        continuous=_continuous(term),
-        hydraulic=any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
-    )
-
-
-def _continuous(term: Term) -> tuple[str, ...]:
-    """Positive shape parameters of which several values are tried."""
-    if term.name == "wear_drift":
-        return ()
-    positive = (p for p in term.parameters if p.shape and p.lower > 0.0)
-    return tuple(p.name for p in positive if len(SHAPES.get(p.name, STRIBECK_SHARES)) > 1)
-
-
-def _shapes(term: Term, runs: Sequence[PreparedRun]) -> list[Variant]:
-    if term.name == "wear_drift":
-        return _observed_time(runs)
-    shape = [p for p in term.parameters if p.shape]
-    values = [_shape_values(p, runs) for p in shape]
+    """The catalogue's friction effects and the base terms, each in one line."""
     return [
-        Variant(", ".join(f"{p.name} = {v:g}" for p, v in zip(shape, point, strict=True)),
-                dict(zip((p.name for p in shape), point, strict=True)))
-        for point in itertools.product(*values)
+        _of("viscosity_temperature", needs=("oil_temperature",)),
+        _of("stribeck", shapes=_stribeck_shapes, continuous=("C4",), merge=_one_stribeck, plain=True,
+            reversal_rival=True),
+        _of("dwell_stiction", {"g_dw": (0.4,), "d_dw": (0.5, 1.0, 2.0, 5.0)}, reversal_gain=0.1, reversal_rival=True),
+        _of("gear_asymmetry", {"b_g": (0.0,)}),
+        _of("gear_load_loss"),
+        _of("sheave_bending", presumes=("gear_load_loss",)),
+        _of("wear_drift", shapes=_observed_time, presumes=COULOMB),
+        _of("low_displacement_loss"),
+        _of("port_turbulence", {"n_t": (1.5, 2.0, 2.5)}),
+        _of("notch_loss"),
+        _of("churning", {"n_ch": (1.9,)}),
+        _of("high_pressure_mixed"),
+        _of("line_pressure_drop"),
+        _of("case_pressure"),
+        _of("brake_drag", presumes=COULOMB),
+        _of("coulomb", plain=True, reversal_rival=True),
+        _of("viscous", plain=True, reversal_rival=True),
+        _of("torque_offset", plain=True),
+        # marginality: the slope of what depends on direction is never taken without its intercept
+        _of("direction_asymmetry", plain=True, brings=("torque_offset",)),
+        # every imperfection of timing looks like a little presliding, and a very short travel is within its blur
+        _of("presliding", {"d_z": BRISTLE_TRAVEL}, regime=REVERSALS, reversal_gain=0.3, reversal_rival=True,
+            shortest=("d_z", min(BRISTLE_TRAVEL))),
     ]  # fmt: skip
 
 
-def _shape_values(parameter: Parameter, runs: Sequence[PreparedRun]) -> tuple[float, ...]:
-    """The values over which a shape parameter is profiled."""
-    if parameter.name == "C4":
-        top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
-        return tuple(top * share for share in STRIBECK_SHARES)
-    usual = (parameter.typical * factor for factor in (0.5, 1.0, 2.0))
-    return SHAPES.get(parameter.name, tuple(v for v in usual if parameter.lower <= v <= parameter.upper))
+def _of(name: str, grid: Grid | None = None, **more: Any) -> Candidate:
+    return friction_candidate(term_named(name), grid or {}, **more)
 
 
-def _observed_time(runs: Sequence[PreparedRun]) -> list[Variant]:
+def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Candidate:
+    """A candidate from a declared term, a user's own included.
+
+    `grid` gives the values over which shape parameters are profiled; others take their typical value times 0.5, 1, 2.
+    `more` are fields of `Candidate`.
+    """
+    values = _grid(term, grid or {})
+    declared = {p.name: p for p in term.parameters}
+    fields: dict[str, Any] = {
+        "continuous": tuple(name for name, tried in values.items() if len(tried) > 1 and declared[name].lower > 0.0)
+        if "shapes" not in more
+        else (),
+        "shapes": _shapes_over(values),
+        "hydraulic": any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
+    }
+    linear = tuple(p for p in term.parameters if not p.shape)
+    return Candidate(term.name, term.latex, linear, partial(term_columns, term), term=term, **(fields | more))
+
+
+def _grid(term: Term, given: Grid) -> Grid:
+    usual = {
+        p.name: tuple(v for v in (p.typical * factor for factor in (0.5, 1.0, 2.0)) if p.lower <= v <= p.upper)
+        for p in term.parameters
+        if p.shape
+    }
+    return usual | dict(given)
+
+
+def _shapes_over(grid: Grid) -> Shapes:
+    shapes = [dict(zip(grid, point, strict=True)) for point in itertools.product(*grid.values())]
+    return lambda _: [Shape(label_of(values), values) for values in shapes]
+
+
+def _stribeck_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Widths of the curve as shares of the speeds that were run."""
+    top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
+    return [Shape(label_of({"C4": top * share}), {"C4": top * share}) for share in STRIBECK_SHARES]
+
+
+def _one_stribeck(at: Values, own: Values) -> Mapping[str, float]:
+    """The one exponential nearest to the sum of two over speed (rad/s), for the two load coefficients."""
+    speed = np.linspace(0.5, 4.0 * max(at["C4"], own["C4"]), 60)
+    first, second = np.exp(-speed / at["C4"]), np.exp(-speed / own["C4"])
+    load = [at["C1"] * first + own["C1"] * second, at["C3"] * first + own["C3"] * second]
+
+    def misfit(q: FloatArray) -> FloatArray:
+        shape = np.exp(-speed / q[2])
+        return np.concatenate([(q[0] * shape - load[0]) * TYPICAL_DRUM_TORQUE, q[1] * shape - load[1]])
+
+    start = [at["C1"] + own["C1"], at["C3"] + own["C3"], 0.5 * (at["C4"] + own["C4"])]
+    best = least_squares(misfit, start, x_scale=[1e-5, 1.0, 10.0]).x
+    return {"C1": float(max(best[0], 0.0)), "C3": float(max(best[1], 0.0)), "C4": float(best[2])}
+
+
+def _observed_time(runs: Sequence[PreparedRun]) -> list[Shape]:
     begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
     span = max(end - begin, 1.0)
     return [
-        Variant("since the first run", {"t_w": begin, "tau_w": span}),
-        Variant("around the middle of the dates", {"t_w": begin + 0.5 * span, "tau_w": span}),
-        Variant("since well before the first run", {"t_w": begin - 0.5 * span, "tau_w": span}),
-        Variant("since long before the first run", {"t_w": begin - span, "tau_w": span}),
+        Shape("since the first run", {"t_w": begin, "tau_w": span}),
+        Shape("around the middle of the dates", {"t_w": begin + 0.5 * span, "tau_w": span}),
+        Shape("since well before the first run", {"t_w": begin - 0.5 * span, "tau_w": span}),
+        Shape("since long before the first run", {"t_w": begin - span, "tau_w": span}),
     ]
 
 
-def term_columns(term: Term, run: PreparedRun, shape: Shape) -> FloatArray:
+def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     """Torque at the shaft per unit of each linear parameter, N m, shape (samples, parameters)."""
     functions = compiled((term,), len(run.groups), run.constants)
-    theta = tuple(shape.get(p.name, 1.0) for p in functions.parameters)
+    theta = tuple(values.get(p.name, 1.0) for p in functions.parameters)
     z = state_history(functions, run.point, theta, run.dt)
     with np.errstate(all="ignore"):
         parts = functions.vector_gradient(run.point, theta, z)
     keep = [k for k, p in enumerate(functions.parameters) if not p.shape]
     return np.nan_to_num(broadcast_columns([parts[k] for k in keep], len(run.time)))
+
+
+def state_history(
+    functions: CompiledTerms, point: Sequence[Any], theta: Sequence[float], dt: float
+) -> tuple[FloatArray, ...]:
+    """States dz/dt = gain - decay z from rest, exact for signals frozen over a step; one array per state.
+
+    The equations of the shipped terms have rates that do not depend on the state, so one pass of a scalar recursion
+    over precomputed coefficients is all it takes.
+    """
+    if not functions.initial_states:
+        return ()
+    size = np.broadcast(*point).size
+    zeros = tuple(0.0 for _ in functions.initial_states)
+    rates = functions.vector_state_rates(tuple(point), tuple(theta), zeros)
+    out = []
+    for k, initial in enumerate(functions.initial_states):
+        gain, decay = (np.broadcast_to(rates[2 * k + j], size) for j in (0, 1))
+        exponent = decay * dt
+        keep = np.exp(-exponent)
+        weight = np.where(exponent > 1e-9, -np.expm1(-exponent) / np.maximum(exponent, 1e-9), 1.0)
+        out.append(_recursion(initial, keep.tolist(), (gain * dt * weight).tolist()))
+    return tuple(out)
+
+
+def _recursion(z: float, keep: list[float], add: list[float]) -> FloatArray:
+    history: list[float] = []
+    append = history.append
+    for a, b in zip(keep, add, strict=True):
+        z = a * z + b
+        append(z)
+    return np.array(history)

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Variant, single_shape
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values, single_shape
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.term import Parameter
-from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
 
 ONE_DEPTH = -999.0  # a label among the layer numbers
@@ -27,36 +27,36 @@ def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
     return mass * run.radius / run.gear_ratio * (GRAVITY + run.load_acceleration) + share * run.load_friction
 
 
-def tare_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+def tare_columns(run: PreparedRun, values: Values) -> FloatArray:
     """A constant mass, the wire paid out, or both."""
-    hook = _hanging(run, 1.0) * shape["hook"]
+    hook = _hanging(run, 1.0) * values["hook"]
     length = run.channels["wire_out"] if "wire_out" in run.channels else np.zeros(len(run.time))
-    return np.column_stack([hook, _hanging(run, length) * shape["wire"]])
+    return np.column_stack([hook, _hanging(run, length) * values["wire"]])
 
 
-def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
-    shapes = [Variant("hook", {"hook": 1.0, "wire": 0.0})]
+def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = [Shape("hook", {"hook": 1.0, "wire": 0.0})]
     if any("wire_out" in run.channels for run in runs):
-        shapes += [Variant("wire", {"hook": 0.0, "wire": 1.0}), Variant("hook and wire", {"hook": 1.0, "wire": 1.0})]
+        shapes += [Shape("wire", {"hook": 0.0, "wire": 1.0}), Shape("hook and wire", {"hook": 1.0, "wire": 1.0})]
     return shapes
 
 
-def radius_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     """The load's torque on the layers concerned."""
     # the radius acts twice on the load's inertia: on its lever and on its acceleration
     turning = run.load * (run.radius / run.gear_ratio) ** 2 * run.acceleration
     torque = _hanging(run, run.load) + turning
     layer = run.channels.get("wire_layer")
-    if shape["layer"] == 0.0 or layer is None:
+    if values["layer"] == 0.0 or layer is None:
         return torque[:, None]
-    if shape["layer"] == ONE_DEPTH:
+    if values["layer"] == ONE_DEPTH:
         return (torque * ONE_METRE / run.radius)[:, None]
-    if shape["layer"] < 0.0:
-        return (torque * (-shape["layer"] - layer))[:, None]
-    return (torque * (np.rint(layer) == shape["layer"]))[:, None]
+    if values["layer"] < 0.0:
+        return (torque * (-values["layer"] - layer))[:, None]
+    return (torque * (np.rint(layer) == values["layer"]))[:, None]
 
 
-def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     layers = sorted(
         {
             float(v)
@@ -65,15 +65,15 @@ def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
             for v in np.unique(np.rint(run.channels["wire_layer"]))
         }
     )
-    shapes = [Variant("all layers", {"layer": 0.0})]
+    shapes = [Shape("all layers", {"layer": 0.0})]
     if len(layers) > 1:
-        shapes += [Variant(f"layer {layer:g}", {"layer": layer}) for layer in layers]
-        shapes.append(Variant("the same depth on all layers", {"layer": ONE_DEPTH}))
-        shapes.append(Variant("growing with depth", {"layer": -layers[-1]}))
+        shapes += [Shape(f"layer {layer:g}", {"layer": layer}) for layer in layers]
+        shapes.append(Shape("the same depth on all layers", {"layer": ONE_DEPTH}))
+        shapes.append(Shape("growing with depth", {"layer": -layers[-1]}))
     return shapes
 
 
-def inertia_columns(run: PreparedRun, _: Shape) -> FloatArray:
+def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
     """The shaft's acceleration."""
     return run.acceleration[:, None]
 

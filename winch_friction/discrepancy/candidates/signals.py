@@ -7,17 +7,19 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
+from scipy.signal import lfilter
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Variant
+from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Values
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.physics.friction.term import Parameter
-from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
 DELAYS = (0.05, 0.1)  # s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
+TIME_CONSTANTS = (30.0, 60.0, 120.0, 240.0)  # s, of an accumulator's gas
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 
 _GroupLaw = Callable[[GroupSignals], FloatArray]
@@ -29,23 +31,28 @@ D_0 = Parameter(
 )
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
+e_T = Parameter(
+    "e_T", "1", 0.02, lower=-0.2, upper=0.2, doc="relative excess temperature of the gas at the start of a run"
+)
+g_T = Parameter("g_T", "1", 1.0, lower=-10.0, upper=10.0, doc="share of the compression's heat that the wall takes")
 
-def _which(run: PreparedRun, shape: Shape) -> list[GroupSignals]:
-    which = shape["groups"]
+
+def _which(run: PreparedRun, values: Values) -> list[GroupSignals]:
+    which = values["groups"]
     return [g for g in run.groups if which == ALL or g.balances == (which == BALANCING)]
 
 
-def group_columns(law: _GroupLaw, run: PreparedRun, shape: Shape) -> FloatArray:
+def group_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
     """Sum of a law over the affected motor groups, N m at the shaft, shape (samples, 1)."""
-    return sum((law(g) for g in _which(run, shape)), np.zeros(len(run.time)))[:, None]
+    return sum((law(g) for g in _which(run, values)), np.zeros(len(run.time)))[:, None]
 
 
-def group_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     """Which transducers are off: all alike, or, with several groups about, those of one side alone."""
-    shapes = [Variant("all groups", {"groups": ALL})]
+    shapes = [Shape("all groups", {"groups": ALL})]
     if any(len(run.groups) > 1 for run in runs):
-        shapes.append(Variant("the driving group", {"groups": BALANCING}))
-        shapes.append(Variant("the passive group", {"groups": OTHER}, carried=True))
+        shapes.append(Shape("the driving group", {"groups": BALANCING}))
+        shapes.append(Shape("the passive group", {"groups": OTHER}, carried=True))
     return shapes
 
 
@@ -61,14 +68,14 @@ def _scale_a(g: GroupSignals) -> FloatArray:
     return g.count * g.displacement * 0.5 * (g.pressure_sum + g.pressure)
 
 
-def scale_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+def scale_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Gain error of both transducers of a group, or of that at port A alone."""
-    return group_columns(_scale_a if shape["port_a"] else _scale, run, shape)
+    return group_columns(_scale_a if values["port_a"] else _scale, run, values)
 
 
-def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
+def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return [
-        Variant(f"{each.label}, {label}", {**each.shape, "port_a": port}, carried=each.carried)
+        Shape(f"{each.label}, {label}", {**each.values, "port_a": port}, carried=each.carried)
         for each in group_shapes(runs)
         for port, label in ((0.0, "both ports"), (1.0, "port A"))
     ]
@@ -78,40 +85,83 @@ def _swivel(g: GroupSignals) -> FloatArray:
     return g.count * g.pressure
 
 
-def delay_columns(run: PreparedRun, shape: Shape) -> FloatArray:
+def delay_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come
     early.
 
     A difference over the delay itself, since friction turns over faster than a derivative could follow. A late speed
     leaves the heave as it is logged.
     """
-    shifted = run.predicted if shape["late"] == PRESSURES else run.from_speed
-    ahead = np.interp(run.time + shape["ahead"], run.time, shifted)
-    behind = np.interp(run.time - shape["behind"], run.time, shifted)
-    return ((ahead - behind) / (shape["ahead"] + shape["behind"]))[:, None]
+    shifted = run.predicted if values["late"] == PRESSURES else run.from_speed
+    ahead = np.interp(run.time + values["ahead"], run.time, shifted)
+    behind = np.interp(run.time - values["behind"], run.time, shifted)
+    return ((ahead - behind) / (values["ahead"] + values["behind"]))[:, None]
 
 
-def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Variant]:
-    shapes = [Variant("small, of the speed", SMALL_DELAY, (-0.8, 0.8))]
+def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = [Shape("small, of the speed", SMALL_DELAY, (-0.8, 0.8))]
     if any("heave_velocity" in run.channels for run in runs):
-        shapes.append(Variant("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-0.8, 0.8)))
+        shapes.append(Shape("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-0.8, 0.8)))
     for step in DELAYS:
         near, far = 0.6 * step / tau.typical, 1.6 * step / tau.typical
         late = {"ahead": step, "behind": 0.0, "late": SPEED}
-        shapes.append(Variant(f"speed late, about {1e3 * step:g} ms", late, (near, far)))
+        shapes.append(Shape(f"speed late, about {1e3 * step:g} ms", late, (near, far)))
         early = {"ahead": 0.0, "behind": step, "late": PRESSURES}
-        shapes.append(Variant(f"pressures late, about {1e3 * step:g} ms", early, (-far, -near)))
+        shapes.append(Shape(f"pressures late, about {1e3 * step:g} ms", early, (-far, -near)))
     return shapes
 
 
+def accumulator_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Torque of the passive motors per unit of warmth and of relaxing heat, N m, shape (samples, 2)."""
+    passive = [group for group in run.groups if not group.balances]
+    if not passive:
+        return np.zeros((len(run.time), 2))
+    parts = [_gas_torque(group, run, values["tau"]) for group in passive]
+    return -np.sum(parts, axis=0)
+
+
+def _gas_torque(group: GroupSignals, run: PreparedRun, tau: float) -> FloatArray:
+    # of the calculated pressure, which the excess temperature scales
+    port = 0.5 * (group.pressure_sum + group.logged)
+    torque = group.count * group.displacement * port
+    fading = np.exp(-run.time / tau)
+    # the calculated ln p moves with ln V; what has relaxed of it is its low-passed change
+    change = np.log(np.maximum(port, 1.0) / max(port[0], 1.0))
+    keep = np.exp(-run.dt / tau)
+    relaxed = lfilter([1.0 - keep], [1.0, -keep], change)
+    return np.column_stack([torque * fading, -torque * relaxed])
+
+
+def _time_constants(runs: Sequence[PreparedRun]) -> list[Shape]:
+    return [Shape(f"tau = {tau:g} s", {"tau": tau}, carried=True) for tau in TIME_CONSTANTS]
+
+
+def _no_passive_group(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    several = any(len(run.groups) > 1 for run in runs)
+    return None if several else ("a passive motor group", "no run has one")
+
+
 def signal_candidates() -> list[Candidate]:
-    """Offset, gain, delay and displacement feedback."""
+    """Offset, gain, delay, displacement feedback, and the passive side's gas."""
     scale, delay = r"e_p\sum_g n_g D_g\,\Delta p_g", r"\tau\,\dot M"
     return [
         _in_groups("pressure_offset", r"\sum_g n_g D_g\,p_0", p_0, partial(group_columns, _offset), group_shapes),
         _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes),
         _in_groups("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", D_0, partial(group_columns, _swivel), group_shapes),
-        Candidate("signal_delay", delay, (tau,), delay_columns, _delay_shapes, kind="signal"),
+        Candidate("signal_delay", delay, (tau,), delay_columns, _delay_shapes, kind="signal", reversal_rival=True),
+        # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
+        # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
+        Candidate(
+            "accumulator_thermal",
+            r"n_p D_p\,\Delta p_p\,(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)",
+            (e_T, g_T),
+            accumulator_columns,
+            _time_constants,
+            kind="signal",
+            hydraulic=True,
+            continuous=("tau",),
+            blind=_no_passive_group,
+        ),
     ]
 
 

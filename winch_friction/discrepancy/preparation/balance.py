@@ -1,34 +1,87 @@
-"""The torque balance at the motor shaft: what was measured and what the base model predicts."""
+"""The torque balance at the motor shaft: what was measured and what the base model predicts.
 
-from dataclasses import dataclass
+Regressors are never built from the noisy pressure that is being explained: the pressure of the group that closes the
+balance is predicted, only the passive group's is measured, smoothed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid
-from winch_friction.discrepancy.preparation.groups import (
-    Groups,
-    corrected,
-    drive_torque,
-    measured_groups,
-    with_predicted_pressure,
-)
+from winch_friction.discrepancy.preparation.grid import Grid, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
-from winch_friction.discrepancy.preparation.smoothing import smooth
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import Crane, operating_point
+from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
+MIN_DISPLACEMENT_SHARE = 0.05
+BALANCING = ("active", "main")  # the groups that close the balance where they run
 FIXED_POINT_STEPS = 3
 OPTIONAL = ("oil_temperature", "wire_layer", "wire_out")
+CHANNELS = ("pressure_a", "pressure_b", "displacement")
+
+Groups = tuple[GroupSignals, ...]
+
+
+def measured_groups(columns: Mapping[str, FloatArray], run: Run, crane: Crane, window: int) -> Groups:
+    """All groups with their smoothed pressures; `InputError` where one lacks a channel or has no displacement."""
+    names = run.groups
+    if not names:
+        raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
+    balancing = next((name for name in BALANCING if name in names), names[0])
+    return tuple(_measured(columns, run, crane, name, name == balancing, window) for name in names)
+
+
+def _measured(
+    columns: Mapping[str, FloatArray], run: Run, crane: Crane, name: str, balances: bool, window: int
+) -> GroupSignals:
+    for channel in CHANNELS:
+        if f"{name}.{channel}" not in columns:
+            raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
+    a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
+    displacement = smooth(columns[f"{name}.displacement"], 5 * window)
+    steady = float(np.median(displacement))
+    if np.std(displacement) <= 0.02 * steady:
+        displacement = np.full(len(displacement), steady)
+    if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
+        raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
+    drop, total, low = (smooth(each, 2 * window) for each in (a - b, a + b, np.minimum(a, b)))
+    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop)
+
+
+def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:
+    """Measured torque of all motors at the shaft, N m, from the pressures as they were logged."""
+    drops = (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups)
+    return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
+
+
+def without_error(groups: Groups, error: FloatArray | float) -> Groups:
+    """Groups whose passive pressures are rid of an error that amounts to a torque (N m) at the shaft."""
+    passive = sum(g.count * g.displacement for g in groups if not g.balances)
+    return tuple(g if g.balances else replace(g, pressure=g.pressure - error / passive) for g in groups)
+
+
+def with_predicted_pressure(groups: Groups, torque: FloatArray) -> Groups:
+    """Groups of which the balancing one has the pressure that a drive torque (N m) at the shaft takes."""
+    rest = torque - hydraulic_torque((g.count, g.displacement, g.pressure) for g in groups if not g.balances)
+    return tuple(_loaded(g, rest) if g.balances else g for g in groups)
+
+
+def _loaded(group: GroupSignals, torque: FloatArray) -> GroupSignals:
+    pressure = torque / (group.count * np.maximum(group.displacement, 1e-9))
+    return replace(group, pressure=pressure, pressure_sum=np.abs(pressure) + 2.0 * group.low_pressure)
 
 
 @dataclass(frozen=True)
-class Found:
+class Accounted:
     """What effects found so far add along a run, N m at the shaft: load on the motors, and what the passive side's
     signals have too much.
     """
@@ -63,7 +116,7 @@ class Balancing:
     model: FrictionModel
     grid: Grid
     motion: Motion
-    found: Found
+    accounted: Accounted
 
     def of(self, load: SuspendedLoad) -> Balance:
         """The balance with this load; raises `InputError` where the run lacks what closes it."""
@@ -84,10 +137,10 @@ class Balancing:
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self._measured
-        groups = corrected(groups, self.found.passive_error)
+        groups = without_error(groups, self.accounted.passive_error)
         predicted = frictionless
         for _ in range(FIXED_POINT_STEPS):
-            groups = with_predicted_pressure(groups, predicted + self.found.missing_torque)
+            groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque)
             point = self._point(load, groups)
             predicted = frictionless + self.model.torque(point)
         own = next(g for g in groups if g.balances)

@@ -1,14 +1,22 @@
-"""A run's columns on one uniform grid of time, holes marked."""
+"""A run's columns on one uniform grid of time: holes marked, channels smoothed without delay, spikes found."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter
+from scipy.signal import savgol_filter
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 
 MIN_SAMPLES = 100
 HOLE = 5.0  # sampling periods without a sample
+SMOOTHING_SAMPLES = 15  # 0.3 s at 50 Hz: short against a wave, long against an encoder's step
+MAX_WIDENING = 3.0
+FINE_NOISE = 2e-3  # share of the largest speed that the shortest window copes with
+SPIKE, SPIKE_WINDOW, MOST_SPIKES = 12.0, 2.0, 0.01  # robust deviations, s, share of the moving samples
+SPIKE_MARGIN = 0.1  # s left out on both sides
+FEWEST_FOR_SPIKES = 100  # samples
 
 
 @dataclass(frozen=True)
@@ -48,3 +56,49 @@ def uniform(run: Run) -> Grid:
     for k in np.flatnonzero(steps > HOLE * dt):
         valid &= ~((grid > time[k]) & (grid < time[k + 1]))
     return Grid(columns, dt, valid)
+
+
+def noise_level(values: FloatArray) -> float:
+    """Standard deviation of the fast noise of a record, from its third differences (robust against steps)."""
+    if len(values) < 8:
+        return 0.0
+    third = np.diff(values, 3)
+    return float(1.4826 * np.median(np.abs(third - np.median(third))) / np.sqrt(20.0))
+
+
+def smooth(values: FloatArray, window: int = SMOOTHING_SAMPLES, order: int = 2) -> FloatArray:
+    """Savitzky-Golay over a uniform grid; records shorter than the window get a shorter one."""
+    window = min(window, len(values) - (1 - len(values) % 2))
+    return savgol_filter(values, window | 1, min(order, (window | 1) - 1))
+
+
+def speed_window(speed: FloatArray) -> int:
+    """Window for a speed record in samples: longer where the encoder is coarse."""
+    scale = float(np.percentile(np.abs(speed), 99)) or 1.0
+    relative = max(noise_level(speed), float(np.std(np.diff(speed, 2))) * 0.1) / scale
+    widening = min(max((relative / FINE_NOISE) ** (2.0 / 3.0), 1.0), MAX_WIDENING)
+    return int(SMOOTHING_SAMPLES * widening) | 1
+
+
+def dilated(mask: np.ndarray, samples: int) -> np.ndarray:
+    """A mask that also covers `samples` neighbours on both sides."""
+    if samples <= 0 or not mask.any():
+        return mask
+    count = np.convolve(mask.astype(float), np.ones(2 * samples + 1), mode="same")
+    return count > 0.5
+
+
+def spikes_of(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
+    """Samples to leave out; none where there are so many that they are no spikes."""
+    none = np.zeros(len(gap), bool)
+    if moving.sum() < FEWEST_FOR_SPIKES:
+        return none
+    size = max(int(SPIKE_WINDOW / dt), 3) | 1
+    coarse = max(size // 25, 1)  # a running median over every few samples is as good and much faster
+    slow = np.interp(
+        np.arange(len(gap)), np.arange(0, len(gap), coarse), median_filter(gap[::coarse], max(size // coarse, 3))
+    )
+    off = np.abs(gap - slow)
+    spread = 1.4826 * float(np.median(off[moving]))
+    found = moving & (off > SPIKE * max(spread, 1e-12))
+    return dilated(found, int(SPIKE_MARGIN / dt)) if 0 < found.sum() < MOST_SPIKES * moving.sum() else none

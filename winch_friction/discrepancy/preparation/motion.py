@@ -1,16 +1,17 @@
-"""How the shaft moves: smooth speed and acceleration, and in which samples its direction is certain."""
+"""How the shaft moves: smooth speed and acceleration, in which samples its direction is certain, and what its angle
+tells around a reversal, which a noisy speed cannot.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid
-from winch_friction.discrepancy.preparation.smoothing import dilated, noise_level, smooth, speed_window
-from winch_friction.discrepancy.preparation.travel import resolution, travel_of
+from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth, speed_window
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 
+CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
 GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoothing window
 FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
@@ -77,3 +78,32 @@ def _just_reversed(
     near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
     near &= (direction != 0.0) & (direction * speed > guard / 8.0)
     return direction, direction * progress / dt, near
+
+
+def resolution(raw_speed: FloatArray, dt: float) -> float:
+    """Travel in rad below which a change of direction may be the encoder's own."""
+    return max(CERTAIN * noise_level(raw_speed) * dt, 1e-12)
+
+
+def travel_of(angle: FloatArray, least: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Direction (-1, 0, 1), travel since the last reversal in rad, and progress per sample in rad.
+
+    A reversal counts once the shaft has come back by `least` from its farthest point; progress is the advance of
+    that point, so that a trembling angle does not travel.
+    """
+    direction, travel, progress = [], [], []
+    heading, origin, far = 0.0, float(angle[0]), float(angle[0])
+    for position in angle.tolist():
+        before, ahead = far, (position - far) * heading
+        if heading == 0.0:
+            if abs(position - origin) > least:
+                heading, far = (1.0 if position > origin else -1.0), position
+        elif ahead >= 0.0:
+            far = position
+        elif ahead < -least:
+            heading, origin, far = -heading, far, position
+            before = origin
+        direction.append(heading)
+        travel.append(abs(position - origin))
+        progress.append(abs(far - before))
+    return np.array(direction), np.array(travel), np.array(progress)

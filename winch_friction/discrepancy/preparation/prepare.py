@@ -1,22 +1,29 @@
 """From a measured run to what every candidate reads."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.balance import Balance, Balancing, Found
-from winch_friction.discrepancy.preparation.channels import channels_of
-from winch_friction.discrepancy.preparation.grid import Grid, uniform
-from winch_friction.discrepancy.preparation.motion import motion_of
+from winch_friction.discrepancy.preparation.balance import Accounted, Balance, Balancing, Groups
+from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
+from winch_friction.discrepancy.preparation.motion import Motion, motion_of
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.spikes import spikes_of
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.discrepancy.preparation.wire_mode import settling_time, swinging_load, wire_stiffnesses
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.winch import Crane
 
+AS_LOGGED = ("oil_temperature", "wire_layer", "wire_out", "heave_velocity")
+# how people read a signal: factor and unit, by the last part of its name
+READ_AS = {
+    "pressure": (1.0 / BAR, "bar"), "displacement": (1.0 / CM3_PER_REV, "cm^3/rev"), "hook_load": (1e-3, "t"),
+    "motor_speed": (1.0, "rad/s"), "acceleration": (1.0, "rad/s^2"), "oil_temperature": (1.0, "degC"),
+    "wire_out": (1.0, "m"), "heave_velocity": (1.0, "m/s"), "shaft_angle": (1.0, "rad of drum"), "time": (1.0, "s"),
+}  # fmt: skip
 FEWEST_MOVING = 100  # samples in which a swing can be looked for
 MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
@@ -27,22 +34,22 @@ def prepare(
     crane: Crane,
     model: FrictionModel,
     load: float = float("nan"),
-    found: Found | None = None,
+    accounted: Accounted | None = None,
     turning: bool = False,
     mode: tuple[float, float] | None = None,
     spikes: np.ndarray | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
-    With what was `found` so far, on the run's uniform grid, the pressures that friction is reckoned with come close to
-    the true ones. `turning` takes direction and travel from the angle and marks the samples just after reversals
-    instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
+    With what is `accounted` for already, on the run's uniform grid, the pressures that friction is reckoned with come
+    close to the true ones. `turning` takes direction and travel from the angle and marks the samples just after
+    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
     known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     grid = uniform(run)
     motion = motion_of(grid, crane, run.name, turning)
-    balancing = Balancing(run, crane, model, grid, motion, found or Found())
+    balancing = Balancing(run, crane, model, grid, motion, accounted or Accounted())
     mode, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
     used = motion.used & _settled(grid, mode)
     if spikes is None:
@@ -54,7 +61,7 @@ def prepare(
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
         load_friction=_load_friction(model, balance.point), predicted=balance.predicted, jacobian=balance.jacobian,
         from_speed=balance.predicted - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
-        constants=_constants(crane, model), unit_torque=balance.unit_torque, moving=used & grid.valid & ~spikes,
+        constants=_constants(crane, model), unit_torque=balance.unit_torque, used=used & grid.valid & ~spikes,
         spikes=spikes, present=frozenset(run.columns),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane),
     )  # fmt: skip
@@ -108,3 +115,29 @@ def _load_friction(model: FrictionModel, point: tuple[Any, ...]) -> FloatArray:
 def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:
     own = {"max_displacement": crane.max_displacement, "gear_ratio": crane.gear_ratio, **model.constants}
     return tuple(sorted(own.items()))
+
+
+def channels_of(
+    run: Run, grid: Grid, motion: Motion, load: SuspendedLoad, groups: Groups, crane: Crane
+) -> Mapping[str, FloatArray]:
+    """Signals over the grid by name; predicted pressures stand for the measured ones, the angle is the drum's, rad."""
+    found: dict[str, FloatArray] = {"motor_speed": np.abs(motion.speed), "acceleration": motion.acceleration}
+    if not crane.electric or "hook_load" in grid.columns:
+        found["hook_load"] = load.mass
+    for group in groups:
+        found[f"{group.name}.pressure"] = group.pressure
+        found[f"{group.name}.displacement"] = group.displacement
+    found |= {name: grid.columns[name] for name in AS_LOGGED if name in grid.columns}
+    found["shaft_angle"] = np.mod(motion.angle / crane.gear_ratio, 2.0 * np.pi)
+    found["time"] = grid.time
+    return found | _aside(run, grid)
+
+
+def _aside(run: Run, grid: Grid) -> dict[str, FloatArray]:
+    """Numeric columns that the package does not know."""
+    columns = {name: np.asarray(values) for name, values in run.aside.items()}
+    return {
+        name: np.interp(grid.time, run.time - run.time[0], np.nan_to_num(values.astype(float)))
+        for name, values in columns.items()
+        if values.dtype.kind in "fiu" and len(values) == len(run)
+    }

@@ -51,7 +51,7 @@ class PreparedRun:
     inertia: float
     constants: tuple[tuple[str, float], ...]  # for the candidates' equations
     unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
-    moving: np.ndarray
+    used: np.ndarray  # samples of the regime: moving, or just reversed
     spikes: np.ndarray
     present: frozenset[str]  # columns that the file had
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it

@@ -4,9 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid
+from winch_friction.discrepancy.preparation.grid import Grid, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
-from winch_friction.discrepancy.preparation.smoothing import smooth
 from winch_friction.discrepancy.preparation.wire_mode import on_the_wire
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY

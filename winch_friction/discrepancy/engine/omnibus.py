@@ -9,14 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Blocks
-from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.physics.signals import FloatArray
-
-KNOTS = 7
-RIDGE = 30.0  # blocks; a hat needs more data than that before it moves
-SIGNIFICANCE = 0.01
-LEAST_SHARE = 0.05  # of the remainder's variance: below it the remainder is not worth a name
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks
+from winch_friction.discrepancy.engine.crossfit import CrossFit, flip_p_values
+from winch_friction.discrepancy.thresholds import LIMITS
 
 
 @dataclass(frozen=True)
@@ -26,13 +22,6 @@ class Dependence:
     signal: str
     share: float  # of the remainder's sum of squares
     p_value: float
-
-
-def remainder(cross: CrossFit, explanation: Explanation) -> FloatArray:
-    """What an explanation leaves of the gap, block by block, in units of the noise."""
-    blocks = cross.problem.blocks
-    columns = list(cross.problem.columns(explanation.slots))
-    return (blocks.y - blocks.x[:, columns] @ explanation.beta) * blocks.weight
 
 
 def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> list[Dependence]:
@@ -63,7 +52,7 @@ def _designs(values: FloatArray, direction: FloatArray) -> list[FloatArray]:
     if good.sum() < 20 or np.ptp(values[good]) <= 1e-9 * (np.abs(values[good]).max() + 1e-12):
         return []
     line = np.column_stack([np.ones(len(values)), (values - values[good].mean()) / np.std(values[good])])
-    knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, KNOTS)))
+    knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, LIMITS.knots)))
     hats = [np.interp(np.where(good, values, knots[0]), knots, row) for row in np.eye(len(knots))]
     return [_by_direction(each, good, direction) for each in (line, np.column_stack(hats))]
 
@@ -79,7 +68,7 @@ def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of
     scale = np.sqrt(np.mean(blocks.weight**2))
     numbers, index = np.unique(blocks.segment, return_inverse=True)
     fold = fold_of_segment[index]
-    ridge = RIDGE * scale**2 * np.eye(design.shape[1])
+    ridge = LIMITS.ridge * scale**2 * np.eye(design.shape[1])
     full_h, full_g = weighted.T @ weighted, weighted.T @ left
     predicted = np.zeros(len(left))
     for k in np.unique(fold):

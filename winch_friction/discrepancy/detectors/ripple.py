@@ -11,8 +11,10 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.stats import gamma
 
+from winch_friction.discrepancy.answer import Effect, ParameterEstimate
+from winch_friction.discrepancy.preparation.grid import smooth
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.smoothing import smooth
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 from winch_friction.physics.winch.torque_balance import run_drive_torque
@@ -50,9 +52,28 @@ class Ripple:
         least = SIGNIFICANT if self.angle_is_measured else SIGNIFICANT_WITHOUT_ANGLE
         return self.p_value < least and self.amplitude > SMALLEST
 
+    @property
+    def effect(self) -> Effect:
+        """The ripple as an entry of the result; its phase differs from record to record and is not given."""
+        parameters = {
+            "a_r": ParameterEstimate(self.amplitude, self.std, "1"),
+            "k_r": ParameterEstimate(self.order, 0.0, "1"),
+        }
+        gain = 1.0 - 1.0 / np.sqrt(max(self.prominence, 1.0))
+        return Effect(
+            "torque_ripple", (), f"{self.order:.3g} periods per revolution", term_named("torque_ripple").latex,
+            parameters, self.p_value, float(gain), 1.0, "over the shaft's angle",
+        )  # fmt: skip
+
+
+def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
+    """A ripple over the shaft's angle that is there for sure."""
+    found = angle_ripple(runs, prepared, crane)
+    return found if found is not None and found.found else None
+
 
 def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
-    """Search all runs for torque periodic in the shaft angle; None where no run moves or carries a load."""
+    """The strongest line over the shaft's angle; None where no run moves or carries a load."""
     # a fast ripple is swallowed by the inertia before it reaches the oil, a slow one drowns in the differentiated speed
     found = [_search(runs, prepared, crane, with_inertia) for with_inertia in (False, True)]
     lines = [line for line in found if line is not None]
@@ -106,7 +127,7 @@ def _moving(
     time = run.time[good]
     torque = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good])
     grid = prepared.time + prepared.start
-    moving = np.interp(time, grid, prepared.moving.astype(float)) > 0.99
+    moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
     angle = np.interp(time, grid, prepared.angle)
     static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
     if with_inertia:
@@ -152,3 +173,25 @@ def _amplitude(order: float, tables: Sequence[tuple[FloatArray, FloatArray, Floa
         weights.append(1.0 / max(variance, 1e-300))
     total = float(np.sum(weights))
     return float(np.sqrt(np.dot(values, weights) / total)), float(np.sqrt(1.0 / total))
+
+
+def waves_of(runs: Sequence[PreparedRun], ripple: Ripple) -> dict[str, FloatArray]:
+    """Sine and cosine share of T_d/i that each run's gap has of the ripple; the phase is the run's own."""
+    return {run.name: _wave_of(run, ripple) for run in runs}
+
+
+def _wave_of(run: PreparedRun, ripple: Ripple) -> FloatArray:
+    if not run.used.any() or not np.any(run.drum_torque):
+        return np.zeros(2)
+    beta, *_ = np.linalg.lstsq(_waves(run, ripple)[run.used], run.gap[run.used], rcond=None)
+    return np.asarray(beta)
+
+
+def _waves(run: PreparedRun, ripple: Ripple) -> FloatArray:
+    static = run.drum_torque / run.gear_ratio
+    return static[:, None] * np.column_stack([np.sin(ripple.order * run.angle), np.cos(ripple.order * run.angle)])
+
+
+def without_ripple(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> PreparedRun:
+    """The run with a ripple of these shares taken out of its gap."""
+    return replace(run, gap=run.gap - _waves(run, ripple) @ wave)

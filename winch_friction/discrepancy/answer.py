@@ -6,18 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Blocks
 from winch_friction.discrepancy.candidates.candidate import Untestable
-from winch_friction.discrepancy.holdout import Size
-from winch_friction.discrepancy.omnibus import Dependence
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks
+from winch_friction.discrepancy.engine.interval import Size
+from winch_friction.discrepancy.engine.omnibus import Dependence
+from winch_friction.discrepancy.engine.regions import Region
+from winch_friction.discrepancy.engine.selection import Considered
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.regions import Region
-from winch_friction.discrepancy.repair import Estimate
-from winch_friction.discrepancy.selection import Considered
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import FloatArray
 
 SCHEMA = "winch_friction.gap/1"
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """A parameter of an effect with its standard deviation, SI."""
+
+    value: float
+    std: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -28,7 +36,7 @@ class Effect:
     rivals: tuple[str, ...]
     variant: str
     law: str
-    parameters: Mapping[str, Estimate]
+    parameters: Mapping[str, ParameterEstimate]
     p_value: float
     gain: float
     selection_frequency: float

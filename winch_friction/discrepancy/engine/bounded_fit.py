@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from winch_friction.physics.signals import FloatArray
+from winch_friction.discrepancy.engine import FloatArray
 
 _TOLERANCE = 1e-10
 

@@ -5,20 +5,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Slot
-from winch_friction.discrepancy.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.physics.signals import FloatArray
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.discrepancy.thresholds import LIMITS
 
-# family-wise significance, on segments or on runs left out, that a gain in held-out RMSE from so much on must have:
-# the smaller it is the surer, for a fading warmth shows in few segments, but a large gain is not chance
-SIGNIFICANCE = ((0.1, 0.05), (0.02, 0.01), (0.01, 0.001))
-LEAST_GAIN = min(gain for gain, _ in SIGNIFICANCE)
-LEAST_INSIDE = 2e-3  # of the RMSE on the runs it is fitted to, where the base takes a part of every small effect
-LEAST_SHARE = 1e-3  # of what is explained already
-MOST_EFFECTS = 4
-RIVAL_P = 0.05
-RIVAL_SHARE = 0.03  # a rival within this share of the effect's own gain does as well for any purpose
-MOST_NAMES = 3
+LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
 
 
 @dataclass(frozen=True)
@@ -34,7 +26,7 @@ class Considered:
 
 
 @dataclass(frozen=True)
-class Found:
+class Finding:
     """One missing effect, its rivals, and the evidence for it."""
 
     slot: Slot
@@ -50,11 +42,11 @@ class Selection:
 
     base: Explanation
     final: Explanation
-    found: tuple[Found, ...]
+    found: tuple[Finding, ...]
     considered: tuple[Considered, ...] = field(default_factory=tuple)
 
 
-def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) -> Selection:
+def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_effects) -> Selection:
     """Add effects as long as one brings a significant and useful gain, then look for rivals of each."""
     base = cross.explain(())
     current, considered = base, []
@@ -67,16 +59,18 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = MOST_EFFECTS) 
         p = _evidence(cross, trials, gains, rng)
         relative = np.array([cross.gain(current, each) for each in trials])
         worth = np.array([current.loss - each.loss for each in trials])
-        least = LEAST_SHARE * (base.loss - current.loss)  # less is the first effect's own second order
+        least = LIMITS.least_share * (base.loss - current.loss)  # less is the first effect's own second order
         # what only steadies the fit of another effect when a run is left out is no effect itself
         inside = np.array([cross.inside_gain(current, each) for each in trials])
-        worthy = _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LEAST_INSIDE) & (worth >= least)
+        worthy = (
+            _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LIMITS.least_inside) & (worth >= least)
+        )
         order = np.argsort([each.loss for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
             break
-        p_values[trials[best].slots[-1].candidate.name] = float(p[best])
+        p_values[trials[best].slots[-1].name] = float(p[best])
         current = _exchanged(cross, trials[best])
     current = _with_company(cross, _pruned(cross, current, rng))
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
@@ -95,8 +89,8 @@ def _evidence(
 
 def _significant(p: FloatArray, gain: FloatArray) -> np.ndarray:
     """Whether a p-value is small enough for a gain; below the least gain any that would do for it."""
-    enough = np.full(np.shape(gain), SIGNIFICANCE[-1][1])
-    for least, level in reversed(SIGNIFICANCE):
+    enough = np.full(np.shape(gain), LIMITS.significance[-1][1])
+    for least, level in reversed(LIMITS.significance):
         enough = np.where(gain >= least, level, enough)
     return np.asarray(p <= enough)
 
@@ -113,18 +107,18 @@ def _considered(
         verdict = f"not significant on held-out segments (p = {p:.2g})"
     elif gain < LEAST_GAIN:
         verdict = f"gains only {100 * gain:.1f} % of the held-out error, less than {100 * LEAST_GAIN:g} %"
-    elif inside < LEAST_INSIDE:
+    elif inside < LIMITS.least_inside:
         verdict = "only steadies the fit of another effect: it explains next to nothing of the runs it is fitted to"
     else:
-        verdict = f"explains less than {100 * LEAST_SHARE:g} % of what the first effect did: its own second order"
-    return Considered(own.candidate.name, own.variant.label, float(gain), float(p), stage, verdict)
+        verdict = f"explains less than {100 * LIMITS.least_share:g} % of what the first effect did: its second order"
+    return Considered(own.name, own.label, float(gain), float(p), stage, verdict)
 
 
 def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
     """Every candidate that is not taken added to the set, each in the variant that fits the training runs best."""
     best: dict[str, tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
-        name = slot.candidate.name
+        name = slot.name
         if name in taken:
             continue
         loss, _ = cross.train_loss((*current.slots, slot))
@@ -139,11 +133,11 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         improved = False
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
-            taken = {slot.candidate.name for slot in rest}
+            taken = {slot.name for slot in rest}
             losses = [
                 (cross.train_loss((*rest[:k], slot, *rest[k:]))[0], j)
                 for j, slot in enumerate(cross.problem.slots)
-                if slot.candidate.name not in taken
+                if slot.name not in taken
             ]
             loss, j = min(losses)
             if loss < current.train_loss * (1.0 - 1e-3):
@@ -176,18 +170,18 @@ def _with_company(cross: CrossFit, current: Explanation) -> Explanation:
     """The set with the lower-order effects that its members bring along."""
     slots = list(current.slots)
     for slot in current.slots:
-        for name in slot.candidate.brings:
-            own = [each for each in cross.problem.slots if each.candidate.name == name]
-            if own and name not in [each.candidate.name for each in slots]:
+        for name in slot.brings:
+            own = [each for each in cross.problem.slots if each.name == name]
+            if own and name not in [each.name for each in slots]:
                 slots.insert(slots.index(slot), own[0])
     return cross.explain(slots) if len(slots) > len(current.slots) else current
 
 
 def _found(
     cross: CrossFit, current: Explanation, k: int, p_values: dict[str, float], rng: np.random.Generator
-) -> Found:
+) -> Finding:
     own = current.slots[k]
-    bringers = [each for each in current.slots if own.candidate.name in each.candidate.brings]
+    bringers = [each for each in current.slots if own.name in each.brings]
     if bringers:  # its own worth shows only before the higher order takes it over
         lower = tuple(each for each in current.slots if each not in bringers)
         current, k = cross.explain(lower), lower.index(own)
@@ -195,9 +189,9 @@ def _found(
     without = cross.explain(rest)
     gain_losses = without.losses - current.losses
     rivals, frequency = ((), 1.0) if bringers else _rivals(cross, current, without, k, rng)
-    name = own.candidate.name
+    name = own.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
-    return Found(own, rivals, p, float(cross.gain(without, current)), frequency)
+    return Finding(own, rivals, p, float(cross.gain(without, current)), frequency)
 
 
 def _rivals(
@@ -208,7 +202,7 @@ def _rivals(
     own = current.slots[k]
     best: dict[str, tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
-        name = slot.candidate.name
+        name = slot.name
         if name in current.names:
             continue
         loss, _ = cross.train_loss((*rest, slot))
@@ -220,14 +214,14 @@ def _rivals(
     for trial in trials:
         worse = trial.losses - current.losses
         gained = without.loss - trial.loss
-        if gained < 0.5 * worth:
+        if gained < LIMITS.rival_worth * worth:
             continue
         p = flip_p_values(worse[None], rng)[0]
-        if p > RIVAL_P or worse.sum() < RIVAL_SHARE * worth:
+        if p > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth:
             equal.append((trial.loss, trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
     frequency = _frequency(current.losses, [t.losses for t in trials], rng)
-    return tuple(slot for _, slot in equal if slot is not own)[: MOST_NAMES - 1], frequency
+    return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
 
 
 def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:

@@ -11,6 +11,7 @@ from functools import cache
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
+from winch_friction.discrepancy.answer import Effect, ParameterEstimate
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.terms.effects_winch import walther
 from winch_friction.physics.signals import FloatArray, Run
@@ -50,6 +51,18 @@ class LostSpeed:
         return self.leakage - SURE * self.std > ORDINARY and self.p_value < 0.01 and self.gain > 0.3
 
 
+def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Effect | None:
+    """Speed lost in proportion to pressure over viscosity, where a command is logged."""
+    found = lost_speed(runs, prepared)
+    if found is None or not found.found:
+        return None
+    return Effect(
+        "slip_leakage", (), "per driving motor at 40 degC", r"\omega_{ref}-\omega = C\,\Delta p/(D\,\mu)",
+        {"C_leak": ParameterEstimate(found.leakage, found.std, "m^3/s/Pa")}, found.p_value, found.gain, 1.0,
+        "commanded against reached speed",
+    )  # fmt: skip
+
+
 def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> LostSpeed | None:
     """Leakage from commanded and reached speed; None where no command is logged or nothing is steady."""
     pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
@@ -70,7 +83,7 @@ def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:
     width = max(int(SETTLED / prepared.dt), 1)
     # only the past counts: the plateau must have lasted before the sample
     settled = minimum_filter1d(constant.astype(int), width, origin=(width - 1) // 2) > 0
-    use = settled & prepared.moving
+    use = settled & prepared.used
     regressor = _per_leakage(prepared)
     step = max(int(SEGMENT / prepared.dt), 1)
     rows = []

@@ -1,28 +1,21 @@
 """Where model and measurement disagree: regions of the operating space in words, each with its share of the gap."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Blocks
-from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import BAR, CM3_PER_REV
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks
+from winch_friction.discrepancy.thresholds import LIMITS
 
-MOST_REGIONS = 3
-SMALLEST = 0.03  # of the blocks
-BALANCED = 0.8  # of the best pair's score that a single condition needs to be preferred: shorter words win
-
-# how people read a signal: factor and unit
-READ_AS = {"pressure": (1.0 / BAR, "bar"), "displacement": (1.0 / CM3_PER_REV, "cm^3/rev"), "hook_load": (1e-3, "t"),
-           "motor_speed": (1.0, "rad/s"), "acceleration": (1.0, "rad/s^2"), "oil_temperature": (1.0, "degC"),
-           "wire_out": (1.0, "m"), "heave_velocity": (1.0, "m/s"), "shaft_angle": (1.0, "rad of drum"), "time": (1.0,
-           "s")}  # fmt: skip
+ReadAs = Mapping[str, tuple[float, str]]  # how people read a signal: factor and unit, by the last part of its name
 
 
 @dataclass(frozen=True)
 class Region:
-    """A part of the operating space: its words, its share of the summed squared gap, its mean in bar (N m)."""
+    """A part of the operating space: its words, its share of the summed squared gap, its mean in the gap's unit."""
 
     where: str
     share_of_gap: float
@@ -30,13 +23,13 @@ class Region:
     signals: tuple[str, ...]
 
 
-def find_regions(blocks: Blocks, residual: FloatArray) -> list[Region]:
+def find_regions(blocks: Blocks, residual: FloatArray, read_as: ReadAs) -> list[Region]:
     """Up to three regions in which the residual is large and of one sign, the largest share first."""
-    conditions = _conditions(blocks)
+    conditions = _conditions(blocks, read_as)
     total = float((residual**2).sum()) or 1.0
     left = residual.copy()
     regions: list[Region] = []
-    for _ in range(MOST_REGIONS):
+    for _ in range(LIMITS.most_regions):
         best = _best(conditions, left)
         if best is None:
             break
@@ -47,18 +40,18 @@ def find_regions(blocks: Blocks, residual: FloatArray) -> list[Region]:
     return sorted(regions, key=lambda each: -each.share_of_gap)
 
 
-def _conditions(blocks: Blocks) -> list[tuple[str, np.ndarray, str]]:
+def _conditions(blocks: Blocks, read_as: ReadAs) -> list[tuple[str, np.ndarray, str]]:
     found = [("hoisting", blocks.direction > 0, "direction"), ("lowering", blocks.direction < 0, "direction")]
     for name, values in blocks.features.items():
         good = np.isfinite(values)
         if good.sum() < 20 or np.ptp(values[good]) <= 1e-6 * (np.abs(values[good]).max() + 1e-12):
             continue
-        factor, unit = READ_AS.get(name.rpartition(".")[2], (1.0, ""))
+        factor, unit = read_as.get(name.rpartition(".")[2], (1.0, ""))
         for threshold in np.unique(np.quantile(values[good], (0.15, 0.33, 0.5, 0.67, 0.85))):
             text = f"{threshold * factor:.3g} {unit}".strip()
             found.append((f"{name} < {text}", good & (values < threshold), name))
             found.append((f"{name} > {text}", good & (values > threshold), name))
-    least = SMALLEST * len(blocks.y)
+    least = LIMITS.smallest_region * len(blocks.y)
     return [each for each in found if each[1].sum() >= least]
 
 
@@ -71,7 +64,7 @@ def _best(conditions, left):  # type: ignore[no-untyped-def]
     counts, sums = masks.sum(axis=1), masks @ left
     single = sums**2 / np.maximum(counts, 1.0)
     both_counts, both_sums = masks @ masks.T, (masks * left) @ masks.T
-    pairs = np.where(both_counts >= SMALLEST * size, both_sums**2 / np.maximum(both_counts, 1.0), 0.0)
+    pairs = np.where(both_counts >= LIMITS.smallest_region * size, both_sums**2 / np.maximum(both_counts, 1.0), 0.0)
     names = [name for _, _, name in conditions]
     for first, second in combinations(range(len(names)), 2):
         if names[first] == names[second]:
@@ -80,7 +73,7 @@ def _best(conditions, left):  # type: ignore[no-untyped-def]
     i, j = (int(each) for each in np.unravel_index(int(np.argmax(pairs)), pairs.shape))
     if max(single[k], pairs[i, j]) <= 0.0:
         return None
-    if single[k] >= BALANCED * pairs[i, j]:
+    if single[k] >= LIMITS.single_condition * pairs[i, j]:
         return conditions[k][0], conditions[k][1], (names[k],)
     first, second = sorted((i, j), key=lambda c: names[c] == "direction")
     words = f"{conditions[first][0]} and {conditions[second][0]}"

@@ -1,22 +1,25 @@
-"""Regression problems around the best explanation so far: base parameters and pressures no longer those of the seed
-alone."""
+"""Runs prepared around a point: the seed model, or the best explanation so far."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.blocks import Slot
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.preparation.balance import Found
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.wire_mode import agreed_damping
-from winch_friction.discrepancy.problem import Layout, base_of, build_problem, layout_of
+from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, layout_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
+from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
+
+LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then
+NAN = float("nan")
 
 
 @dataclass(frozen=True)
@@ -34,15 +37,15 @@ class Expansion:
 
 
 def expand_at_seed(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: dict[str, float]
+    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: Mapping[str, float]
 ) -> tuple[PreparedRun, ...]:
-    """Runs prepared around the seed model."""
-    prepared = [prepare(run, crane, model, loads.get(run.name, float("nan"))) for run in runs]
+    """Runs prepared around the seed model; `loads` kg by name where there is no `hook_load`."""
+    prepared = [prepare(run, crane, model, loads.get(run.name, NAN)) for run in runs]
     modes = _agreed_modes(prepared)
     return tuple(
         before
         if before.wire_mode == mode
-        else prepare(run, crane, model, loads.get(run.name, float("nan")), mode=mode, spikes=before.spikes)
+        else prepare(run, crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes)
         for run, before, mode in zip(runs, prepared, modes, strict=True)
     )
 
@@ -70,7 +73,7 @@ def _mass(run: PreparedRun) -> float:
 
 
 def expand_around(
-    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], before: Expansion,
+    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: Mapping[str, float], before: Expansion,
     explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False,
 ) -> Expansion:  # fmt: skip
     """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
@@ -84,8 +87,8 @@ def expand_around(
             run,
             crane,
             model,
-            loads.get(run.name, float("nan")),
-            found_so_far(old, before.layout, explanation),
+            loads.get(run.name, NAN),
+            accounted(old, before.layout, explanation),
             turning,
             old.wire_mode,
             np.zeros_like(old.spikes) if turning else old.spikes,
@@ -95,17 +98,22 @@ def expand_around(
     return Expansion(prepared, layout_of(base_of(seed, model), candidates, prepared, seed), model)
 
 
-def found_so_far(run: PreparedRun, layout: Layout, explanation: Explanation) -> Found:
-    """What an explanation's effects add to what the driving motors carry, and to the passive side's signals; errors of
-    the driving motors' own signals add nothing.
+def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
+    """Mass in kg per run without `hook_load`: what balances the torque once friction has its say.
+
+    Hoisting and lowering weigh alike, so that friction cancels in the mean.
     """
-    missing, error = np.zeros(len(run.time)), np.zeros(len(run.time))
-    at = len(layout.base.names)
-    for slot in explanation.slots:
-        width = len(slot.columns)
-        if slot.candidate.kind != "signal" or slot.variant.carried:
-            columns = slot.candidate.columns(run, slot.variant.shape) * layout.scales[list(slot.columns)]
-            total = error if slot.variant.carried else missing
-            total += columns @ explanation.beta[at : at + width]
-        at += width
-    return Found(missing, error)
+    if crane.electric:
+        return {}
+    return {run.name: _estimated_load(run, crane, model) for run in runs if "hook_load" not in run}
+
+
+def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
+    load = 0.0
+    for _ in range(LOAD_ROUNDS):
+        prepared = prepare(run, crane, model, load)
+        gap = prepared.gap[prepared.used] / (prepared.radius[prepared.used] / crane.gear_ratio * GRAVITY)
+        direction = prepared.direction[prepared.used]
+        sides = [np.median(gap[direction == s]) for s in (-1.0, 1.0) if (direction == s).any()]
+        load = max(load + float(np.mean(sides)), 0.0)
+    return load

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from winch_friction.discrepancy.blocks import Slot
-from winch_friction.discrepancy.problem import Problem
-from winch_friction.physics.signals import FloatArray
-
-FEWEST_RUNS = 5  # with fewer, folds are stretches of time
-FOLDS = 8
-FLIPS = 2000
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.problem import Problem
+from winch_friction.discrepancy.thresholds import LIMITS
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class Explanation:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the effects."""
-        return tuple(slot.candidate.name for slot in self.slots)
+        return tuple(slot.name for slot in self.slots)
 
 
 class CrossFit:
@@ -75,6 +72,16 @@ class CrossFit:
         loss, beta = self.train_loss(slots)
         return Explanation(tuple(slots), losses, beta, loss, left_out)
 
+    def covariance(self, explanation: Explanation) -> FloatArray:
+        """Covariance of an explanation's coefficients, data and prior."""
+        return self.problem.covariance(self.total_g, self.problem.columns(explanation.slots))
+
+    def remainder(self, explanation: Explanation) -> FloatArray:
+        """What an explanation leaves of the gap, block by block, in units of the noise."""
+        blocks = self.problem.blocks
+        columns = list(self.problem.columns(explanation.slots))
+        return np.asarray((blocks.y - blocks.x[:, columns] @ explanation.beta) * blocks.weight)
+
     def gain(self, before: Explanation, after: Explanation) -> FloatArray:
         """Share of the held-out error that `after` saves, beside what matters to nobody."""
         return self._saved(before.loss, after.loss)
@@ -92,7 +99,7 @@ class CrossFit:
         Student's t of the delete-one jackknife (Efron and Stein 1981). The amplitude of an effect with several columns
         is the projection of its torque on that of the fit to all runs. 1 for few runs, whose stretches are too alike.
         """
-        if len(np.unique(self.problem.grams.run)) < FEWEST_RUNS:
+        if len(np.unique(self.problem.grams.run)) < LIMITS.fewest_runs:
             return 1.0
         own = list(explanation.slots[-1].columns)
         at = slice(-len(own), None)
@@ -106,9 +113,9 @@ class CrossFit:
 
 
 def _folds(run: np.ndarray) -> np.ndarray:
-    if len(np.unique(run)) >= FEWEST_RUNS:
+    if len(np.unique(run)) >= LIMITS.fewest_runs:
         return run
-    return np.arange(len(run)) * min(FOLDS, len(run)) // len(run)
+    return np.arange(len(run)) * min(LIMITS.folds, len(run)) // len(run)
 
 
 def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
@@ -117,6 +124,6 @@ def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
     scale = np.sqrt((gains**2).sum(axis=1))
     scale = np.where(scale > 0.0, scale, 1.0)
     observed = gains.sum(axis=1) / scale
-    signs = rng.choice([-1.0, 1.0], size=(FLIPS, gains.shape[1]))
+    signs = rng.choice([-1.0, 1.0], size=(LIMITS.flips, gains.shape[1]))
     largest = ((signs @ gains.T) / scale).max(axis=1)
-    return (1.0 + (largest[:, None] >= observed).sum(axis=0)) / (1.0 + FLIPS)
+    return (1.0 + (largest[:, None] >= observed).sum(axis=0)) / (1.0 + LIMITS.flips)

@@ -1,0 +1,33 @@
+"""The independent noise of a record, from the data alone: what is left inside short windows once a parabola is out.
+
+A parabola over two seconds follows any friction, load or wave; what remains is sensor noise, whatever model is
+tried. No fit of candidates takes part, because a rich fit that lacks the true law would whiten the effect away.
+"""
+
+import numpy as np
+from scipy.special import gammaincinv
+
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.thresholds import LIMITS
+
+
+def noise_of_run(values: FloatArray, position: np.ndarray) -> float:
+    """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid."""
+    window, order = LIMITS.noise_window, LIMITS.noise_order
+    windows = _windows(values, position, window)
+    if len(windows) == 0:
+        simple = float(np.std(np.diff(values)) / np.sqrt(2.0)) if len(values) > 2 else 0.0
+        return max(simple, LIMITS.noise_floor)
+    grid = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
+    projector = np.eye(window) - grid @ np.linalg.pinv(grid)
+    freedom = window - order - 1
+    variances = ((windows @ projector) ** 2).sum(axis=1) / freedom
+    # that quantile of chi-squared, per degree of freedom
+    expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
+    return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), LIMITS.noise_floor)
+
+
+def _windows(values: FloatArray, position: np.ndarray, window: int) -> FloatArray:
+    starts = range(0, len(values) - window + 1, window // 2)
+    found = [values[k : k + window] for k in starts if position[k + window - 1] - position[k] == window - 1]
+    return np.array(found)

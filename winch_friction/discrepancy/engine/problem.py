@@ -1,0 +1,136 @@
+"""The regression that every question is put to: a gap on base parameters, held to their prior, and candidates."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks, Grams, RunBlocks, Slot, grams, joined
+from winch_friction.discrepancy.engine.bounded_fit import bounded_fit
+from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.thresholds import LIMITS
+
+TINY = 1e-9  # numerical: keeps a column without any data out of singularity
+RIDGE = 1e-6  # numerical: of a column's own sum of squares
+
+
+@dataclass(frozen=True)
+class Base:
+    """The base model's parameters as regression columns in units of their prior standard deviation."""
+
+    names: tuple[str, ...]
+    parameters: int  # the first so many are the model's; what else may move within ordinary bounds follows
+    scale: FloatArray
+    shift: FloatArray  # expansion point minus seed, sigma
+    lower: FloatArray
+    upper: FloatArray
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Columns of base and candidates: their scales and bounds."""
+
+    base: Base
+    slots: tuple[Slot, ...]
+    scales: FloatArray  # physical value of one unit of each column
+    lower: FloatArray
+    upper: FloatArray
+
+    def only(self, slots: Sequence[Slot]) -> "tuple[Layout, tuple[Slot, ...]]":
+        """The layout of the base and of these candidates alone, and the candidates' places in it."""
+        count = len(self.base.names)
+        own = list(range(count)) + [c for slot in slots for c in slot.columns]
+        placed, at = [], count
+        for slot in slots:
+            placed.append(replace(slot, columns=tuple(range(at, at + len(slot.columns)))))
+            at += len(slot.columns)
+        small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own])
+        return small, tuple(placed)
+
+    def slot_like(self, other: Slot) -> Slot:
+        """The slot of the same candidate and shape as one of another layout."""
+        return next(each for each in self.slots if (each.name, each.label) == (other.name, other.label))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Gram matrices over the records at hand with the columns of everything that may be fitted."""
+
+    layout: Layout
+    blocks: Blocks
+    grams: Grams
+    noise: dict[int, float]  # in the gap's unit, per record
+    least_noise: FloatArray | None = None  # per record; what is smaller matters to nobody
+
+    @property
+    def base(self) -> Base:
+        """The base's parameters."""
+        return self.layout.base
+
+    @property
+    def slots(self) -> tuple[Slot, ...]:
+        """Every candidate in every shape."""
+        return self.layout.slots
+
+    @property
+    def base_columns(self) -> tuple[int, ...]:
+        """Columns of the base parameters."""
+        return tuple(range(len(self.base.names)))
+
+    @property
+    def unresolved(self) -> FloatArray:
+        """Variance in units of the noise that each block's remainder may have beyond it without mattering."""
+        if self.least_noise is None:
+            return np.zeros(len(self.blocks.y))
+        noise = np.array([self.noise[k] for k in range(len(self.noise))])
+        return np.maximum((self.least_noise / noise) ** 2 - 1.0, 0.0)[self.blocks.run]
+
+    def columns(self, slots: Sequence[Slot]) -> tuple[int, ...]:
+        """Columns of the base and of these candidates."""
+        return self.base_columns + tuple(c for slot in slots for c in slot.columns)
+
+    def fit(self, g: FloatArray, b: FloatArray, columns: Sequence[int]) -> FloatArray:
+        """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments."""
+        index = np.asarray(columns)
+        h, rhs = g[np.ix_(index, index)].copy(), b[index].copy()
+        k = len(self.base.names)
+        h[np.arange(k), np.arange(k)] += LIMITS.prior_weight
+        rhs[:k] -= LIMITS.prior_weight * self.base.shift
+        rest = np.arange(k, len(index))
+        h[rest, rest] += RIDGE * h[rest, rest] + TINY
+        return bounded_fit(h, rhs, self.layout.lower[index], self.layout.upper[index])
+
+    def covariance(self, g: FloatArray, columns: Sequence[int]) -> FloatArray:
+        """Covariance of the coefficients: data, thinned for correlated noise, and prior; bounds do not count."""
+        index = np.asarray(columns)
+        base = len(self.base.names)
+        h = g[np.ix_(index, index)] / LIMITS.prior_weight
+        h[np.arange(base), np.arange(base)] += 1.0
+        every = np.arange(len(index))
+        h[every, every] += 1e-9 * (1.0 + np.diag(h))
+        return np.asarray(np.linalg.inv(h))
+
+
+def problem_of(
+    tables: Sequence[RunBlocks], layout: Layout, least_noise: FloatArray, known: Sequence[Slot] = ()
+) -> Problem:
+    """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise."""
+    noise = {k: noise_of_run(t.y, t.position) for k, t in enumerate(tables)}
+    blocks = joined(tables, noise)
+    first = Problem(layout, blocks, grams(blocks), noise)
+    # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
+    columns = np.asarray(first.columns(known))
+    beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.columns(known))
+    again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.position)) for k, t in enumerate(tables)}
+    return replace(_reweighted(first, again), least_noise=least_noise)
+
+
+def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
+    """The same problem for another noise of each record."""
+    ratio = np.array([problem.noise[k] / noise[k] for k in range(len(noise))])
+    blocks = replace(problem.blocks, weight=problem.blocks.weight * ratio[problem.blocks.run])
+    g = problem.grams
+    factor = ratio[g.run] ** 2
+    again = Grams(g.g * factor[:, None, None], g.b * factor[:, None], g.y2 * factor, g.count, g.run)
+    return replace(problem, blocks=blocks, grams=again, noise=noise)

@@ -1,0 +1,140 @@
+"""The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
+from winch_friction.discrepancy.engine.crossfit import Explanation
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
+from winch_friction.discrepancy.preparation.balance import Accounted
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.units import GRAVITY
+
+# what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
+TOLERANCES = (
+    ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
+    ("inertia", 5e-3, -1e-2, 1e-2),  # relative
+    ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
+)
+
+
+def base_of(model: FrictionModel, expanded: FrictionModel) -> Base:
+    """Prior scale and box of the base parameters around the point of expansion, and the measurement's tolerances."""
+    seed, at = np.array(model.values), np.array(expanded.values)
+    std = model.std
+    least = np.maximum(np.abs(seed), [abs(p.typical) * 0.1 for p in model.parameters])
+    scale = np.where(std > 0.0, std, LIMITS.default_relative_std * least)
+    bounds = np.array([model.bounds_of(name) for name in model.parameter_names]).reshape(-1, 2)
+    shift = (at - seed) / scale
+    lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
+    upper = np.minimum(LIMITS.prior_bound - shift, (bounds[:, 1] - at) / scale)
+    extra = len(TOLERANCES)
+    return Base(
+        names=model.parameter_names + tuple(name for name, *_ in TOLERANCES),
+        parameters=len(seed),
+        scale=np.concatenate([scale, [sigma for _, sigma, *_ in TOLERANCES]]),
+        shift=np.concatenate([shift, np.zeros(extra)]),
+        lower=np.concatenate([np.minimum(lower, 0.0), [low / sigma for _, sigma, low, _ in TOLERANCES]]),
+        upper=np.concatenate([np.maximum(upper, 0.0), [high / sigma for _, sigma, _, high in TOLERANCES]]),
+    )
+
+
+def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
+    """Give every shape of every candidate its columns."""
+    slots, scales = [], list(base.scale)
+    lower, upper = list(base.lower), list(base.upper)
+    for candidate in candidates:
+        present = candidate.term is not None and candidate.term.name in model.term_names
+        most = candidate.most_in(model)
+        for shape in candidate.shapes(runs):
+            columns = tuple(range(len(scales), len(scales) + len(candidate.linear)))
+            for parameter in candidate.linear:
+                scales.append(parameter.typical)
+                low, high = shape.bounds or (-most if parameter.lower < 0.0 or present else 0.0, most)
+                lower.append(low)
+                upper.append(high)
+            slots.append(
+                Slot(candidate.name, shape.label, columns, candidate.brings, candidate.plausible, (candidate, shape))
+            )
+    return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
+
+
+def tolerance_columns(run: PreparedRun) -> FloatArray:
+    """Torque in N m per unit of each tolerance, shape (samples, tolerances)."""
+    weight = run.load * run.radius / run.gear_ratio * GRAVITY
+    inertia = run.inertia * run.acceleration
+    timing = delay_columns(run, SMALL_DELAY)[:, 0] * run.dt
+    return np.column_stack([weight, inertia, timing])
+
+
+def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:
+    """Torque in N m per unit of each parameter of a candidate in one shape, shape (samples, parameters)."""
+    candidate, shape = slot.origin
+    return np.asarray(candidate.columns(run, shape.values))
+
+
+def regressors(run: PreparedRun, layout: Layout) -> FloatArray:
+    """All scaled columns of one run, N m, shape (samples, columns)."""
+    parts = [np.column_stack([run.jacobian, tolerance_columns(run)]) * layout.base.scale]
+    parts += [slot_columns(run, slot) * layout.scales[list(slot.columns)] for slot in layout.slots]
+    return np.column_stack(parts)
+
+
+def build_problem(
+    runs: Sequence[PreparedRun], layout: Layout, size: int = LIMITS.block_samples, known: Sequence[Slot] = ()
+) -> Problem:
+    """The regression over these runs' usable samples, in the gap's unit."""
+    length = segment_length(sum(run.time[-1] for run in runs))
+    tables = [_blocks(run, layout, size, length) for run in runs]
+    return problem_of(tables, layout, np.array([_least_noise(run) for run in runs]), known)
+
+
+def _blocks(run: PreparedRun, layout: Layout, size: int, length: float) -> RunBlocks:
+    columns = regressors(run, layout) / run.unit_torque
+    table = run_blocks(
+        run.time, run.gap / run.unit_torque, columns, run.used, run.direction, run.channels, size, length
+    )
+    weighed = "hook_load" in run.present or not run.groups
+    return table if weighed else _weightless(table, layout.base.parameters)
+
+
+def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
+    """Where the load was never measured it is anything: what a constant weight could explain is taken out
+    everywhere."""
+    weight = table.x[:, weight_column]
+    scale = float(weight @ weight)
+    if scale <= 0.0:
+        return table
+    x = table.x - np.outer(weight, weight @ table.x / scale)
+    y = table.y - weight * (weight @ table.y / scale)
+    return RunBlocks(y, x, table.segment, table.position, table.features, table.direction)
+
+
+def _least_noise(run: PreparedRun) -> float:
+    """What no balance of a winch closes better than, however quiet its sensors, bar (N m for an electric drive)."""
+    if run.groups:
+        return LIMITS.least_noise
+    return LIMITS.least_share_of_torque * float(np.sqrt(np.mean((run.gap + run.predicted) ** 2))) / run.unit_torque
+
+
+def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Accounted:
+    """What an explanation's effects add to what the driving motors carry, and to the passive side's signals; errors of
+    the driving motors' own signals add nothing.
+    """
+    missing, error = np.zeros(len(run.time)), np.zeros(len(run.time))
+    at = len(layout.base.names)
+    for slot in explanation.slots:
+        width = len(slot.columns)
+        candidate, shape = slot.origin
+        if candidate.kind != "signal" or shape.carried:
+            columns = slot_columns(run, slot) * layout.scales[list(slot.columns)]
+            total = error if shape.carried else missing
+            total += columns @ explanation.beta[at : at + width]
+        at += width
+    return Accounted(missing, error)

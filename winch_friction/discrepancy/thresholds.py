@@ -1,0 +1,78 @@
+"""Every constant by which the workflow decides, with its unit and its reason."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Where a line of comment names the gap campaign, `make campaign-gap` on null data is what calibrates the value."""
+
+    # -- blocks and segments
+    block_samples: int = 10  # 0.2 s at 50 Hz: the fast noise averages out, friction does not
+    fullest_block: float = 0.6  # share of a block's samples that must be usable
+    segments_wanted: int = 100  # enough for sign flips at 0.1 %
+    longest_segment: float = 20.0  # s; longer would leave too few segments
+    shortest_segment: float = 1.0  # s; shorter ones are not independent of their neighbours
+    # -- noise
+    noise_window: int = 12  # blocks; a parabola over two seconds follows any friction, load or wave
+    noise_order: int = 2  # of the polynomial that is taken out
+    noise_quiet: float = 0.25  # quantile: the quieter windows speak, in the others an oscillation may ring down
+    noise_floor: float = 1e-3  # bar (N m): below it a record is as good as noise-free
+    # -- the base model's freedom
+    prior_bound: float = 2.0  # sigma; a base parameter beyond it is itself a finding
+    prior_weight: float = 10.0  # blocks per independent one: correlated noise makes the data count for less (campaign)
+    default_relative_std: float = 0.2  # of a parameter of a model without covariance
+    bare: int = 3  # parameters up to which a model is bare: of what it lacks any size is believed
+    unbounded: float = 1e9  # typical sizes: what a bare model's plain terms may have
+    least_noise: float = 0.1  # bar; a 12-bit transducer of 600 bar steps by 0.15
+    least_share_of_torque: float = 1e-3  # of an electric drive's torque
+    # -- folds and evidence
+    fewest_runs: int = 5  # with fewer, folds are stretches of time
+    folds: int = 8  # of stretches
+    flips: int = 2000  # sign flips: p-values down to 0.0005
+    # family-wise significance that a gain in held-out RMSE from so much on must have: the smaller it is the surer, for
+    # a fading warmth shows in few segments, but a large gain is not chance (campaign)
+    significance: tuple[tuple[float, float], ...] = ((0.1, 0.05), (0.02, 0.01), (0.01, 0.001))
+    least_inside: float = 2e-3  # of the RMSE on the runs it is fitted to, where the base takes a part of every effect
+    least_share: float = 1e-3  # of what is explained already: less is the first effect's own second order
+    most_effects: int = 4  # more at once imitate anything
+    rival_p: float = 0.05  # a rival is worse only where segments say so this surely
+    rival_share: float = 0.03  # of the effect's own gain: a rival within it does as well for any purpose
+    rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
+    most_names: int = 3  # in a set
+    # -- remainder
+    knots: int = 7  # of the flexible model of one signal
+    ridge: float = 30.0  # blocks; a hat needs more data than that before it moves
+    remainder_p: float = 0.01  # family-wise, for a signal that predicts what is left
+    # -- verdict
+    least_unexplained: float = 0.08  # share of the remainder that one signal must predict when no effect was found
+    left_over: float = 0.15  # share of the excess over the noise floor that a named effect may leave
+    least_excess: float = 0.35  # of the noise variance: less than that above the floor is nobody's effect
+    obvious_excess: float = 1.5  # of the noise variance: needs no signal to point at it
+    never_noise: float = 3.0  # of the noise variance: twice the noise is something, predicted or not
+    large_excess: float = 2.0  # of the noise variance, from where on a smaller share counts ...
+    small_left_over: float = 0.04  # ... namely this one
+    steady: float = 0.03  # share of the largest acceleration below which nothing swings or rings
+    fewest_steady: int = 300  # blocks; with fewer all count
+    most_named: int = 2  # effects besides the plain terms of a bare model
+    most_signals: int = 3  # named in 'unexplained'
+    least_named_share: float = 0.02  # of the remainder, that a signal must predict to be named before others
+    # -- locked runs
+    fewest_to_lock_whole: int = 4  # runs; with fewer, the end of every run is locked instead
+    guard_time: float = 0.5  # s between the two parts of a divided run
+    bootstrap_draws: int = 1000  # of segments, for an interval
+    bootstrap_quantiles: tuple[float, float] = (0.025, 0.975)  # a 95 % interval
+    most_kept_noise: float = 3.0  # times the noise that locked runs may keep ...
+    most_kept: float = 0.05  # ... unless it is less than this share of the excess that they had
+    # -- regions
+    most_regions: int = 3
+    smallest_region: float = 0.03  # of the blocks
+    single_condition: float = 0.8  # of the best pair's score that one condition needs: shorter words win
+    # -- refinement
+    most_expansions: int = 2  # preparations around what was found; a third changes nothing (campaign)
+    shape_std: float = 0.1  # relative; a shape is chosen from a grid
+    # -- next experiment
+    enough_separation: float = 3.0  # standard deviations that tell two effects apart
+
+
+LIMITS = Thresholds()

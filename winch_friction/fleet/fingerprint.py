@@ -32,7 +32,7 @@ class Trait:
 def fingerprint(run: Run, crane: Crane, model: FrictionModel) -> list[Trait]:
     """The traits of a run; empty when too little of it moves. Raises `InputError` where the balance lacks a channel."""
     prepared = prepare(run, crane, model)
-    moving = prepared.moving
+    moving = prepared.used
     if moving.sum() < FEWEST_STRETCHES * STRETCH / prepared.dt:
         return []
     columns = np.column_stack([prepared.direction[moving], np.ones(int(moving.sum()))])

@@ -1,4 +1,4 @@
-"""The 27 effects of docs/discrepancy.md at their typical sizes, and eight of the rig's own that no catalogue knows.
+"""The 27 effects of docs/discrepancy.md at their typical sizes, and fifteen of the rig's own that no catalogue knows.
 
 Each is a function (size, random, truth) -> strengths inside the plant; size 1 is the catalogue's typical size.
 """
@@ -73,19 +73,32 @@ OUTSIDE: dict[str, Effect] = {
     "speed_bump": lambda s, rng, f: {"speed_bump": 80.0 * s},
     "acceleration_loss": lambda s, rng, f: {"jerkiness": 20.0 * s},
     "layer_scrub": lambda s, rng, f: {"layer_scrub": 50.0 * s},
+    "power_loss": lambda s, rng, f: {"power_loss": 130.0 * s},
+    "cold_load_grip": lambda s, rng, f: {"cold_load": 90.0 * s},
+    "groove_drag": lambda s, rng, f: {"groove": 90.0 * s},
+    "fast_step": lambda s, rng, f: {"fast_step": 70.0 * s},
+    "swash_step": lambda s, rng, f: {"swash_step": 80.0 * s},
+    "speed_memory": lambda s, rng, f: {"speed_memory": 90.0 * s},
 }
 
+_LOAD = ("main.pressure", "active.pressure", "passive.pressure", "hook_load", "drum_torque")
 # the channel that a right answer puts first, or any of these
 OUTSIDE_SIGNAL: dict[str, tuple[str, ...]] = {
     "wire_out_drag": ("wire_out",),
     "seal_grip_temperature": ("oil_temperature",),
     "drum_sector_drag": ("shaft_angle", "wire_out"),
     "warm_in_during_run": ("time", "run_time"),
-    "pressure_memory": ("main.pressure", "active.pressure", "passive.pressure", "hook_load", "drum_torque"),
+    "pressure_memory": _LOAD,
     "root_speed": ("motor_speed", "speed"),
     "speed_bump": ("motor_speed", "speed"),
     "acceleration_loss": ("acceleration",),
     "layer_scrub": ("wire_layer",),
+    "power_loss": (*_LOAD, "motor_speed", "speed"),
+    "cold_load_grip": (*_LOAD, "oil_temperature"),
+    "groove_drag": ("wire_out", "shaft_angle"),
+    "fast_step": ("motor_speed", "speed"),
+    "swash_step": ("main.displacement", "active.displacement"),
+    "speed_memory": ("motor_speed", "speed"),
 }
 
 # what a data set must have for the effect to leave any trace in it
@@ -97,11 +110,3 @@ NEEDS_CHANNEL: dict[str, str] = {
     "accumulator_thermal": "gas_is_calculated",
     "wear_drift": "weeks",
 }
-
-
-def strengths(effects: list[tuple[str, float]], rng: np.random.Generator, truth: Friction) -> Strengths:
-    """All strengths of a data set's effects; an unknown name raises KeyError."""
-    found: Strengths = {}
-    for name, size in effects:
-        found |= (CATALOGUE | OUTSIDE)[name](size, rng, truth)
-    return found

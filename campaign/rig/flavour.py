@@ -35,6 +35,7 @@ class Flavour:
     gas_is_calculated: bool = False  # the log holds the PLC's polytropic law for the passive pressure
     pressure_is_late: bool = False  # signal_delay sits in the pressures, not in the speed
     wire_damping: float = 0.0  # N s/m of an elastic wire, below 1 its damping ratio; 0: rigid
+    rate: float = 50.0  # Hz of the log
     units: str = "plant"  # plant: rpm, bar, cm^3/rev; si: no brackets
 
 

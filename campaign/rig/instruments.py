@@ -8,13 +8,12 @@ from campaign.rig.plant import STEP
 from campaign.rig.truth import BAR
 
 Array = np.ndarray
-PERIOD = 0.02  # s
 
 
-def sampling(steps: int, jitter: float, rng: np.random.Generator) -> tuple[Array, Array]:
+def sampling(steps: int, period: float, jitter: float, rng: np.random.Generator) -> tuple[Array, Array]:
     """Indices of the plant's steps that the PLC takes, and their time stamps in s."""
-    nominal = np.arange(PERIOD, steps * STEP - PERIOD, PERIOD)
-    time = nominal + (np.clip(rng.normal(0, jitter, len(nominal)), -0.008, 0.008) if jitter else 0.0)
+    nominal = np.arange(period, steps * STEP - period, period)
+    time = nominal + (np.clip(rng.normal(0, jitter, len(nominal)), -0.4 * period, 0.4 * period) if jitter else 0.0)
     index = np.round(time / STEP).astype(int)
     return index, index * STEP
 
@@ -28,10 +27,18 @@ def noise(size: int, sigma: float, color: float, rng: np.random.Generator) -> Ar
     return sigma * np.sqrt(0.5) * (white + slow)
 
 
-def pressure(true: Array, index: Array, flavour: Flavour, rng: np.random.Generator, offset=0.0, gain=0.0) -> Array:
+def pressure(
+    true: Array,
+    index: Array,
+    flavour: Flavour,
+    rng: np.random.Generator,
+    offset: Array | float = 0.0,
+    gain: Array | float = 0.0,
+) -> Array:
     """A 600 bar transducer, Pa."""
     value = true[index] * (1.0 + gain) + offset
-    value = value + noise(len(index), flavour.pressure_noise * BAR, flavour.noise_color, rng)
+    color = flavour.noise_color ** (50.0 / flavour.rate)  # the flavour states it for 50 Hz
+    value = value + noise(len(index), flavour.pressure_noise * BAR, color, rng)
     step = flavour.pressure_step * BAR
     return np.round(value / step) * step
 
@@ -43,9 +50,17 @@ def delayed(true: Array, index: Array, delay: float) -> Array:
 
 def encoder_speed(angle: Array, index: Array, delay: float, flavour: Flavour, rng: np.random.Generator) -> Array:
     """Counts of one PLC period about the instant of the sample, divided by it, rad/s."""
-    half = PERIOD / 2
+    period = 1.0 / flavour.rate
+    half = period / 2
     pitch = 2 * np.pi / flavour.pulses
     phase = rng.uniform(0, pitch)
     ahead = np.floor((delayed(angle, index, delay - half) + phase) / pitch)
     behind = np.floor((delayed(angle, index, delay + half) + phase) / pitch)
-    return (ahead - behind) * pitch / PERIOD + noise(len(index), flavour.speed_noise, 0.0, rng)
+    return (ahead - behind) * pitch / period + noise(len(index), flavour.speed_noise, 0.0, rng)
+
+
+def filtered(true: Array, time_constant: float) -> Array:
+    """A signal behind a first-order filter on the plant's time grid."""
+    keep = np.exp(-STEP / time_constant)
+    out, _ = lfilter([1.0 - keep], [1.0, -keep], true - true[0], zi=np.zeros(1))
+    return out + true[0]

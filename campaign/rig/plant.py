@@ -3,66 +3,26 @@
 Friction is set-valued (Moreau's time stepping): at rest it is whatever holds the shaft, up to the break-away level.
 """
 
-from math import exp, pi, sin, sqrt
+from math import exp
 
 import numpy as np
 from numba import njit
 
-from campaign.rig.truth import GEAR, LINE_VOLUME, MAX_DISPLACEMENT
+from campaign.rig.losses import (
+    compliance,
+    drifted,
+    extra_loss,
+    grown,
+    line_drop,
+    lost_flow,
+    motor_loss,
+    strange_loss,
+    system_loss,
+    wave,
+)
 
 STEP = 0.002  # s
-BOOST_VALVE = 1e-8  # m^3/s/Pa
-DENSITY = 870.0
-NOTCH_SPEED = 400 * 2 * pi / 60
-NOTCH_UNIT = NOTCH_SPEED / (2 * NOTCH_SPEED**2) * 200e5 * sqrt(200e5 / DENSITY)
 GAS_EXPONENT = 1.3
-GAS_VOLUME = 1.6  # m^3 at 300 bar
-
-
-@njit(cache=True)
-def _motor(f, h, w, p, p_sum, d, visc, drift):
-    """Torque loss of one motor, N m."""
-    x = d / MAX_DISPLACEMENT
-    loss = f.K1 * visc * w + f.K2 * w * w * d**3 + f.K3 * p * d + f.K4 * drift + f.K5 * p * p
-    loss += h.low_displacement * p * (1.0 - x) + h.mixed * p * p + h.case * p_sum
-    if h.turbulence != 0.0:
-        n = h.turbulence_exponent
-        loss += h.turbulence * f.K2 * 209.44**2 * MAX_DISPLACEMENT**3 * (w / 209.44) ** n * x ** (n + 1.0)
-    if h.churning != 0.0:
-        loss += h.churning * (w / 209.44) ** h.churning_exponent
-    if h.notch != 0.0:
-        loss += h.notch * x * (w / (w * w + NOTCH_SPEED**2) * p * sqrt(p / DENSITY)) / NOTCH_UNIT
-    return loss + h.brake
-
-
-@njit(cache=True)
-def _system(f, h, w, drum_torque, visc):
-    """Loss of gears, drum, wire and sheaves, per motor shaft, N m."""
-    rise = f.C1 * drum_torque + f.C3
-    loss = rise * exp(-w / f.C4) + f.C5 * visc * w + f.C6 * drum_torque
-    if h.stribeck != 0.0:
-        loss += h.stribeck * rise * exp(-w / h.stribeck_speed)
-    return loss
-
-
-@njit(cache=True)
-def _strange(h, w, a, since_start, wire_out, celsius, memory, drum_angle, layer):
-    """Losses that no catalogue knows, whole winch, N m."""
-    loss = h.wire_drag * wire_out / 100.0 + h.seal_grip * (celsius - 40.0) / 20.0
-    loss += h.run_drift * exp(-since_start / 60.0) + h.pressure_memory * memory / 100e5
-    loss += h.root_speed * sqrt(w / 100.0) + h.jerkiness * abs(a) / 10.0 + h.layer_scrub * (6.0 - layer)
-    loss += h.speed_bump * exp(-0.5 * ((w - 90.0) / 12.0) ** 2)
-    turn = (drum_angle / (2 * pi)) % 1.0
-    if turn < 0.3:
-        loss += h.sector
-    return loss
-
-
-@njit(cache=True)
-def _compliance(h, p, modulus):
-    """dV/dp of one side, m^3/Pa: oil, and air that stiffens with pressure (adiabatic)."""
-    p = max(p, 1e5)
-    return LINE_VOLUME * (1.0 / modulus + h.air / 1.4 * (1e5 / p) ** (1.0 / 1.4) / p)
 
 
 @njit(cache=True)
@@ -71,24 +31,30 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
     n_total = r.drive_motors + r.passive_motors
     active = r.drive_motors * r.drive_displacement
     passive = r.passive_motors * r.passive_displacement
-    drum_torque = (r.load + h.tare + h.tare_wire * 24.5 * r.wire_out) * 9.80665 * r.radius
-    static = drum_torque / GEAR
-    load_inertia = (r.load + h.tare) * (r.radius / GEAR) ** 2
+    drum_torque = (
+        (r.load + h.tare + h.tare_wire * r.wire_mass * max(r.wire_out - h.tare_beyond, 0.0)) * 9.80665 * r.radius
+    )
+    static = drum_torque / r.gear
+    load_inertia = (r.load + h.tare) * (r.radius / r.gear) ** 2
     mass = r.load + h.tare
     elastic = r.wire_stiffness > 0.0  # else the load is rigidly coupled to the shaft
-    inertia = r.inertia + h.inertia + (0.0 if elastic else load_inertia)
-    heave_gain = mass * r.radius / GEAR
+    inertia = r.inertia + h.inertia + h.inertia_wire * max(3.0 - r.wire_out / 1000.0, 0.0)
+    swept = r.drive_motors * r.drive_displacement**2 + r.passive_motors * r.passive_displacement**2
+    inertia += h.inertia_oil * swept / (n_total * r.max_displacement**2) + (0.0 if elastic else load_inertia)
+    heave_gain = mass * r.radius / r.gear
     stretch, load_speed = 0.0, 0.0  # beyond the static stretch; m/s, up
-    drift = 1.0 + h.coulomb_drift * r.date
+    drift = 1.0 + h.coulomb_drift * drifted(h, r.date)
     speed, angle, a = 0.0, 0.0, 0.0  # a: the acceleration that is asked for
     gas = r.gas_pressure * (1.0 + h.gas_warm)
     warm = 1.0 + h.gas_warm
-    volume = GAS_VOLUME * (300e5 / r.gas_pressure)
+    volume = r.gas_volume * (300e5 / r.gas_pressure)
     volume_start = volume
     start = (static - passive * (r.gas_pressure - r.boost)) / active
     p_a, p_b = max(start, 0.0) + r.boost, max(-start, 0.0) + r.boost
     known = start  # the leakage compensation's filtered pressure
-    flow, bristle, age, memory, wanted = 0.0, 0.0, 5.0, abs(start), 0.0
+    flow, bristle, second, age, memory, recent, wanted = 0.0, 0.0, 0.0, 5.0, abs(start), 0.0, 0.0
+    resting = True
+    share = static / r.largest_static
     for k in range(len(reference)):
         t = k * STEP
         wanted += reference[k] * STEP
@@ -100,41 +66,62 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
         known += (dp - known) * STEP / 0.5
         memory += (abs(dp) - memory) * STEP / 30.0
         w = abs(speed)
-        visc = 1.0 + h.viscosity * (viscosity[k] - 1.0)
+        recent += (w - recent) * STEP / 12.0
+        thick = 1.0 + h.viscosity * (viscosity[k] - 1.0)
+        visc = thick**h.viscosity_power
         # the line's loss lies between transducer and motor, so the motor gets less when it drives the load
         motor_flow = active * speed
-        line_motor = h.line_drop * motor_flow * abs(motor_flow)
+        line_motor = line_drop(h, motor_flow)
         dp_motor = dp - line_motor
-        dp_passive = gas - r.boost - h.line_drop * (passive * speed) * abs(passive * speed)
-        wire_out = r.wire_out - angle * r.radius / GEAR
-        loss = r.drive_motors * _motor(f, h, w, abs(dp_motor), p_a + p_b, r.drive_displacement, visc, drift)
+        dp_passive = gas - r.boost - line_drop(h, passive * speed)
+        wire_out = r.wire_out - angle * r.radius / r.gear
+        loss = r.drive_motors * motor_loss(f, h, r, w, abs(dp_motor), p_b, p_a + p_b, r.drive_displacement, visc, drift)
         if r.passive_motors > 0:
-            loss += r.passive_motors * _motor(
-                f, h, w, abs(dp_passive), gas + r.boost, r.passive_displacement, visc, drift
+            loss += r.passive_motors * motor_loss(
+                f, h, r, w, abs(dp_passive), r.boost, gas + r.boost, r.passive_displacement, visc, drift
             )
-        loss += n_total * _system(f, h, w, drum_torque, visc) + (h.load_loss + h.sheave) * static
-        loss += _strange(h, w, a, t, wire_out, celsius[k], memory, angle / GEAR, r.layer)
-        loss *= 1.0 + h.dwell_gain * (1.0 - exp(-h.dwell_rate * age))
+        loss += n_total * system_loss(f, h, w, drum_torque, visc, thick) + (h.load_loss + h.sheave) * static
+        hanging = h.brake * r.brake_hangs
+        loss += n_total * (hanging if h.brake_fade == 0.0 else hanging * exp(-t / h.brake_fade))
+        extra = extra_loss(h, w, speed, share)
+        loss += 0.0 if h.winch_signed != 0.0 else extra
+        x = r.drive_displacement / r.max_displacement
+        loss += strange_loss(h, w, a, t, wire_out, celsius[k], memory, angle / r.gear, r.layer, share, x, recent)
+        if h.dwell_speed > 0.0:
+            loss *= 1.0 + h.dwell_gain * grown(h, age) * exp(-w / h.dwell_speed)
+            if w < 0.3:
+                age = age + STEP if resting else STEP
+            resting = w < 0.3
+        else:
+            loss *= 1.0 + h.dwell_gain * grown(h, age)
+            age = age * exp(-w * STEP / h.dwell_angle) + STEP
         loss = max(loss, 0.0)
-        age = age * exp(-w * STEP / h.dwell_angle) + STEP
         drive = active * dp_motor + passive * dp_passive - static
         if elastic:
-            tip = speed * r.radius / GEAR + heave[k]
+            tip = speed * r.radius / r.gear + heave[k]
             dynamic = r.wire_stiffness * stretch + r.wire_damping * (tip - load_speed)
             load_speed += STEP / mass * dynamic
             stretch += STEP * (tip - load_speed)
-            drive -= dynamic * r.radius / GEAR
+            drive -= dynamic * r.radius / r.gear
         else:
             drive -= heave_gain * heave_acceleration[k]
-        drive -= h.ripple * static * sin(h.ripple_order * angle)
+        drive -= (h.ripple * static + h.ripple_still) * wave(h.ripple_wave, h.ripple_order * angle)
+        one_way = h.asymmetry * static + (extra if h.winch_signed != 0.0 else 0.0)
         if h.presliding_angle > 0.0:
             s = 1.0 if speed >= 0.0 else -1.0
-            bristle = s + (bristle - s) * exp(-w * STEP / h.presliding_angle)
-            speed += STEP / inertia * (drive - loss * bristle - h.asymmetry * static * bristle)
+            if h.presliding_kind == 1.0:
+                bristle = min(max(bristle + speed * STEP / h.presliding_angle, -1.0), 1.0)
+            else:
+                bristle = s + (bristle - s) * exp(-w * STEP / h.presliding_angle)
+            held = bristle
+            if h.presliding_kind == 2.0:
+                second = s + (second - s) * exp(-w * STEP / (0.15 * h.presliding_angle))
+                held = 0.5 * (bristle + second)
+            speed += STEP / inertia * (drive - loss * held - one_way * (bristle if h.winch_signed == 0.0 else 1.0))
         else:
             free = speed + STEP / inertia * drive
             up = free > 0.0
-            hold = max(loss + (h.asymmetry * static if up else -h.asymmetry * static), 0.0) * STEP / inertia
+            hold = max(loss + (one_way if up else -one_way), 0.0) * STEP / inertia
             if abs(free) <= hold:
                 speed = 0.0
             elif up:
@@ -143,13 +130,13 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
                 speed = free + hold
         angle += speed * STEP
         # oil: the pump's flow, what the motors swallow, leakage; the low side is tied to boost
-        q = flow - active * speed - (r.leakage + h.leakage / viscosity[k]) * dp
-        c_a, c_b = _compliance(h, p_a, r.modulus), _compliance(h, p_b, r.modulus)
+        q = flow - active * speed - r.leakage * dp - lost_flow(h, dp, viscosity[k])
+        c_a, c_b = compliance(h, p_a, r.modulus, r.line_volume), compliance(h, p_b, r.modulus, r.line_volume)
         if p_a >= p_b:
-            p_b = (p_b + STEP / c_b * (BOOST_VALVE * r.boost - q)) / (1.0 + STEP / c_b * BOOST_VALVE)
+            p_b = (p_b + STEP / c_b * (r.boost_valve * r.boost - q)) / (1.0 + STEP / c_b * r.boost_valve)
             p_a += STEP / c_a * q
         else:
-            p_a = (p_a + STEP / c_a * (BOOST_VALVE * r.boost + q)) / (1.0 + STEP / c_a * BOOST_VALVE)
+            p_a = (p_a + STEP / c_a * (r.boost_valve * r.boost + q)) / (1.0 + STEP / c_a * r.boost_valve)
             p_b -= STEP / c_b * q
         p_a, p_b = max(p_a, 0.0), max(p_b, 0.0)
         if r.passive_motors > 0:
@@ -167,7 +154,7 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
         out[2, k] = p_a
         out[3, k] = p_b
         out[4, k] = gas
-        out[5, k] = r.gas_pressure * (volume_start / volume) ** GAS_EXPONENT
+        out[5, k] = r.gas_pressure * (volume_start / volume) ** (GAS_EXPONENT + h.gas_power)
 
 
 def new_output(steps: int) -> np.ndarray:

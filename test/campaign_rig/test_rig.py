@@ -9,12 +9,15 @@ import pytest
 
 from campaign import rig
 from campaign.rig.oil import viscosity
-from campaign.rig.truth import CRANE2, GEAR, RADII
+from campaign.rig.truth import CRANE2, GEAR, RADII, RELATIVE_SIGMA, draw_friction
 from winch_friction.physics.signals import Run, column_unit
 from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
 from winch_friction.physics.winch.torque_balance import run_drive_torque
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
 
 RIG = Path(rig.__file__).parent
+SHORT = 0.2  # of a campaign's runs
 
 
 def test_the_rig_imports_nothing_of_the_package():
@@ -29,7 +32,8 @@ def _plateau_residual(columns, crane, model):
     """Mean torque that balance and model leave open where the speed is steady, N m."""
     run = Run("run", columns)
     speed = run["motor_speed"]
-    window = np.ones(51) / 51
+    size = round(1.0 / np.median(np.diff(run["time"]))) // 2 * 2 + 1  # a second
+    window = np.ones(size) / size
     slow = np.convolve(speed, window, "same")
     spread = np.convolve((speed - slow) ** 2, window, "same") ** 0.5
     steady = (np.abs(slow) > 5.0) & (spread < 1.0)
@@ -70,18 +74,18 @@ def test_a_seed_is_one_crane_and_another_seed_another():
 @pytest.mark.parametrize("effect", [*rig.CATALOGUE, *rig.OUTSIDE])
 def test_every_effect_changes_what_is_logged(effect):
     flavour = rig.suitable_flavours(effect)[0]
-    assert _difference(_null(flavour), rig.make_dataset(9, flavour, [(effect, 1.0)])) > 0.0
+    assert _difference(_null(flavour), rig.make_dataset(9, flavour, [(effect, 1.0)], length=SHORT)) > 0.0
 
 
 @pytest.mark.parametrize("effect", ["stribeck", "presliding", "signal_delay", "wire_out_drag"])
 def test_an_effect_grows_with_its_size(effect):
-    small, full = (rig.make_dataset(9, "paper", [(effect, size)]) for size in (0.1, 1.0))
+    small, full = (rig.make_dataset(9, "paper", [(effect, size)], length=SHORT) for size in (0.1, 1.0))
     assert _difference(_null("paper"), full) > _difference(_null("paper"), small) > 0.0
 
 
 @cache
 def _null(flavour):
-    return rig.make_dataset(9, flavour)
+    return rig.make_dataset(9, flavour, length=SHORT)
 
 
 def _difference(first, second):
@@ -108,3 +112,55 @@ def test_files_carry_the_columns(units, tmp_path):
     table = np.loadtxt(paths[-1], delimiter=",", skiprows=1)
     assert table.shape == (50, len(runs[-1]))
     assert np.abs(np.diff(table[:, 0]) - np.diff(runs[-1]["time"])).max() < 1e-5
+
+
+def test_every_cause_has_three_laws_and_one_that_the_package_lacks():
+    assert set(rig.LAWS) == set(rig.CATALOGUE)
+    for cause, laws in rig.LAWS.items():
+        assert len(laws) >= 3, cause
+        assert len({law.name for law in laws}) == len(laws), cause
+        assert any(law.held_out for law in laws), cause
+
+
+@pytest.mark.parametrize("effect", [f"{cause}:{law.name}" for cause, laws in rig.LAWS.items() for law in laws[1:]])
+def test_every_law_changes_what_is_logged(effect):
+    runs = (rig.make_dataset(21, rig.DRAWN, [(effect, size)], length=0.15) for size in (0.0, 1.0))
+    assert _difference(*runs) > 0.0
+
+
+@pytest.mark.parametrize("seed", [31, 32, 33])
+def test_a_drawn_crane_obeys_the_balance_as_its_files_describe_it(seed, tmp_path):
+    """Crane and seed model as written to files, read by the package, close the torque balance of the drawn plant."""
+    world = rig.world_of(seed, rig.DRAWN)
+    crane_file, model_file = rig.write_world(tmp_path, world)
+    crane, model = load_crane(str(crane_file)), load_model(str(model_file))
+    runs = rig.make_dataset(seed, rig.DRAWN, truth=world.seed, length=0.5)
+    friction = 300.0 * world.winch_size  # N m, about
+    for columns in runs[:8]:
+        assert abs(_plateau_residual(columns, crane, model).mean()) < 0.03 * friction
+
+
+def test_drawn_cranes_differ_in_all_that_a_crane_file_holds():
+    worlds = [rig.world_of(seed, rig.DRAWN) for seed in range(40, 52)]
+    for name in ("gear", "radii", "max_displacement", "motors", "inertia", "wire_mass", "seed"):
+        assert len({getattr(world, name) for world in worlds}) > 4, name
+    rates = {
+        round(1 / np.median(np.diff(rig.make_dataset(s, rig.DRAWN, length=0.1)[0]["time"]))) for s in range(40, 52)
+    }
+    assert min(rates) <= 25, rates
+    assert max(rates) >= 100, rates
+
+
+def test_truth_lies_as_far_from_the_seed_as_asked():
+    rng = np.random.default_rng(1)
+    for least, most in ((0.0, 1.5), (2.0, 3.0)):
+        away = [
+            abs(value / seed - 1.0) / sigma
+            for _ in range(20)
+            for value, seed, sigma in zip(
+                draw_friction(rng, True, most, CRANE2, least), CRANE2, RELATIVE_SIGMA, strict=True
+            )
+            if value > 0.0
+        ]
+        assert max(away) <= most + 1e-9
+        assert min(away) >= least - 1e-9

@@ -1,0 +1,209 @@
+"""Other laws of the catalogue's causes: a plant wears, drags and measures by its own equations, not by a catalogue's.
+
+Every cause has the catalogue's own law (campaign.rig.effects) and at least two more. `held_out` marks those of which
+the package has no member: a test fits it all that the package knows of the cause, and requires that it does not fit.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from campaign.rig.effects import CATALOGUE, OUTSIDE, Strengths
+from campaign.rig.truth import BAR, CM3_PER_REV, MAX_DISPLACEMENT, RPM, Friction
+
+Draw = Callable[[float, np.random.Generator, Friction], Strengths]
+GAUSS, LORENTZ, SLOW, RAMP = 1.0, 2.0, 3.0, 4.0  # stribeck_shape
+VOGEL, REYNOLDS, ANDRADE = 1.0, 2.0, 3.0  # oil_law
+
+
+@dataclass(frozen=True)
+class Law:
+    """One law of a cause at a size."""
+
+    name: str
+    draw: Draw
+    held_out: bool = False
+
+
+def _stribeck(shape: float, low: float, high: float) -> Draw:
+    return lambda s, rng, f: {
+        "stribeck": s, "stribeck_speed": f.C4 * rng.uniform(low, high), "stribeck_shape": shape
+    }  # fmt: skip
+
+
+def _oil(law: float, hersey: float, power: float = 1.0) -> Draw:
+    return lambda s, rng, f: {
+        "viscosity": s, "oil_law": law, "oil_reference": rng.uniform(32, 50), "hersey": hersey, "viscosity_power": power
+    }  # fmt: skip
+
+
+def _presliding(degrees: float, kind: float) -> Draw:
+    return lambda s, rng, f: {"presliding_angle": np.radians(degrees * s), "presliding_kind": kind}
+
+
+def _dwell(growth: float, by_speed: bool) -> Draw:
+    return lambda s, rng, f: {
+        "dwell_gain": 0.22 * s, "dwell_growth": growth, "dwell_rate": rng.uniform(0.15, 0.9),
+        "dwell_angle": rng.uniform(0.5, 2.5), "dwell_speed": rng.uniform(6.0, 18.0) if by_speed else 0.0,
+    }  # fmt: skip
+
+
+def _motor(amount: float, **exponents: float) -> Draw:
+    return lambda s, rng, f: {"motor_amount": amount * s, **{f"motor_{k}": v for k, v in exponents.items()}}
+
+
+def _winch(amount: float, **exponents: float) -> Draw:
+    return lambda s, rng, f: {"winch_amount": amount * s, **{f"winch_{k}": v for k, v in exponents.items()}}
+
+
+def _line(power: float, side: float = 0.0) -> Draw:
+    return lambda s, rng, f: {"line_drop": 4 * BAR / (1.29 / 60) ** 2 * s, "line_power": power, "line_side": side}
+
+
+def _leak(power: float, cold: float) -> Draw:
+    return lambda s, rng, f: {
+        "leakage": 50 * RPM * 11 * MAX_DISPLACEMENT / (150 * BAR) * s, "leakage_power": power, "leakage_cold": cold
+    }  # fmt: skip
+
+
+def _drift(law: float, size: float = 0.3) -> Draw:
+    return lambda s, rng, f: {"coulomb_drift": size * s, "drift_law": law, "drift_at": rng.uniform(0.3, 0.7)}
+
+
+def _set(**values: float) -> Draw:
+    return lambda s, rng, f: {name: value * s for name, value in values.items()}
+
+
+def _wave(kind: float, still: bool) -> Draw:
+    def draw(s: float, rng: np.random.Generator, f: Friction) -> Strengths:
+        amount = {"ripple_still": 14.0 * s} if still else {"ripple": 0.02 * s}
+        return {**amount, "ripple_wave": kind, "ripple_order": float(rng.choice([1.0, 0.2, 2.0, 1 / 6]))}
+
+    return draw
+
+
+OTHER: dict[str, tuple[Law, ...]] = {
+    "viscosity_temperature": (
+        Law("vogel_hersey", _oil(VOGEL, 1.0)), Law("exponential", _oil(REYNOLDS, 0.0)),
+        Law("andrade", _oil(ANDRADE, 0.0)), Law("shear_thinning", _oil(VOGEL, 0.5, power=0.45), held_out=True),
+    ),
+    "stribeck": (
+        Law("gauss", _stribeck(GAUSS, 0.6, 1.5)), Law("hess_soom", _stribeck(LORENTZ, 0.6, 1.5)),
+        Law("slow_tail", _stribeck(SLOW, 0.5, 1.0), held_out=True),
+        Law("ramp", _stribeck(RAMP, 0.5, 1.2), held_out=True),
+    ),
+    "presliding": (
+        Law("linear", _presliding(7.0, 1.0), held_out=True),
+        Law("two_populations", _presliding(8.0, 2.0)),
+    ),
+    "dwell_stiction": (
+        Law("by_speed", _dwell(0.0, True)), Law("logarithmic", _dwell(1.0, False)),
+        Law("power_by_speed", _dwell(2.0, True), held_out=True),
+    ),
+    "gear_asymmetry": (
+        Law("hoisting_alone", _winch(45.0, load=1.0, side=1.0)),
+        Law("lowering_alone", _winch(45.0, load=1.0, side=-1.0)),
+        Law("bends_the_frame", _winch(55.0, load=2.2, signed=1.0), held_out=True),
+    ),
+    "gear_load_loss": (
+        Law("mixed_film", _winch(150.0, load=1.0, fade=110.0)),
+        Law("mesh_bends", _winch(90.0, load=1.8), held_out=True),
+    ),
+    "layer_radius": (
+        Law("one_layer", lambda s, rng, f: {"radius_step": -0.04 * s}),
+        Law("rope_sinks_in", _set(radius_load=0.03), held_out=True),
+    ),
+    "sheave_bending": (
+        Law("stiff_rope", _winch(70.0, load=0.0)), Law("hertz", _winch(70.0, load=0.4), held_out=True),
+    ),
+    "wear_drift": (
+        Law("saturating", _drift(1.0)), Law("logarithmic", _drift(2.0)), Law("run_in", _drift(0.0, -0.25)),
+        Law("at_once", _drift(3.0), held_out=True),
+    ),
+    "low_displacement_loss": (
+        Law("quadratic", _motor(40.0, p=1.0, rest=2.0)),
+        Law("reads_displacement_alone", _motor(14.0, rest=1.0)),
+        Law("root_of_pressure", _motor(18.0, p=0.5, rest=1.6), held_out=True),
+    ),
+    "port_turbulence": (
+        Law("orifice", _motor(18.0, w=2.0, x=3.0)), Law("one_port", _motor(16.0, w=2.0, x=2.0)),
+        Law("chokes", _motor(40.0, w=2.0, w0=60.0, x=1.5), held_out=True),
+    ),
+    "notch_loss": (
+        Law("linear_in_pressure", _motor(14.0, p=1.0, w=0.5, fade=60.0, x=1.0), held_out=True),
+        Law("full_displacement", _motor(14.0, p=1.5, w=0.5, fade=60.0), held_out=True),
+    ),
+    "churning": (
+        Law("power_one_half", _motor(4.0, w=1.5)), Law("thick_oil", _motor(4.0, w=1.75, viscosity=0.25)),
+        Law("foams", _motor(8.0, w=1.5, w0=70.0), held_out=True),
+    ),
+    "high_pressure_mixed": (
+        Law("cubic", _motor(3.6, p=3.0)), Law("beyond_a_pressure", _motor(9.0, p=1.0, p0=90 * BAR), held_out=True),
+    ),
+    "slip_leakage": (
+        Law("cold_and_warm", _leak(1.0, 0.0)), Law("gap_opens", _leak(2.0, 1.0)),
+        Law("orifice", _leak(0.5, 0.0), held_out=True),
+    ),
+    "line_pressure_drop": (
+        Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)), Law("filter", _line(1.2, 1.0), held_out=True),
+    ),
+    "case_pressure": (
+        Law("port_b", _set(case_b=40 * BAR * MAX_DISPLACEMENT / (150 * BAR))),
+        Law("small_swivel", _set(case_rest=14 * BAR * MAX_DISPLACEMENT / (150 * BAR)), held_out=True),
+    ),
+    "accumulator_thermal": (
+        Law("cold_bottle", lambda s, rng, f: {"gas_time": rng.uniform(40, 150), "gas_warm": -0.02 * s}),
+        Law("other_exponent", _set(gas_power=-0.15), held_out=True),
+    ),
+    "inertia_error": (
+        Law("wire_on_drum", _set(inertia_wire=0.16)), Law("oil_column", _set(inertia_oil=0.6), held_out=True),
+    ),
+    "pressure_offset": (
+        Law("port_b", _set(pressure_offset_b=1.5 * BAR)), Law("passive_side", _set(pressure_offset_passive=2.5 * BAR)),
+        Law("warm_electronics", _set(pressure_warm=2.5 * BAR), held_out=True),
+    ),
+    "pressure_scale": (
+        Law("passive_side", _set(pressure_scale_passive=0.012)),
+        Law("grows_with_pressure", _set(pressure_curve=0.008), held_out=True),
+    ),
+    "signal_delay": (
+        Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06), held_out=True),
+    ),
+    "swivel_offset": (
+        Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV), held_out=True),
+    ),
+    "entrained_air": (
+        Law("more", _set(air=0.02)), Law("little", _set(air=0.005), held_out=True),
+    ),
+    "torque_ripple": (
+        Law("whatever_the_load", _wave(0.0, True)), Law("triangle", _wave(1.0, False)),
+        Law("third_harmonic", _wave(2.0, False), held_out=True),
+    ),
+    "brake_drag": (
+        Law("some_runs", lambda s, rng, f: {"brake": 6.0 * s, "brake_every": 0.5}),
+        Law("lets_go_slowly", lambda s, rng, f: {"brake": 9.0 * s, "brake_fade": rng.uniform(25, 60)}, held_out=True),
+    ),
+    "tare_load": (
+        Law("rope_paid_out", _set(tare_wire=0.4)), Law("hook_and_rope", _set(tare=1500.0, tare_wire=0.25)),
+        Law("rope_beyond_the_boom", lambda s, rng, f: {"tare_wire": 0.6 * s, "tare_beyond": 220.0}, held_out=True),
+    ),
+}  # fmt: skip
+
+LAWS: dict[str, tuple[Law, ...]] = {
+    cause: (Law("catalogue", draw), *OTHER.get(cause, ())) for cause, draw in CATALOGUE.items()
+}
+
+
+def law_of(effect: str) -> Draw:
+    """The law behind `cause`, `cause:law` or the name of an outside effect; an unknown name raises KeyError."""
+    if effect in OUTSIDE:
+        return OUTSIDE[effect]
+    cause, _, name = effect.partition(":")
+    laws = {law.name: law.draw for law in LAWS[cause]}
+    return laws[name or "catalogue"]
+
+
+def cause_of(effect: str) -> str:
+    """The name that a right diagnosis gives."""
+    return effect.partition(":")[0]

@@ -11,6 +11,7 @@ import json
 import multiprocessing
 import os
 import resource
+import tempfile
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -23,7 +24,7 @@ from campaign.commit import commit  # noqa: E402
 from campaign.gap_cases import QUICK, Case, Counts, all_cases  # noqa: E402
 from campaign.gap_report import write_table  # noqa: E402
 from campaign.gap_score import score  # noqa: E402
-from campaign.rig import make_dataset  # noqa: E402
+from campaign.rig import DRAWN, make_dataset, world_of, write_world  # noqa: E402
 
 FIRST_SEED = 100_000
 RESULTS = Path("out/campaign_gap/results.jsonl")
@@ -35,13 +36,12 @@ def diagnose(case: Case) -> dict[str, Any]:
     from winch_friction.discrepancy.options import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.signals import Run
-    from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.model_file import load_model
 
-    data = make_dataset(case.seed, case.flavour, case.effects)
+    data = make_dataset(case.seed, case.flavour, case.effects, sigma=case.sigma)
+    crane, model = owner_files(case)
     runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(data)]
     started = time.perf_counter()
-    result = find_gap(runs, load_crane("crane_150t"), load_model("a6vm215_crane2"), GapOptions(plan=False))
+    result = find_gap(runs, crane, model, GapOptions(plan=False))
     seconds = time.perf_counter() - started
     answer = json.loads(json.dumps(result.content()))
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
@@ -55,6 +55,18 @@ def diagnose(case: Case) -> dict[str, Any]:
         "megabytes": megabytes,
         "answer": answer,
     } | score(case, answer)
+
+
+def owner_files(case: Case) -> tuple[Any, Any]:
+    """Crane and seed model of a data set, as its owner's files describe them."""
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+
+    if case.flavour != DRAWN:
+        return load_crane("crane_150t"), load_model("a6vm215_crane2")
+    with tempfile.TemporaryDirectory() as folder:
+        crane, model = write_world(Path(folder), world_of(case.seed, case.flavour))
+        return load_crane(str(crane)), load_model(str(model))
 
 
 def diagnose_or_say(case: Case) -> dict[str, Any]:

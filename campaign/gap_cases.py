@@ -16,10 +16,11 @@ _TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"},
 class Case:
     """One data set to be diagnosed."""
 
-    kind: str  # null, single, pair, outside
+    kind: str  # null, single, pair, outside; over drawn cranes: drawn_null, law, held_out, far_seed, drawn_outside
     effects: tuple[tuple[str, float], ...]
     flavour: str
     seed: int
+    sigma: tuple[float, float] = (0.0, 1.5)  # how far the base parameters lie from the seed model, least and most
 
     @property
     def key(self) -> str:

@@ -3,14 +3,15 @@
 from typing import Any
 
 from campaign.gap_cases import Case
-from campaign.rig import OUTSIDE_SIGNAL
+from campaign.rig import OUTSIDE_SIGNAL, cause_of
 
 LARGEST_SET = 3
+ONE_CAUSE = ("single", "law", "held_out")
 
 
 def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
     """What the table needs of one answer: detected, right, wrong single names, gap reduction, signals."""
-    truth = {name for name, _ in case.effects}
+    truth = {cause_of(name) for name, _ in case.effects}
     sets = [{effect["name"], *effect.get("indistinguishable_from", [])} for effect in answer["effects"]]
     verdict = answer["verdict"]
     named = [each for each in sets if each & truth and len(each) <= LARGEST_SET]
@@ -19,7 +20,7 @@ def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
         "verdict": verdict,
         "sets": [sorted(each) for each in sets],
         "detected": verdict != "nothing_missing",
-        "right": bool(named) and case.kind == "single",
+        "right": bool(named) and case.kind in ONE_CAUSE,
         "found": len({name for name in truth if any(name in each for each in sets)}),
         "wrong_single": any(len(each) == 1 and not each & truth for each in sets),
         "wrong_entry": any(not each & truth for each in sets),
@@ -30,7 +31,7 @@ def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
 
 
 def _right_signals(case: Case) -> tuple[str, ...]:
-    return OUTSIDE_SIGNAL[case.effects[0][0]] if case.kind == "outside" else ()
+    return OUTSIDE_SIGNAL[case.effects[0][0]] if case.kind in ("outside", "drawn_outside") else ()
 
 
 def _reduction(gap: dict[str, Any]) -> dict[str, float | None]:

@@ -12,6 +12,7 @@ Array = np.ndarray
 
 def sampling(steps: int, period: float, jitter: float, rng: np.random.Generator) -> tuple[Array, Array]:
     """Indices of the plant's steps that the PLC takes, and their time stamps in s."""
+    jitter = 0.0 if period < 4 * STEP else jitter  # the plant has no instants in between
     nominal = np.arange(period, steps * STEP - period, period)
     time = nominal + (np.clip(rng.normal(0, jitter, len(nominal)), -0.4 * period, 0.4 * period) if jitter else 0.0)
     index = np.round(time / STEP).astype(int)

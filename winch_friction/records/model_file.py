@@ -17,6 +17,7 @@ from winch_friction.records.atomic import write_text
 from winch_friction.records.corrections import corrections_content, read_corrections
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml
+from winch_friction.records.tables import read_tables, tables_content
 
 SCHEMA = "winch_friction.model/1"
 
@@ -46,7 +47,8 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
     """A model from parsed YAML."""
     top = Section(content, where)
     _check_schema(top)
-    terms = tuple(term_named(name) for name in _term_names(top))
+    tables = read_tables(top)
+    terms = tuple(tables[name] if name in tables else term_named(name) for name in _term_names(top))
     declared = unique_parameters(terms)
     section = top.section("parameters")
     entries = [_Entry(section, parameter) for parameter in declared]
@@ -134,6 +136,8 @@ def _content(model: FrictionModel) -> dict[str, Any]:
     if model.constants:
         units = {each.name: each.unit for each in CONSTANTS}
         content["constants"] = {k: {"value": float(v), "unit": units[k]} for k, v in model.constants.items()}
+    if tables := tables_content(model.terms):
+        content["tables"] = tables
     content["parameters"] = {p.name: _entry_content(model, k, p) for k, p in enumerate(model.parameters)}
     if model.covariance is not None and np.any(model.covariance - np.diag(np.diag(model.covariance))):
         content["correlation"] = _correlation(model.covariance)

@@ -2,11 +2,15 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import symbols
+
+if TYPE_CHECKING:
+    from winch_friction.physics.friction.table import Table
 
 
 class Scope(Enum):
@@ -68,6 +72,7 @@ class Term:
     opposing: bool = True
     state: State | None = None
     doc: str = ""
+    table: "Table | None" = None  # of a term that the model file declares (winch_friction.physics.friction.table)
 
     def __post_init__(self) -> None:
         unknown = self.free_symbols - self.parameter_symbols - set(symbols.SIGNAL_OF_SYMBOL) - self.state_symbols

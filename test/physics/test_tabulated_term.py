@@ -1,0 +1,114 @@
+"""A tabulated term is a term like any other: file, arrays, scalars, kernel, Jacobian, LaTeX."""
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel, Scope, term_named
+from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.table import Table, tabulated
+from winch_friction.records.model_file import model_from_text, model_to_text
+
+WARM = Table(
+    "warm_grip", (("oil_temperature", (20.0, 35.0, 60.0)),), "N*m*s/rad", ("speed_magnitude",), Scope.SYSTEM,
+    shape="falling", anchor="high",
+)  # fmt: skip
+SURFACE = Table(
+    "swash_map", (("pressure", (50e5, 150e5, 250e5)), ("displacement", (1e-5, 2e-5, 3.4e-5))), scope=Scope.MOTOR,
+    shape="rising",
+)  # fmt: skip
+
+
+def _model(*tables, values=None):
+    terms = (term_named("coulomb"), *(tabulated(each) for each in tables))
+    count = sum(len(term.parameters) for term in terms)
+    return FrictionModel("m", terms, tuple(values or [3.0] * count))
+
+
+def _point(**signals):
+    at = {symbol.name: 0.0 for symbol in layout(1)} | {"s": 1.0, "N": 11.0, "n_{0}": 11.0}
+    named = {"w": "w", "celsius": r"\vartheta", "p": "p_{0}", "D": "D_{0}"}
+    return tuple((at | {named[k]: v for k, v in signals.items()})[symbol.name] for symbol in layout(1))
+
+
+def test_the_curve_is_linear_between_its_knots_and_constant_beyond_them():
+    functions = _model(WARM, values=[0.0, 0.02, 0.01]).compile(1)
+    for celsius, expected in (
+        (0.0, 0.03),
+        (20.0, 0.03),
+        (27.5, 0.02),
+        (35.0, 0.01),
+        (47.5, 0.005),
+        (60, 0.0),
+        (90, 0.0),
+    ):
+        torque = functions.scalar_torque(_point(w=100.0, celsius=celsius), (0.0, 0.02, 0.01), ())
+        assert torque == pytest.approx(11 * 100.0 * expected), celsius
+
+
+def test_scalar_arrays_and_kernel_agree():
+    model = _model(WARM, SURFACE)
+    functions = model.compile(1)
+    rng = np.random.default_rng(1)
+    theta = tuple(rng.uniform(0.1, 2.0, len(model.values)))
+    points = [
+        _point(w=rng.uniform(0, 200), celsius=rng.uniform(10, 70), p=rng.uniform(0, 3e7), D=rng.uniform(0, 4e-5))
+        for _ in range(50)
+    ]
+    columns = tuple(np.array(points).T)
+    many = functions.vector_torque(columns, theta, ())
+    assert many == pytest.approx([functions.scalar_torque(x, theta, ()) for x in points])
+    assert many == pytest.approx([functions.kernel(x, theta, ()) for x in points])
+    gradient = np.array([np.broadcast_to(g, 50) for g in functions.vector_gradient(columns, theta, ())]).T
+    whole = [functions.scalar_torque_and_gradient(x, theta, ()) for x in points]
+    assert gradient == pytest.approx(np.array(whole)[:, 2:])
+    assert gradient @ np.array(theta) == pytest.approx(many)  # linear in its parameters
+
+
+def test_bounds_make_it_monotone():
+    term = tabulated(SURFACE)
+    assert len(term.parameters) == 9
+    assert all(p.lower == 0.0 for p in term.parameters[1:])
+    assert set(term.reads) == {"direction", "pressure", "displacement"}
+    assert all(p.lower == 0.0 for p in tabulated(WARM).parameters)  # what is still to come of a falling curve
+
+
+def test_the_model_file_carries_it_whole():
+    model = _model(WARM, SURFACE)
+    again = model_from_text(model_to_text(model))
+    assert again.terms == model.terms
+    assert again.values == model.values
+    assert [p.unit for p in again.parameters] == [p.unit for p in model.parameters]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"knots": {"oil_temperature": [20.0, 20.0]}}, "must be at least two and rising"),
+        ({"knots": {"moon": [1.0, 2.0]}}, "signal 'moon' is not known"),
+        ({"scope": "moon"}, "scope 'moon' is none of"),
+        ({"shape": "round"}, "shape 'round' is none of"),
+        ({"times": []}, r"unit N\*m\*s/rad times 1 is not N\*m"),
+        ({"colour": "red"}, "unknown key 'colour'"),
+    ],
+)
+def test_a_wrong_table_is_refused_in_one_line(change, said):
+    import yaml
+
+    content = yaml.safe_load(model_to_text(_model(WARM)))
+    content["tables"]["warm_grip"] |= change
+    with pytest.raises(InputError, match=said) as refused:
+        model_from_text(yaml.safe_dump(content))
+    assert "\n" not in str(refused.value)
+
+
+def test_a_table_may_not_take_a_declared_terms_name():
+    text = model_to_text(_model(WARM)).replace("warm_grip", "churning")
+    with pytest.raises(InputError, match="'churning' exists already"):
+        model_from_text(text)
+
+
+def test_latex_and_limits():
+    assert "vartheta" in tabulated(WARM).latex
+    with pytest.raises(InputError, match="one or 2 different signals"):
+        Table("t", ())

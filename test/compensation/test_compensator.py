@@ -288,5 +288,5 @@ def test_what_only_a_sensor_shows_is_not_compensated():
 
 def test_a_hydraulic_model_is_refused_on_an_electric_drive():
     each = FeedforwardCompensator(load_crane("emps"), load_model("emps_symmetric"))
-    with pytest.raises(InputError, match="hydraulic terms"):
+    with pytest.raises(InputError, match="need pressures, the crane's drive is electric"):
         each.load_model(replace(SEED, name="wrong crane"))

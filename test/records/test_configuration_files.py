@@ -84,7 +84,7 @@ def test_not_yaml_or_not_a_model(text):
     ("change", "message"),
     [
         (lambda d: d.pop("gear_ratio"), "key 'gear_ratio' is missing"),
-        (lambda d: d.update(drive="steam"), "hydraulic' or 'electric"),
+        (lambda d: d.update(drive="steam"), "drive must be one of hydraulic, electric"),
         (lambda d: d.update(inertia={"value": 0, "unit": "kg*m^2"}), "inertia must be above 0"),
         (lambda d: d["drum"].update(layer_radii=[1.0, 0.9]), "grow from layer to layer"),
         (lambda d: d["groups"].update(active=2.5), "whole number of motors"),

@@ -1,12 +1,15 @@
 """The topic map: every channel survives its message, in every convention of unit and reference."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
+from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch import Drive
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.topics import ATMOSPHERE, FLOAT64, TopicMap, crane_topics, split_time, stamp_time
 
@@ -22,6 +25,10 @@ SAMPLE = Sample(
     heave_velocity=0.4,
     wire_layer=5.0,
     wire_out=800.0,
+    load_torque=-30.0,
+    rope_force=5.4e5,
+    mechanical_power=2.5e5,
+    motor_current=-120.0,
 )
 
 
@@ -47,7 +54,10 @@ def channels(sample):
 @pytest.mark.parametrize("unit", ["fraction", "m3_per_rad"])
 def test_every_channel_survives_its_message(joint, reference, unit):
     crane = load_crane("crane_150t")
-    topics = crane_topics(crane, ["active"], speed_joint=joint, pressure_reference=reference, displacement_unit=unit)
+    topics = crane_topics(
+        crane, ["active"], speed_joint=joint, pressure_reference=reference, displacement_unit=unit,
+        drive_scalars=DRIVE_SCALARS,
+    )  # fmt: skip
     read = {}
     for topic, message in topics.encode(SAMPLE, Fields()):
         each = topics.inputs[topic]
@@ -55,6 +65,13 @@ def test_every_channel_survives_its_message(joint, reference, unit):
         assert not each.stamped or stamp_time(message) == 12.5
         read |= each.decode(message)
     assert read == pytest.approx(channels(SAMPLE), rel=1e-14)
+
+
+def test_a_node_asks_only_for_what_its_drive_is_known_by():
+    crane = load_crane("crane_150t")
+    assert not {f"winch/{name}" for name in DRIVE_SCALARS} & set(crane_topics(crane).inputs)
+    by_current = crane_topics(replace(crane, drive=Drive("current", 2.0))).inputs
+    assert {f"winch/{name}" for name in DRIVE_SCALARS} & set(by_current) == {"winch/motor_current"}
 
 
 def test_the_speed_closes_the_set_and_absent_channels_stay_out():

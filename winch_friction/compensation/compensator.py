@@ -14,6 +14,7 @@ from winch_friction.compensation.transition import Bridge, Fade
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
+from winch_friction.physics.identity import refuse_other_crane
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point
@@ -106,8 +107,7 @@ class FeedforwardCompensator:
         """
         try:
             law = FrictionLaw(model, self.config.gains)
-            if self.crane.electric and {"pressure", "displacement", "pressure_sum"} & law.reads:
-                raise InputError(f"model '{model.name}' has hydraulic terms, but crane '{self.crane.name}' is electric")
+            refuse_other_crane(model, self.crane)
             refuse_outside_seed(model, self.seed, self.config.seed_range)
         except InputError:
             self._counts["refused_models"] += 1

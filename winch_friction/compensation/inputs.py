@@ -5,7 +5,7 @@ from collections.abc import Set
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.physics.plausible import plausible
-from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.torque_balance import pressure_feedforward
 
@@ -18,25 +18,10 @@ def missing_inputs(sample: Sample, crane: Crane, reads: Set[str], source: str, l
     lost = [name for name in sorted(needed) if not plausible(name, getattr(sample, name))]
     if not crane.drum.has(sample.wire_layer):
         lost.append("wire_layer")
-    if crane.electric:
-        return (*lost, *_missing_torque(sample, reads, load_known))
-    return (*lost, *_missing_groups(sample))
-
-
-def _missing_torque(sample: Sample, reads: Set[str], load_known: bool) -> tuple[str, ...]:
+    if crane.drive.hydraulic:
+        return (*lost, *crane.drive.lacking(sample))
     from_balance = "drum_torque" in reads and not load_known and not math.isfinite(sample.hook_load)
-    return ("motor_torque",) if from_balance and not math.isfinite(sample.motor_torque) else ()
-
-
-def _missing_groups(sample: Sample) -> tuple[str, ...]:
-    if not sample.groups:
-        return ("motor groups",)
-    return tuple(
-        f"{name}.{channel}"
-        for name, group in sample.groups.items()
-        for channel in GROUP_CHANNELS
-        if not plausible(channel, getattr(group, channel))
-    )
+    return (*lost, *crane.drive.lacking(sample)) if from_balance else tuple(lost)
 
 
 def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:
@@ -46,7 +31,7 @@ def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig)
     bound.
     """
     name = config.pressure_group if len(sample.groups) != 1 else next(iter(sample.groups))
-    if crane.electric or name not in sample.groups:
+    if not crane.drive.hydraulic or name not in sample.groups:
         return 0.0
     displacement = max(sample.groups[name].displacement, config.min_displacement * crane.max_displacement)
     return pressure_feedforward(1.0, crane.motor_count(name), displacement)

@@ -52,7 +52,7 @@ def assemble(
     return GapResult(
         verdict=verdict.kind, refused=verdict.refused, effects=(*effects, *search.side),
         regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base), READ_AS)),
-        unit="N*m" if crane.electric else "bar", train=train, holdout=holdout,
+        unit=crane.drive.unit, train=train, holdout=holdout,
         depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
         untestable=search.untestable, model=final_model, seed_model=model,
@@ -64,7 +64,7 @@ def assemble(
 
 def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperiment | None:
     """For the first effect that has rivals; an electric drive has no scenario family."""
-    if search.verdict.kind != AMBIGUOUS or crane.electric:
+    if search.verdict.kind != AMBIGUOUS or not crane.drive.hydraulic:
         return None
     own = next(each for each in search.selection.found if each.rivals)
     fitted = search.selection.final

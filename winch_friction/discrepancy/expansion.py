@@ -103,7 +103,7 @@ def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> 
 
     Hoisting and lowering weigh alike, so that friction cancels in the mean.
     """
-    if crane.electric:
+    if not crane.drive.hydraulic:
         return {}
     return {run.name: _estimated_load(run, crane, model) for run in runs if "hook_load" not in run}
 

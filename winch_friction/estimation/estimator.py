@@ -155,7 +155,7 @@ class FrictionEstimator:
     @property
     def _load_is_known(self) -> bool:
         """An electric drive without a hook load lifts nothing; its load torque is 0 and stays so."""
-        return self.crane.electric and not self._load.measured
+        return not self.crane.drive.hydraulic and not self._load.measured
 
     def _estimate(
         self, sample: Sample, accepted: bool, innovation: float, variance: float, friction: float

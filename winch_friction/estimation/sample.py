@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.physics.plausible import plausible
-from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.signals import Sample
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
@@ -39,23 +39,20 @@ def usable(sample: Sample, crane: Crane) -> bool:
         return False
     if not crane.drum.has(sample.wire_layer):
         return False
-    if crane.electric:
-        return plausible("motor_torque", sample.motor_torque)
-    channels = [(channel, getattr(group, channel)) for group in sample.groups.values() for channel in GROUP_CHANNELS]
-    return bool(channels) and all(plausible(channel, value) for channel, value in channels)
+    return not crane.drive.lacking(sample)
 
 
 def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:
     """Whether the drive is at a limit, where what is measured is not what acts."""
-    if crane.electric:
-        return abs(sample.motor_torque) > config.saturation_torque
+    if not crane.drive.hydraulic:
+        return abs(crane.drive.of_sample(sample, crane)) > config.saturation_torque * crane.motor_total(())
     limit = config.saturation_pressure
     return any(max(group.pressure_a, group.pressure_b) > limit for group in sample.groups.values())
 
 
 def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> float:
     """Variance of the drive torque in (N m)^2 from the noise of pressures and displacements, or of the motor torque."""
-    if crane.electric:
+    if not crane.drive.hydraulic:
         return (crane.motor_total(()) * config.torque_noise) ** 2
     total = 0.0
     for name, group in sample.groups.items():

@@ -138,7 +138,7 @@ class CompensatorNode(WinchNode):
         header = stamp_header(stamp, ROS)
         torque, speed = feedforward.friction_torque, feedforward.speed
         self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=torque))
-        if not self.crane.electric and feedforward.pressure == feedforward.pressure:
+        if self.crane.drive.hydraulic and feedforward.pressure == feedforward.pressure:
             self._pressure.publish(pressure_message(stamp, feedforward.pressure))
 
     # -- settings and health

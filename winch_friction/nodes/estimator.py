@@ -18,9 +18,10 @@ from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
+from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.hold import InputHold
 from winch_friction.physics.options import check, option
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane

@@ -13,13 +13,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS
 from winch_friction.physics.plausible import plausible
-from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, GroupSample, Run, Sample
+from winch_friction.physics.signals import GroupSample, Run, Sample
 
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
 DEPTH = 1024  # values kept per input: all that a node which was paused for five seconds at 200 Hz finds waiting
-# inputs that change slowly by nature; every other one is bound by the general limit
-SLOW_INPUTS = {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0}
 
 
 @dataclass

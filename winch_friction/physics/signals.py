@@ -10,36 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, column_unit
 from winch_friction.physics.errors import InputError
+
+__all__ = [
+    "GROUP_CHANNELS", "NAN", "SAMPLE_SCALARS", "FloatArray", "GroupSample", "Run", "Sample", "column_unit",
+]  # fmt: skip
 
 FloatArray = NDArray[np.float64]
 NAN = float("nan")
-
-GROUP_CHANNELS = ("pressure_a", "pressure_b", "displacement")
-
-# column -> SI unit; groups are written `<group>.<channel>`
-COLUMN_UNITS = {
-    "time": "s",
-    "motor_speed": "rad/s",
-    "drum_speed": "rad/s",
-    "speed_reference": "rad/s",
-    "motor_torque": "N*m",
-    "hook_load": "kg",
-    "heave_velocity": "m/s",
-    "oil_temperature": "degC",
-    "wire_layer": "1",
-    "wire_out": "m",
-    "shaft_angle": "rad",
-}
-GROUP_UNITS = {"pressure_a": "Pa", "pressure_b": "Pa", "displacement": "m^3/rad"}
-
-
-def column_unit(column: str) -> str | None:
-    """SI unit of a run column, or None when the name is not one of the contract's."""
-    if column in COLUMN_UNITS:
-        return COLUMN_UNITS[column]
-    group, _, channel = column.rpartition(".")
-    return GROUP_UNITS.get(channel) if group else None
 
 
 @dataclass(slots=True)
@@ -53,7 +32,7 @@ class GroupSample:
 
 @dataclass(slots=True)
 class Sample:
-    """One instant of the winch, SI units; NaN where a channel is absent."""
+    """One instant of the winch, SI units; NaN where a channel is absent. Its fields are those of `channels`."""
 
     time: float
     motor_speed: float
@@ -66,9 +45,10 @@ class Sample:
     wire_layer: float = NAN
     wire_out: float = NAN
     shaft_angle: float = NAN
-
-
-SAMPLE_SCALARS = tuple(name for name in Sample.__slots__ if name not in ("time", "groups"))
+    load_torque: float = NAN
+    rope_force: float = NAN
+    mechanical_power: float = NAN
+    motor_current: float = NAN
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.topics import Input, TopicMap, crane_topics, stamp_time
@@ -186,7 +187,7 @@ def _topics(
         plain = [found[f"winch/{g}/displacement"] for g in groups if f"winch/{g}/displacement" in found]
         conventions["displacement_unit"] = _displacement_unit(reader, typestore, plain)
     if crane is not None:
-        return crane_topics(crane, groups, **conventions)
+        return crane_topics(crane, groups, drive_scalars=DRIVE_SCALARS, **conventions)
     if conventions["displacement_unit"] == "fraction" and groups:
         raise InputError(f"{path}: displacements are fractions; give the crane, whose max_displacement they refer to")
     return TopicMap(groups=groups, **conventions)

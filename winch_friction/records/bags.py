@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Bag, open_bag

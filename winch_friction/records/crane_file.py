@@ -1,10 +1,12 @@
 """Crane files: the winch as the friction functions see it, from YAML."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane, Drum
+from winch_friction.physics.winch.drive import Drive
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
 
@@ -22,15 +24,15 @@ def crane_from_content(content: Any, where: str) -> Crane:
     top = Section(content, where)
     if top.text("schema") != SCHEMA:
         raise InputError(f"{where}: schema '{top.text('schema')}' is not '{SCHEMA}'")
-    electric = _electric(top)
+    drive = _drive(top)
     crane = Crane(
         name=top.text("name"),
-        electric=electric,
+        drive=drive,
         gear_ratio=_positive(top, "gear_ratio", "1"),
         drum=_drum(top),
         groups=_groups(top),
         inertia=_positive(top, "inertia", "kg*m^2"),
-        max_displacement=0.0 if electric else _positive(top, "max_displacement", "m^3/rad"),
+        max_displacement=_positive(top, "max_displacement", "m^3/rad") if drive.hydraulic else 0.0,
         wire_mass=top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
         wire_stiffness=_positive(top, "wire_stiffness", "N") if "wire_stiffness" in top else float("inf"),
         absolute_torque_limit=_positive(top, "absolute_torque_limit", "N*m"),
@@ -40,11 +42,19 @@ def crane_from_content(content: Any, where: str) -> Crane:
     return crane
 
 
-def _electric(top: Section) -> bool:
-    drive = top.text("drive")
-    if drive not in ("hydraulic", "electric"):
-        raise InputError(f"{top.where}: drive must be 'hydraulic' or 'electric', found '{drive}'")
-    return drive == "electric"
+def _drive(top: Section) -> Drive:
+    """`drive: hydraulic`, or a mapping where the kind needs a number: `{kind: current, torque_constant: ...}`."""
+    given = top.need("drive")
+    if not isinstance(given, Mapping):
+        given = {"kind": given}
+    section = Section(given, f"{top.where}: drive")
+    kind = section.text("kind")
+    constant = section.quantity("torque_constant", "N*m/A") if "torque_constant" in section else 0.0
+    section.close()
+    try:
+        return Drive(kind, constant)
+    except InputError as error:
+        raise InputError(f"{top.where}: {error}") from None
 
 
 def _positive(section: Section, key: str, unit: str) -> float:

@@ -9,12 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import CHANNELS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, column_unit
 from winch_friction.records.unit_names import pint_name
 
 # what people write for the units a winch is logged in; quoted in error messages
-_EXAMPLES = {"rad/s": "rpm", "Pa": "bar", "m^3/rad": "cm^3/rev", "kg": "t", "s": "ms", "rad": "deg", "N*m": "kN*m"}
+_EXAMPLES = {each.unit: each.display for each in CHANNELS if each.display != each.unit} | {
+    "s": "ms",
+    "rad": "deg",
+    "N*m": "kN*m",
+}
 
 _SI_NAMES = {"1": "dimensionless"}
 _DEFINITIONS = (

@@ -14,6 +14,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.drive import ELECTRIC, HYDRAULIC, Drive
 from winch_friction.records.bare_units import remarks_on_bare_columns
 
 GAP = 5.0  # times the median step counts as a gap
@@ -122,13 +123,15 @@ def _check_required(name: str, columns: Columns, crane: Crane | None) -> None:
         lacking = [channel for channel in GROUP_CHANNELS if f"{group}.{channel}" not in columns]
         if lacking:
             raise InputError(f"{name}: motor group '{group}' lacks {', '.join(f'{group}.{each}' for each in lacking)}")
-        if crane is not None and not crane.electric and group not in crane.groups:
+        if crane is not None and crane.drive.hydraulic and group not in crane.groups:
             known = ", ".join(crane.groups)
             raise InputError(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
-    electric = crane.electric if crane is not None else not groups
-    if electric and "motor_torque" not in columns:
-        raise InputError(f"{name}: column 'motor_torque' (or the pressures of a motor group) is missing or empty")
-    if not electric and not groups:
+    drive = crane.drive if crane is not None else Drive(HYDRAULIC if groups else ELECTRIC)
+    for channel in drive.channels:
+        if channel not in columns:
+            other = "" if crane is not None else " (or the pressures of a motor group)"
+            raise InputError(f"{name}: column '{channel}'{other} is missing or empty; the drive's torque comes from it")
+    if drive.hydraulic and not groups:
         raise InputError(
             f"{name}: no motor group: <group>.pressure_a, .pressure_b and .displacement are required with crane "
             f"'{crane.name if crane else ''}'"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from winch_friction.physics.channels import DRIVE_SCALARS, PLAIN_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import NAN, Sample
 from winch_friction.physics.winch.crane import Crane
@@ -19,9 +20,6 @@ TEMPERATURE = "sensor_msgs/msg/Temperature"
 FLOAT64 = "std_msgs/msg/Float64"
 PRESSURE_REFERENCES = ("gauge", "absolute")
 DISPLACEMENT_UNITS = ("fraction", "m3_per_rad")
-# scalars that travel as plain Float64, without a stamp
-PLAIN_SCALARS = ("hook_load", "heave_velocity", "wire_layer", "wire_out")
-
 Readings = dict[str, float]  # channel -> value, SI
 
 
@@ -56,7 +54,8 @@ class TopicMap:
 
     `pressure_reference`: 'gauge' or 'absolute', what the transducers' messages mean; `displacement_unit`: 'fraction' of
     `max_displacement` (m^3/rad) or 'm3_per_rad'; `speed_joint` is `motor_joint` or `drum_joint` (times `gear_ratio`);
-    `float64_channels` come from a simple bridge as std_msgs/Float64. Raises `InputError` for unknown choices.
+    `float64_channels` come from a simple bridge as std_msgs/Float64; `drive_scalars` are the channels,
+    besides the motor torque, that the crane's drive is known by. Raises `InputError` for unknown choices.
     """
 
     groups: tuple[str, ...] = ("active", "passive")
@@ -69,6 +68,7 @@ class TopicMap:
     speed_joint: str = "winch_motor"
     float64_channels: tuple[str, ...] = ()
     prefix: str = "winch"
+    drive_scalars: tuple[str, ...] = DRIVE_SCALARS
     inputs: Mapping[str, Input] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -138,6 +138,11 @@ class TopicMap:
         return Input(f"{self.prefix}/{group}/displacement", JOINT_STATE, (channel,), decode)
 
     @property
+    def _plain_scalars(self) -> tuple[str, ...]:
+        """Channels that travel as plain Float64, without a stamp."""
+        return PLAIN_SCALARS + self.drive_scalars
+
+    @property
     def _displacement_factor(self) -> float:
         return self.max_displacement if self.displacement_unit == "fraction" else 1.0
 
@@ -153,7 +158,7 @@ class TopicMap:
         def reader(channel: str) -> Callable[[Any], Readings]:
             return lambda message: {channel: message.data}
 
-        return [Input(f"{self.prefix}/{name}", FLOAT64, (name,), reader(name)) for name in PLAIN_SCALARS]
+        return [Input(f"{self.prefix}/{name}", FLOAT64, (name,), reader(name)) for name in self._plain_scalars]
 
     def _plain(self, given: Input) -> Input:
         channel = given.channels[0]
@@ -175,7 +180,7 @@ class TopicMap:
         header = stamp_header(sample.time, factory)
         out = [
             (f"{self.prefix}/{name}", factory.make(FLOAT64, data=float(value)))
-            for name in PLAIN_SCALARS
+            for name in self._plain_scalars
             if (value := getattr(sample, name)) == value
         ]
         if sample.oil_temperature == sample.oil_temperature:
@@ -220,9 +225,10 @@ class TopicMap:
 
 def crane_topics(crane: Crane, groups: Sequence[str] = ("active", "passive"), **conventions: Any) -> TopicMap:
     """The topics of a crane; `conventions` are the other fields of `TopicMap`."""
-    groups = () if crane.electric else tuple(groups)
+    groups = tuple(groups) if crane.drive.hydraulic else ()
     for group in groups:
         crane.motor_count(group)
+    conventions.setdefault("drive_scalars", tuple(name for name in crane.drive.channels if name in DRIVE_SCALARS))
     return TopicMap(groups=groups, gear_ratio=crane.gear_ratio, max_displacement=crane.max_displacement, **conventions)
 
 

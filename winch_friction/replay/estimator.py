@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from winch_friction.estimation import Estimate, FrictionEstimator, ParameterEstimate
-from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.channels import SLOW_INPUTS
+from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run
 
 COLUMNS = ("friction_torque", "speed", "drum_torque", "innovation", "innovation_variance", "nis")

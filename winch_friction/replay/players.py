@@ -7,9 +7,10 @@ from math import isfinite
 from winch_friction.compensation import Feedforward, FeedforwardCompensator
 from winch_friction.compensation.model_schedule import LEARNED_AT, ModelSchedule
 from winch_friction.estimation import FrictionEstimator
+from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Message

@@ -110,8 +110,10 @@ def plant_record(scenario: Scenario, crane: Crane, plant: PlantFile) -> np.ndarr
 
 
 def _check(scenario: Scenario, crane: Crane) -> None:
-    if crane.electric or not crane.max_displacement:
-        raise InputError(f"crane '{crane.name}' is electric; scenarios simulate hydraulic winches")
+    if not crane.drive.hydraulic:
+        raise InputError(
+            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; scenarios simulate hydraulic winches"
+        )
     for value in (scenario.displacement, *(each for _, each in scenario.displacement_schedule)):
         if not 0.02 * crane.max_displacement <= value <= 1.001 * crane.max_displacement:
             raise InputError(

@@ -15,7 +15,6 @@ from winch_friction.discrepancy.preparation.grid import Grid, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
-from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR
@@ -122,17 +121,15 @@ class Balancing:
         """The balance with this load; raises `InputError` where the run lacks what closes it."""
         inertial = self.crane.inertia * self.motion.acceleration + load.inertial_torque
         frictionless = load.drum_torque / self.crane.gear_ratio + inertial
-        if self.crane.electric:
+        if not self.crane.drive.hydraulic:
             return self._electric(load, frictionless)
         return self._hydraulic(load, frictionless)
 
     def _electric(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
-        if "motor_torque" not in self.grid.columns:
-            raise InputError(f"{self.run.name}: column 'motor_torque' is missing; an electric drive needs it")
         total = self.crane.motor_total(())
         point = self._point(load, ())
         predicted = frictionless + self.model.torque(point)
-        measured = self._smoothed(self.grid.columns["motor_torque"] * total)
+        measured = self._smoothed(self.crane.drive.of_run(Run(self.run.name, self.grid.columns), self.crane))
         return Balance(measured, predicted, (), point, self.model.jacobian(point), float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:

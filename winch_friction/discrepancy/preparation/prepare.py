@@ -122,7 +122,7 @@ def channels_of(
 ) -> Mapping[str, FloatArray]:
     """Signals over the grid by name; predicted pressures stand for the measured ones, the angle is the drum's, rad."""
     found: dict[str, FloatArray] = {"motor_speed": np.abs(motion.speed), "acceleration": motion.acceleration}
-    if not crane.electric or "hook_load" in grid.columns:
+    if crane.drive.hydraulic or "hook_load" in grid.columns:
         found["hook_load"] = load.mass
     for group in groups:
         found[f"{group.name}.pressure"] = group.pressure

@@ -89,6 +89,11 @@ class Term:
         return symbols.s * self.equation if self.opposing else self.equation
 
     @property
+    def reads_groups(self) -> bool:
+        """Whether it reads a motor group's pressure or displacement."""
+        return bool(self.free_symbols & symbols.GROUP_SYMBOLS)
+
+    @property
     def free_symbols(self) -> set[sp.Basic]:
         """Every symbol of the equation and of its state equation."""
         found = set(self.equation.free_symbols)

@@ -1,6 +1,7 @@
 """The winch: motor groups, gear, drum layers and the torque balance at the motor shaft."""
 
 from winch_friction.physics.winch.crane import Crane, Drum
+from winch_friction.physics.winch.drive import Drive
 from winch_friction.physics.winch.operating_point import operating_point, run_operating_points, sample_operating_point
 
-__all__ = ["Crane", "Drum", "operating_point", "run_operating_points", "sample_operating_point"]
+__all__ = ["Crane", "Drive", "Drum", "operating_point", "run_operating_points", "sample_operating_point"]

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.winch.drive import Drive
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Crane:
 
     `groups` maps a motor group's name to its number of motors for every group that may appear (normal mode: `main`;
     AHC: `active`, `passive`); `inertia` is the whole inertia at the motor shaft without the load, kg m^2; `wire_mass`
-    kg/m and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `electric`: the motor
-    torque is measured.
+    kg/m and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `drive`: how the torque of
+    the motors is known.
     """
 
     name: str
@@ -43,7 +44,7 @@ class Crane:
     groups: Mapping[str, int]
     inertia: float
     max_displacement: float = 0.0
-    electric: bool = False
+    drive: Drive = field(default_factory=Drive)
     wire_mass: float = 0.0
     wire_stiffness: float = float("inf")
     absolute_torque_limit: float = float("inf")
@@ -53,7 +54,7 @@ class Crane:
 
         layers = ", ".join(f"{radius:.4g}" for radius in self.drum.layer_radii)
         rows = [
-            ("drive", "electric" if self.electric else "hydraulic", ""),
+            ("drive", self.drive.kind, ""),
             ("motors by group", ", ".join(f"{name} {count}" for name, count in self.groups.items()) or "1", ""),
             ("gear ratio", self.gear_ratio, "-"), ("rope radius by layer", layers, "m"),
             ("inertia at the motor shaft", self.inertia, "kg*m^2"),

@@ -50,24 +50,26 @@ def model_curve(
     setting = crane.max_displacement if displacement is None else float(displacement)
     if load < 0.0 or not np.isfinite(load):
         raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")
-    if not crane.electric and not 0.0 < setting <= 1.001 * crane.max_displacement:
+    if crane.drive.hydraulic and not 0.0 < setting <= 1.001 * crane.max_displacement:
         raise InputError(f"displacement {setting:g} m^3/rad is outside 0 ... {crane.max_displacement:g} of the motor")
     omega = np.asarray(np.linspace(LOWEST_SPEED, TOP_SPEED, 200) if speed is None else speed, float)
     if omega.ndim != 1 or not omega.size or not np.isfinite(omega).all():
         raise InputError("speed: give one finite speed or more, rad/s")
     group = "main" if "main" in crane.groups else next(iter(crane.groups), "")
-    count = 1 if crane.electric else crane.motor_count(group)
+    count = crane.motor_count(group) if crane.drive.hydraulic else 1
     drum, sign = np.full_like(omega, crane.drum_torque(load)), np.sign(omega)
 
     def points(drop: FloatArray) -> tuple[FloatArray, ...]:
         groups = (
-            [] if crane.electric else [(np.full_like(omega, count), abs(drop), abs(drop), np.full_like(omega, setting))]
+            [(np.full_like(omega, count), abs(drop), abs(drop), np.full_like(omega, setting))]
+            if crane.drive.hydraulic
+            else []
         )
         total = np.full_like(omega, crane.motor_total((group,) if group else ()))
         return operating_point(direction=sign, speed=omega, drum_torque=drum, groups=groups, motor_total=total)
 
     drop = np.zeros_like(omega)
-    if not crane.electric:
+    if crane.drive.hydraulic:
         for _ in range(_BALANCE_STEPS):
             drop = (drum / crane.gear_ratio + _torque(model, points(drop))) / (count * setting)
     at = points(drop)

@@ -5,13 +5,24 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import WINCH
 from winch_friction.physics.friction.direction import smooth_sign, smooth_signs
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run, Sample
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
-_DEFAULTS = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
+_ORDER = tuple(signal.name for signal in WINCH_SIGNALS)
+_DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
+# what of them is a channel of its own: taken from a sample or run as it is, where it is there
+CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
+# places for the one point of a sample, which a node needs at every step
+_TEMPLATE: list[Any] = [_DEFAULTS.get(name) for name in _ORDER]
+_CHANNELS = tuple((_ORDER.index(name), name) for name in CHANNEL_SIGNALS)
+_DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL = (
+    _ORDER.index(name)
+    for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total")
+)
 
 
 def operating_point(
@@ -21,52 +32,39 @@ def operating_point(
     drum_torque: Any,
     groups: Sequence[tuple[Any, Any, Any, Any]] = (),
     motor_total: Any,
-    acceleration: Any = _DEFAULTS["acceleration"],
-    oil_temperature: Any = _DEFAULTS["oil_temperature"],
-    time: Any = _DEFAULTS["time"],
-    shaft_angle: Any = _DEFAULTS["shaft_angle"],
-    wire_layer: Any = _DEFAULTS["wire_layer"],
-    wire_out: Any = _DEFAULTS["wire_out"],
+    **optional: Any,
 ) -> tuple[Any, ...]:
     """The operating point as a flat tuple of floats or of arrays; SI.
 
-    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor.
+    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor. `optional` are
+    signals of the table that have a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
     """
-    winch = (
-        direction, abs(speed), speed, drum_torque, acceleration, oil_temperature, time, shaft_angle, wire_layer,
-        wire_out, motor_total,
-    )  # fmt: skip
-    return winch + tuple(value for group in groups for value in group)
+    values = _DEFAULTS | optional
+    if len(values) > len(_DEFAULTS):
+        raise TypeError(f"no such signals: {sorted(set(optional) - set(_DEFAULTS))}")
+    values |= {
+        "direction": direction, "speed_magnitude": abs(speed), "speed": speed, "drum_torque": drum_torque,
+        "motor_total": motor_total,
+    }  # fmt: skip
+    return tuple(values[name] for name in _ORDER) + tuple(value for group in groups for value in group)
 
 
 def sample_operating_point(
     sample: Sample, crane: Crane, *, drum_torque: float, speed: float, width: float = 0.0, acceleration: float = 0.0
 ) -> tuple[float, ...]:
     """The operating point of one sample at a given speed; `width` smooths the direction, rad/s."""
-    groups = [
-        (crane.motor_count(name), abs(g.pressure_a - g.pressure_b), g.pressure_a + g.pressure_b, g.displacement)
-        for name, g in sample.groups.items()
-    ]
-    return operating_point(
-        direction=smooth_sign(speed, width),
-        speed=speed,
-        drum_torque=drum_torque,
-        groups=groups,
-        motor_total=crane.motor_total(tuple(sample.groups)),
-        acceleration=acceleration,
-        **_present(sample),
-    )
-
-
-def _present(sample: Sample) -> dict[str, float]:
-    optional = {
-        "oil_temperature": sample.oil_temperature,
-        "time": sample.time,
-        "shaft_angle": sample.shaft_angle,
-        "wire_layer": sample.wire_layer,
-        "wire_out": sample.wire_out,
-    }
-    return {name: value for name, value in optional.items() if value == value}
+    x: list[Any] = _TEMPLATE.copy()
+    for index, name in _CHANNELS:
+        value = getattr(sample, name)
+        if value == value:
+            x[index] = value
+    x[_DIRECTION], x[_MAGNITUDE], x[_SPEED] = smooth_sign(speed, width), abs(speed), speed
+    x[_DRUM_TORQUE], x[_ACCELERATION] = drum_torque, acceleration
+    x[_MOTOR_TOTAL] = crane.motor_total(tuple(sample.groups))
+    for name, g in sample.groups.items():
+        a, b = g.pressure_a, g.pressure_b
+        x += crane.motor_count(name), abs(a - b), a + b, g.displacement
+    return tuple(x)
 
 
 def run_operating_points(
@@ -74,9 +72,7 @@ def run_operating_points(
 ) -> tuple[Any, ...]:
     """The operating points of a whole run as arrays of one length."""
     speed = run["motor_speed"]
-    optional = {
-        name: run[name] for name in ("oil_temperature", "time", "shaft_angle", "wire_layer", "wire_out") if name in run
-    }
+    optional = {name: run[name] for name in CHANNEL_SIGNALS if name in run}
     return operating_point(
         direction=smooth_signs(speed, width),
         speed=speed,

@@ -6,11 +6,16 @@ with T_friction = sgn(omega) (sum_g n_g T_fm,g + N T_fs) + torques of fixed dire
 N times the measured torque.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from winch_friction.physics.signals import Run, Sample
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.drive import hydraulic_torque
+
+__all__ = [
+    "DRIVING", "driving_group", "hydraulic_torque", "pressure_feedforward", "run_drive_torque", "sample_drive_torque",
+]  # fmt: skip
 
 DRIVING = ("active", "main")  # the groups that carry what the others leave, where they run
 
@@ -21,30 +26,13 @@ def driving_group(groups: Sequence[str]) -> str:
 
 
 def sample_drive_torque(sample: Sample, crane: Crane) -> float:
-    """Torque of all motors at the shaft in N m from one sample's pressures, or from its measured motor torque."""
-    if crane.electric:
-        return sample.motor_torque * crane.motor_total(())
-    return float(
-        hydraulic_torque(
-            (crane.motor_count(name), group.displacement, group.pressure_a - group.pressure_b)
-            for name, group in sample.groups.items()
-        )
-    )
+    """Torque of all motors at the shaft in N m from one sample, as the crane's drive makes it known."""
+    return crane.drive.of_sample(sample, crane)
 
 
 def run_drive_torque(run: Run, crane: Crane) -> Any:
     """`sample_drive_torque` along a run, N m."""
-    if crane.electric:
-        return run["motor_torque"] * crane.motor_total(())
-    return hydraulic_torque(
-        (crane.motor_count(g), run[f"{g}.displacement"], run[f"{g}.pressure_a"] - run[f"{g}.pressure_b"])
-        for g in run.groups
-    )
-
-
-def hydraulic_torque(groups: Iterable[tuple[float, Any, Any]]) -> Any:
-    """Sum of n D dp in N m over groups of (motors, displacement m^3/rad, pressure drop Pa); floats or arrays alike."""
-    return sum(count * displacement * drop for count, displacement, drop in groups)
+    return crane.drive.of_run(run, crane)
 
 
 def pressure_feedforward(friction_torque: float, motor_count: int, displacement: float) -> float:

@@ -1,0 +1,125 @@
+"""The channels of a winch in one table: every column of a run and every signal of a sample, said once.
+
+Units, display units, limits, ages, topics, the columns of `Run`, the fields of `Sample` and what of them enters the
+operating point derive from here (docs/interfaces.md). A group's channel is written `<group>.<channel>` in a run.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+UNBOUNDED = (-1.0e300, 1.0e300)
+
+
+class Topic(Enum):
+    """How a channel travels in ROS."""
+
+    MOTION = "in the JointState of the motor or drum"
+    REFERENCE = "in the JointState of the commanded speed"
+    PRESSURE = "FluidPressure"
+    SWASH = "in the JointState of the swash plate"
+    TEMPERATURE = "Temperature"
+    PLAIN = "Float64, without a stamp"
+    OF_DRIVE = "Float64, where the crane's drive is known by it"
+    NONE = "not at all"
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One channel.
+
+    `unit` is SI (temperatures degC); `display` is what people read; `limits`: beyond them a number is a broken sensor,
+    not a measurement, SI, several times what any winch does. `max_age` s: how long a value holds (None: the general
+    limit). `of_group`: one per motor group; `live`: part of a `Sample`, else of runs alone.
+    """
+
+    name: str
+    unit: str
+    display: str
+    doc: str
+    limits: tuple[float, float] = UNBOUNDED
+    max_age: float | None = None
+    topic: Topic = Topic.NONE
+    of_group: bool = False
+    live: bool = True
+
+
+_SPEEDS = (-3.0e3, 3.0e3)  # rad/s, 29 000 rpm
+_TORQUES = (-1.0e6, 1.0e6)
+_PRESSURES = (-1.0e7, 2.0e8)  # 2000 bar; gauges drift below zero
+_FORCES = (-1.0e6, 1.0e8)  # an empty rope's load cell may read a little below zero
+
+CHANNELS = (
+    Channel("time", "s", "s", "from any origin; Unix time dates the run", live=False),
+    Channel("motor_speed", "rad/s", "rpm", "motor shaft, positive when hoisting", _SPEEDS, topic=Topic.MOTION),
+    Channel("drum_speed", "rad/s", "rpm", "drum; the gear makes it a motor speed", _SPEEDS, live=False),
+    Channel("speed_reference", "rad/s", "rpm", "commanded motor speed", _SPEEDS, topic=Topic.REFERENCE),
+    Channel("motor_torque", "N*m", "N*m", "measured torque per motor", _TORQUES, topic=Topic.MOTION),
+    Channel(
+        "hook_load", "kg", "t", "whole hanging mass; an empty cell may read below zero", (-1.0e5, 1.0e7), 2.0,
+        Topic.PLAIN,
+    ),
+    Channel(
+        "heave_velocity", "m/s", "m/s", "crane tip, up positive; absent: it stands still", (-50.0, 50.0),
+        topic=Topic.PLAIN,
+    ),
+    Channel("oil_temperature", "degC", "degC", "oil", (-60.0, 250.0), 30.0, Topic.TEMPERATURE),
+    Channel("wire_layer", "1", "1", "layer in use, from 1, innermost first", (0.0, 100.0), 30.0, Topic.PLAIN),
+    Channel("wire_out", "m", "m", "wire paid out", (-1.0e3, 3.0e4), 2.0, Topic.PLAIN),
+    Channel("shaft_angle", "rad", "rad", "motor shaft", topic=Topic.MOTION),
+    Channel("load_torque", "N*m", "N*m", "load at the motor shaft, without inertia", (-1.0e8, 1.0e8),
+            topic=Topic.OF_DRIVE),
+    Channel("rope_force", "N", "kN", "tension of the rope at the drum", _FORCES, topic=Topic.OF_DRIVE),
+    Channel("mechanical_power", "W", "kW", "of all motors at their shafts, positive when hoisting a load",
+            (-1.0e9, 1.0e9), topic=Topic.OF_DRIVE),
+    Channel("motor_current", "A", "A", "torque-making current per motor, signed", (-1.0e5, 1.0e5),
+            topic=Topic.OF_DRIVE),
+    Channel("motor_torque_simulated", "N*m", "N*m", "motor_torque of a user's own simulation", _TORQUES, live=False),
+    Channel("rope_force_simulated", "N", "kN", "rope_force of a user's own simulation", _FORCES, live=False),
+    Channel("pressure_a", "Pa", "bar", "port A, gauge", _PRESSURES, topic=Topic.PRESSURE, of_group=True),
+    Channel("pressure_b", "Pa", "bar", "port B, gauge", _PRESSURES, topic=Topic.PRESSURE, of_group=True),
+    Channel(
+        "displacement", "m^3/rad", "cm^3/rev", "per motor", (-1.0e-3, 1.0e-3), topic=Topic.SWASH, of_group=True
+    ),  # 6300 cm^3/rev
+    Channel(
+        "pressure_drop_simulated", "Pa", "bar", "p_A - p_B of a user's own simulation", _PRESSURES, of_group=True,
+        live=False,
+    ),
+)  # fmt: skip
+
+WINCH = {each.name: each for each in CHANNELS if not each.of_group}
+OF_GROUP = {each.name: each for each in CHANNELS if each.of_group}
+# what a sample has of every motor group, in the order of `GroupSample`
+GROUP_CHANNELS = tuple(each.name for each in CHANNELS if each.of_group and each.live)
+SAMPLE_SCALARS = tuple(each.name for each in CHANNELS if not each.of_group and each.live)
+SLOW_INPUTS = {each.name: each.max_age for each in CHANNELS if each.max_age is not None}
+PLAIN_SCALARS = tuple(each.name for each in CHANNELS if each.topic is Topic.PLAIN)
+DRIVE_SCALARS = tuple(each.name for each in CHANNELS if each.topic is Topic.OF_DRIVE)
+
+
+def channel_of(column: str) -> Channel | None:
+    """The channel of a run's column, or None when the name is not one of the contract's."""
+    group, _, name = column.rpartition(".")
+    return OF_GROUP.get(name) if group else WINCH.get(name)
+
+
+def column_unit(column: str) -> str | None:
+    """SI unit of a run's column, or None when the name is not one of the contract's."""
+    channel = channel_of(column)
+    return channel.unit if channel else None
+
+
+def display_unit(column: str) -> str | None:
+    """The unit in which people read a run's column, or None when the name is not one of the contract's."""
+    channel = channel_of(column)
+    return channel.display if channel else None
+
+
+def limits_of(column: str) -> tuple[float, float]:
+    """Smallest and largest value that a sensor can mean, SI; by column or by a group channel's short name."""
+    channel = channel_of(column) or OF_GROUP.get(column)
+    return channel.limits if channel else UNBOUNDED
+
+
+def columns_of(groups: tuple[str, ...]) -> tuple[str, ...]:
+    """Every column that a run with these motor groups may have, in the table's order."""
+    return (*WINCH, *(f"{group}.{name}" for group in groups for name in OF_GROUP))

@@ -15,6 +15,7 @@ from winch_friction.discrepancy.preparation.grid import Grid, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR

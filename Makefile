@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates clean
+.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet clean
 
 setup: $(READY)
 
@@ -52,7 +52,7 @@ colcon: $(READY)
 
 campaign: campaign-loop campaign-identification campaign-gap campaign-rates
 
-campaign-loop campaign-identification campaign-gap campaign-rates: $(READY)
+campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet: $(READY)
 	$(BIN)/python -m campaign.$(subst campaign-,,$@) $(ARGS)
 
 clean:

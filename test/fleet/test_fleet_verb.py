@@ -57,7 +57,9 @@ def test_a_folder_of_cranes_is_searched_and_a_bad_file_stops_nobody(cranes, tmp_
     assert len(set(store["month"])) == 3
     traits = store[store["kind"] == "trait"]
     assert (traits["std"] > 0.0).all()
-    assert np.abs(traits["value"]).max() < 100.0  # N m: the plant is the model
+    friction = traits[traits["name"] == "friction"]
+    assert np.abs(friction["value"]).max() < 10.0  # %: the plant is the model
+    assert set(traits["unit"]) == {"%", "N*m"}
 
 
 def test_what_is_done_is_not_done_again(cranes, tmp_path, capsys, monkeypatch):

@@ -81,6 +81,7 @@ def _done(tasks: list[Task], ledger: Ledger, workers: int | None, scheduler: str
 def _over_time(outcomes: list[Outcome], out: Path) -> dict[str, Any]:
     """What the dated recordings say of the cranes: steps, and who is unlike the others."""
     from winch_friction.fleet.drift import find_steps, find_unlike, month_text, monthly
+    from winch_friction.fleet.fingerprint import TRAITS
     from winch_friction.fleet.store import write_store
 
     rows = dated_rows(outcomes)
@@ -92,8 +93,11 @@ def _over_time(outcomes: list[Outcome], out: Path) -> dict[str, Any]:
     followed = monthly(series)
     undated = sum(each.status == 0 for each in outcomes) if not rows else 0
     return {
-        "steps": [asdict(step) | {"month": month_text(step.month), "unit": "N*m"} for step in find_steps(followed)],
-        "unlike": [asdict(each) | {"unit": "N*m"} for each in find_unlike(followed)],
+        "steps": [
+            asdict(step) | {"month": month_text(step.month), "unit": TRAITS[step.trait]}
+            for step in find_steps(followed)
+        ],
+        "unlike": [asdict(each) | {"unit": TRAITS[each.trait]} for each in find_unlike(followed)],
         "notes": ["no recording has a Unix time: nothing can be followed over the months"] if undated else [],
     }
 
@@ -107,12 +111,12 @@ def _write(out: Path, content: dict[str, Any], verb: str, outcomes: list[Outcome
 
 
 def _show_changes(content: dict[str, Any]) -> None:
-    steps = [(s["crane"], s["trait"], s["month"], s["size"], s["p_value"]) for s in content["steps"]]
+    steps = [(s["crane"], s["trait"], s["month"], s["size"], s["unit"], s["p_value"]) for s in content["steps"]]
     if steps:
-        show_table("changed", ("crane", "what", "month", "size [N m]", "p"), steps)
-    unlike = [(u["crane"], u["trait"], u["level"], u["fleet"], u["score"]) for u in content["unlike"]]
+        show_table("changed", ("crane", "what", "month", "size", "unit", "p"), steps)
+    unlike = [(u["crane"], u["trait"], u["level"], u["fleet"], u["unit"], u["score"]) for u in content["unlike"]]
     if unlike:
-        show_table("unlike the others", ("crane", "what", "level [N m]", "fleet [N m]", "deviations"), unlike)
+        show_table("unlike the others", ("crane", "what", "level", "fleet", "unit", "deviations"), unlike)
     for note in content["notes"]:
         print(note)
 

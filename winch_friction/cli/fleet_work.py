@@ -155,7 +155,7 @@ def _traits(task: Task, paths: Sequence[Path]) -> list[dict[str, Any]]:
             continue
         rows += [
             {"recording": recording.name, "time": float(run.time[0]), "name": each.name, "value": each.value,
-             "std": each.std, "unit": "N*m"} for each in found
+             "std": each.std, "unit": each.unit} for each in found
         ]  # fmt: skip
     return rows
 

@@ -1,8 +1,9 @@
 """What one recording says of its crane in a few numbers that can be followed over years.
 
-The gap of the torque balance while the shaft turns, measured minus modelled, is split into what opposes motion and what
-does not. Seals and wear move the first, transducers and the weight signal the second. A least-squares fit with the
-intervals from redrawn stretches of time.
+The gap of the torque balance while the shaft turns, measured minus modelled, is split into a share of the model's own
+friction, whatever load and speed make it, and a torque that does not change sign with the motion. Seals and wear move
+the first, transducers and the weight signal the second. A least-squares fit with the intervals from redrawn stretches
+of time.
 """
 
 from dataclasses import dataclass
@@ -17,28 +18,35 @@ from winch_friction.physics.winch import Crane
 STRETCH = 5.0  # s; about half a wave, so that neighbouring stretches are nearly independent
 DRAWS = 200  # redrawn fits: the intervals' own error is then 5 %
 FEWEST_STRETCHES = 4
-NAMES = ("opposing", "constant")
+TRAITS = {"friction": "%", "constant_torque": "N*m"}  # name: unit
+PERCENT = 100.0
 
 
 @dataclass(frozen=True)
 class Trait:
-    """One number of a recording with its standard deviation, N m at the motor shaft."""
+    """One number of a recording with its standard deviation, in its unit."""
 
     name: str
     value: float
     std: float
+    unit: str
 
 
 def fingerprint(run: Run, crane: Crane, model: FrictionModel) -> list[Trait]:
-    """The traits of a run; empty when too little of it moves. Raises `InputError` where the balance lacks a channel."""
+    """The traits of a run: friction beyond the model's in % of it, and constant torque in N m at the shaft.
+
+    Empty when too little of the run moves. Raises `InputError` where the balance lacks a channel.
+    """
     prepared = prepare(run, crane, model)
     moving = prepared.used
     if moving.sum() < FEWEST_STRETCHES * STRETCH / prepared.dt:
         return []
-    columns = np.column_stack([prepared.direction[moving], np.ones(int(moving.sum()))])
+    friction = np.broadcast_to(model.torque(prepared.point), prepared.gap.shape)[moving] / PERCENT
+    columns = np.column_stack([friction, np.ones(int(moving.sum()))])
     stretch = (prepared.time[moving] // STRETCH).astype(int)
     values, deviations = _fit(columns, prepared.gap[moving], stretch)
-    return [Trait(name, float(v), float(s)) for name, v, s in zip(NAMES, values, deviations, strict=True)]
+    found = zip(TRAITS.items(), values.tolist(), deviations.tolist(), strict=True)
+    return [Trait(name, value, std, unit) for (name, unit), value, std in found]
 
 
 def _fit(columns: FloatArray, gap: FloatArray, stretch: np.ndarray) -> tuple[FloatArray, FloatArray]:

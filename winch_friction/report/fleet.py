@@ -5,6 +5,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+from winch_friction.fleet.fingerprint import TRAITS
 from winch_friction.fleet.ledger import Outcome, verdict_of
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.figures import figure_html, legend_above, new_figure
@@ -31,17 +32,23 @@ def write_fleet_report(
 
 
 def _changes(content: Mapping[str, Any]) -> str:
-    steps = [(s["crane"], s["trait"], s["month"], f"{s['size']:+.1f}", f"{s['p_value']:.1g}") for s in content["steps"]]
-    unlike = [(u["crane"], u["trait"], f"{u['level']:.1f}", f"{u['fleet']:.1f}") for u in content["unlike"]]
+    steps = [
+        (s["crane"], s["trait"], s["month"], f"{s['size']:+.1f} {s['unit']}", f"{s['p_value']:.1g}")
+        for s in content["steps"]
+    ]
+    unlike = [
+        (u["crane"], u["trait"], f"{u['level']:.1f} {u['unit']}", f"{u['fleet']:.1f} {u['unit']}")
+        for u in content["unlike"]
+    ]
     words = (
-        "<p><b>opposing</b>: torque that opposes motion beyond the model's friction (seals, wear). "
-        "<b>constant</b>: torque that does not change sign with the motion (transducers, weight).</p>"
+        "<p><b>friction</b>: friction beyond the model's, in % of it (seals, wear). "
+        "<b>constant_torque</b>: what does not change sign with the motion (transducers, weight).</p>"
     )
     parts = [words, "<p>No sudden change.</p>" if not steps else ""]
     if steps:
-        parts.append(table_html(("crane", "what", "first month after", "size, N m", "p"), steps))
+        parts.append(table_html(("crane", "what", "first month after", "size", "p"), steps))
     if unlike:
-        parts.append("<h3>Unlike the others</h3>" + table_html(("crane", "what", "level, N m", "fleet, N m"), unlike))
+        parts.append("<h3>Unlike the others</h3>" + table_html(("crane", "what", "level", "fleet"), unlike))
     parts += [paragraph(note) for note in content["notes"]]
     return "".join(parts)
 
@@ -93,7 +100,7 @@ def _figure(trait: str, lines: Sequence[tuple[str, list[str], list[float]]], cha
     for crane, days, values in lines:
         strong = {"linewidth": 1.8, "label": crane} if crane in changed else _OTHERS
         axes.plot([date.fromisoformat(day) for day in days], values, **strong)
-    axes.set_ylabel(f"{trait} torque, N m")
+    axes.set_ylabel(f"{trait.replace('_', ' ')}, {TRAITS[trait].replace('*', ' ')}")
     if 0 < len(changed) <= MOST_NAMED:
         legend_above(axes, columns=4)
-    return figure_html(figure, f"{trait} torque beyond the model at the motor shaft, by month and crane")
+    return figure_html(figure, f"{trait.replace('_', ' ')} beyond the model, by month and crane")

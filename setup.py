@@ -14,7 +14,15 @@ def tree(folder: str) -> list[tuple[str, list[str]]]:
     return [(f"{SHARE}/{each}", [str(f) for f in each.iterdir() if f.is_file()]) for each in folders]
 
 
-IDENTIFICATION = ["pint>=0.19", "pandas>=2.1", "pyarrow>=14", "matplotlib>=3.6", "jinja2>=3.1", "plotly>=5.18"]
+IDENTIFICATION = [
+    "pint>=0.19",
+    "pandas>=2.1",
+    "pyarrow>=14",
+    "matplotlib>=3.6",
+    "jinja2>=3.1",
+    "plotly>=5.18",
+    "latex2mathml>=3.77",
+]
 EXTRAS = {
     "ros": [
         "ros-rclpy[fastrtps]==7.1.6",
@@ -47,6 +55,7 @@ EXTRAS = {
         "flask-cors>=5",
         "import-linter>=2",
         "mcap-ros2-support>=0.5",
+        "playwright>=1.49",
         "ruff==0.17.6",
         "mypy==2.4.1",
         "colcon-common-extensions>=0.3",
@@ -58,7 +67,7 @@ setup(
     name=PACKAGE,
     version="0.1.0",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={PACKAGE: ["py.typed", "*.pyi", "**/*.html", "**/*.j2", "**/*.css"]},
+    package_data={PACKAGE: ["py.typed", "*.pyi", "**/*.yaml", "**/*.html", "**/*.j2", "**/*.css", "**/*.js"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (SHARE, ["package.xml"]),

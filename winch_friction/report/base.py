@@ -8,6 +8,7 @@ from typing import Protocol
 
 from winch_friction import __version__
 from winch_friction.records.atomic import write_text
+from winch_friction.report.plots import has_plots, plot_scripts
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
@@ -45,11 +46,13 @@ def render(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
     from jinja2 import Environment, FileSystemLoader
     from markupsafe import Markup
 
+    bodies = [each.html() for each in sections]
     environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, trim_blocks=True)
     return environment.get_template("page.html.j2").render(
         title=title,
         subtitle=subtitle,
-        sections=[{"title": each.title, "body": Markup(each.html())} for each in sections],
+        sections=[{"title": each.title, "body": Markup(body)} for each, body in zip(sections, bodies, strict=True)],
+        scripts=Markup(plot_scripts() if any(map(has_plots, bodies)) else ""),
         style=Markup((_TEMPLATES / "style.css").read_text(encoding="utf-8")),
         version=__version__,
         written=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),

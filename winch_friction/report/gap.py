@@ -1,122 +1,146 @@
-"""The report of the discrepancy workflow: one page, verdict first."""
+"""The report of the discrepancy workflow: one page, the decision first."""
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from winch_friction.discrepancy.answer import Effect, GapResult
+from winch_friction.discrepancy.answer import Effect, GapResult, Side
+from winch_friction.physics.effects import effect_text
+from winch_friction.physics.friction import registered_terms
+from winch_friction.physics.units import RPM
 from winch_friction.report.base import Section, TextSection, write_report
-from winch_friction.report.gap_pictures import equation, heat_maps, speed_bars, traces
+from winch_friction.report.decision import decision_html, list_html, provenance_html
+from winch_friction.report.equations import latex_html, term_html
+from winch_friction.report.gap_plots import heat_plot, run_plots, speed_plot
+from winch_friction.report.gap_words import facts, next_steps, shown_unit, verdict_sentence
+from winch_friction.report.plots import plot_html
+from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
+
+__all__ = ["GapResult", "Side", "gap_sections", "verdict_sentence", "write_gap_report"]
 
 
-def write_gap_report(path: Path, result: GapResult) -> Path:
+def write_gap_report(path: Path, result: GapResult, provenance: Mapping[str, Any] | None = None) -> Path:
     """Write report.html: self-contained, opens offline."""
-    return write_report(
-        path, "Where simulation and measurement disagree", gap_sections(result), verdict_sentence(result)
+    sections = gap_sections(result, provenance)
+    return write_report(path, "Where simulation and measurement disagree", sections, _subtitle(result))
+
+
+def gap_sections(result: GapResult, provenance: Mapping[str, Any] | None = None) -> list[Section]:
+    """The sections in the order a reader needs them."""
+    known = provenance or result.content().get("provenance") or {"model": result.seed_model.name}
+    decision = decision_html(verdict_sentence(result), facts(result), _physics(result) + _steps(result))
+    sections = [
+        TextSection("Decision", decision),
+        TextSection("What is missing", "".join(_effect(effect) for effect in result.effects)),
+        TextSection("Proof on locked runs", _proof(result)),
+        TextSection("Where the gap is", plot_html(heat_plot(result)) + _regions(result)),
+        TextSection("The runs that were learned from", _runs(result, result.train)),
+        TextSection("What else was considered", _considered(result)),
+        TextSection("Provenance", _notes(result) + provenance_html(known)),
+    ]
+    return [each for each in sections if each.content]
+
+
+def _subtitle(result: GapResult) -> str:
+    learned, locked = len(result.train.runs), len(result.holdout.runs)
+    return f"Model {result.seed_model.name}; {learned} runs learned from, {locked} locked for the proof."
+
+
+def _physics(result: GapResult) -> str:
+    return "".join(paragraph(effect_text(effect.name).physics) for effect in result.effects)
+
+
+def _steps(result: GapResult) -> str:
+    steps = next_steps(result)
+    return "<h3>What to do next</h3>" + list_html(steps, ordered=len(steps) > 1) if steps else ""
+
+
+def _effect(effect: Effect) -> str:
+    text = effect_text(effect.name)
+    rivals = paragraph(f"These runs cannot tell it from {' or '.join(effect.rivals)}.") if effect.rivals else ""
+    rows = [
+        (name, value_for_people(e.value, e.unit), value_for_people(e.std, e.unit), for_people(e.unit))
+        for name, e in effect.parameters.items()
+    ]
+    told = any(effect.variant.startswith(f"{name} =") for name in effect.parameters)
+    term = registered_terms().get(effect.name)
+    size = paragraph(f"Usual size: {text.size}.", "faint") if text.size else ""
+    evidence = (
+        f"Evidence ({effect.where}): p = {effect.p_value:.2g}; the error on data not fitted is lower by "
+        f"{100 * effect.gain:.0f} %; named first in {100 * effect.selection_frequency:.0f} % of redrawn data."
+    )
+    return (
+        f"<h3>{escape(text.title)} <code>{escape(effect.name)}</code></h3>{rivals}"
+        + (paragraph(f"Found as: {effect.variant}.") if effect.variant and not told else "")
+        + table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4)
+        + paragraph(evidence)
+        + size
+        + (term_html(term) if term else latex_html(effect.law))
     )
 
 
-def gap_sections(result: GapResult) -> list[Section]:
-    """The sections in the order a reader needs them."""
-    return [
-        TextSection("Verdict", f"<p><strong>{escape(verdict_sentence(result))}</strong></p>{_figures(result)}"),
-        TextSection("Where", heat_maps(result) + _regions(result)),
-        TextSection("What is missing", _effects(result.effects)),
-        TextSection("Before and after on locked runs", traces(result) + speed_bars(result)),
-        TextSection("Ranking", _ranking(result)),
-        TextSection("Considered and rejected", _rejected(result)),
-        TextSection("Next experiment", _next(result)),
-    ]
-
-
-def verdict_sentence(result: GapResult) -> str:
-    """The verdict in one sentence."""
-    names = ", ".join(effect.name for effect in result.effects)
-    if result.verdict == "nothing_missing":
-        return "Nothing is missing: what is left is noise and parameters within the model's own uncertainty."
-    if result.verdict == "unexplained":
-        signals = ", ".join(each.signal for each in result.depends) or "no recorded signal"
-        return f"Something is missing that no named effect explains; it depends on {signals} ({result.refused})."
-    if result.verdict == "ambiguous":
-        rivals = "; ".join(f"{e.name} or {' or '.join(e.rivals)}" for e in result.effects if e.rivals)
-        return f"Missing: {names}. These runs cannot tell apart: {rivals}."
-    return f"Missing: {names}."
-
-
-def _figures(result: GapResult) -> str:
-    side, unit = result.holdout, result.unit
+def _proof(result: GapResult) -> str:
+    side, unit = result.holdout, shown_unit(result)
     rows = [
-        ("model as given", f"{side.size_before.value:.3g} {unit}", _interval(side.size_before.interval)),
-        ("repaired model", f"{side.size_after.value:.3g} {unit}", _interval(side.size_after.interval)),
-        ("independent noise", f"{side.noise_floor:.3g} {unit}", ""),
+        ("model as given", side.size_before.value, _interval(side.size_before.interval)),
+        ("repaired model", side.size_after.value, _interval(side.size_after.interval)),
+        ("independent noise", side.noise_floor, "–"),
     ]
-    notes = "".join(f"<li>{escape(note)}</li>" for note in result.notes)
     locked = ", ".join(run.name for run in side.runs)
     return (
-        _table(("on locked runs", "RMS gap", "95 % interval"), rows)
-        + f"<p>Locked before anything else was looked at: {escape(locked)}.</p>"
-        + (f"<ul>{notes}</ul>" if notes else "")
+        paragraph(f"Locked before anything else was looked at: {locked}.")
+        + table_html(("on locked runs", f"RMS gap [{unit}]", "95 % interval"), rows, digits=3)
+        + plot_html(speed_plot(result))
+        + _runs(result, side)
     )
 
 
 def _interval(interval: tuple[float, float]) -> str:
-    return f"{interval[0]:.3g} ... {interval[1]:.3g}"
+    return f"{number(interval[0], 3)} … {number(interval[1], 3)}"
+
+
+def _runs(result: GapResult, side: Side) -> str:
+    return "".join(plot_html(plot) for plot in run_plots(result, side))
 
 
 def _regions(result: GapResult) -> str:
-    rows = [(r.where, f"{100 * r.share_of_gap:.0f} %", f"{r.mean_residual:+.3g} {result.unit}") for r in result.regions]
-    return _table(("where", "share of the gap", "mean"), rows)
+    rows = [(_in_rpm(r.where), 100 * r.share_of_gap, r.mean_residual) for r in result.regions]
+    columns = ("where", "share of the gap [%]", f"mean gap [{shown_unit(result)}]")
+    return table_html(columns, rows, "Where it is largest", 3) if rows else ""
 
 
-def _effects(effects: Sequence[Effect]) -> str:
-    if not effects:
-        return "<p>No effect was added.</p>"
-    return "".join(_effect(effect) for effect in effects)
+def _in_rpm(where: str) -> str:
+    """A region's words with speeds in rpm, as everywhere on the page."""
+    return re.sub(r"([\d.e+-]+) rad/s(?!\^)", lambda found: f"{number(float(found[1]) / RPM, 3)} rpm", where)
 
 
-def _effect(effect: Effect) -> str:
-    rivals = f" or {escape(' or '.join(effect.rivals))}" if effect.rivals else ""
-    rows = [(name, f"{e.value:.4g}", f"{e.std:.2g}", e.unit) for name, e in effect.parameters.items()]
-    variant = f"<p>{escape(effect.variant)}</p>" if effect.variant else ""
-    return (
-        f"<h3>{escape(effect.name)}{rivals}</h3>{equation(effect.law)}{variant}"
-        + _table(("parameter", "value", "std", "unit"), rows)
-        + f"<p>Evidence ({escape(effect.where)}): p = {effect.p_value:.2g}, held-out error lower by "
-        f"{100 * effect.gain:.0f} %, first in {100 * effect.selection_frequency:.0f} % of redrawn segments.</p>"
-    )
-
-
-def _ranking(result: GapResult) -> str:
-    first = [each for each in result.considered if each.stage == 0][:8]
-    rows = [(c.name, c.variant, f"{100 * c.gain:.1f} %", f"{c.p_value:.2g}") for c in first]
-    text = "<p>Each candidate alone, added to the base model: what it takes off the held-out error.</p>"
-    return text + _table(("effect", "shape", "gain", "family-wise p"), rows)
-
-
-def _rejected(result: GapResult) -> str:
+def _considered(result: GapResult) -> str:
     kept = {effect.name for effect in result.effects}
+    first = [(c.name, c.variant, 100 * c.gain, c.p_value) for c in result.considered if c.stage == 0][:8]
     rows = [(c.stage + 1, c.name, c.variant, c.verdict) for c in result.considered if c.name not in kept]
     blind = [(u.name, u.needs, u.because) for u in result.untestable]
-    return _table(("step", "effect", "shape", "outcome"), rows) + (
-        "<h3>Untestable with these channels</h3>" + _table(("effect", "needs", "because"), blind) if blind else ""
-    )
+    html = ""
+    if first:
+        html += table_html(("effect", "shape", "error lower by [%]", "p, family-wise"), first,
+                           "Each candidate alone: what it takes off the error on data not fitted", 3)  # fmt: skip
+    if rows:
+        table = table_html(("step", "effect", "shape", "outcome"), rows, "Considered and rejected")
+        html += f"<details><summary>{len(rows)} rejected</summary>{table}</details>"
+    if blind:
+        html += table_html(("effect", "needs", "because"), blind, "Cannot be tested with these channels")
+    return html + _plan(result)
 
 
-def _next(result: GapResult) -> str:
+def _plan(result: GapResult) -> str:
     plan = result.next_experiment
     if not plan:
-        return "<p>None is needed to tell rivals apart.</p>"
-    rows = [(name, f"{z:.2f}") for name, z in plan["considered"].items()]
-    note = f"<p>{escape(plan['note'])}</p>" if plan.get("note") else ""
-    return (
-        f"<p>Run <code>winch-friction simulate {escape(plan['scenario'])}</code>, or its likeness on the crane: it "
-        f"separates {escape(' from '.join(plan['separates']))} by {plan['expected_z']:.1f} sigma.</p>{note}"
-        + _table(("scenario", "expected separation, sigma"), rows)
-    )
+        return ""
+    rows = list(plan["considered"].items())
+    note = paragraph(str(plan["note"])) if plan.get("note") else ""
+    return table_html(("scenario", "expected separation [σ]"), rows, "Experiments that were weighed", 3) + note
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    top = "".join(f"<th>{escape(str(cell))}</th>" for cell in head)
-    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+def _notes(result: GapResult) -> str:
+    return list_html([str(note) for note in result.notes])

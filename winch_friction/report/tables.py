@@ -5,16 +5,19 @@ from html import escape
 from math import isfinite
 from typing import Any
 
+from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+
 
 def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "", digits: int = 4) -> str:
     """A table; numbers are aligned to the right with `digits` significant digits, text is escaped."""
     rows = [list(row) for row in rows]
     numeric = [bool(rows) and all(_is_number(row[k]) for row in rows) for k in range(len(columns))]
-    head = "".join(f"<th{_class(n)}>{escape(name)}</th>" for name, n in zip(columns, numeric, strict=True))
+    head = "".join(f'<th scope="col"{_class(n)}>{escape(name)}</th>' for name, n in zip(columns, numeric, strict=True))
     body = "".join("<tr>" + _cells(row, numeric, digits) + "</tr>" for row in rows)
     title = f"<caption>{escape(caption)}</caption>" if caption else ""
     table = f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-    return f'<div class="scroll">{table}</div>'
+    label = escape(caption or "table: " + ", ".join(columns), quote=True)
+    return f'<div class="scroll" tabindex="0" role="group" aria-label="{label}">{table}</div>'
 
 
 def paragraph(text: str, kind: str = "") -> str:
@@ -31,6 +34,22 @@ def number(value: float, digits: int = 4) -> str:
         shown = f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in shown else shown
     return f"{value:.{digits}g}"
+
+
+# the unit that people read a quantity in; one per quantity on every page and in every table
+_PEOPLE = {"rad/s": ("rpm", 1.0 / RPM), "Pa": ("bar", 1.0 / BAR), "kg": ("t", 1e-3), "degC": ("°C", 1.0),
+           "1": ("–", 1.0),
+           "": ("–", 1.0), "m^3/rad": ("cm³/rev", 1.0 / CM3_PER_REV)}  # fmt: skip
+
+
+def for_people(unit: str) -> str:
+    """A unit as people read it: rpm, bar, t, °C, with dots and exponents."""
+    return _PEOPLE[unit][0] if unit in _PEOPLE else unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
+def value_for_people(value: float, unit: str) -> float:
+    """An SI value in the unit of `for_people`."""
+    return value * _PEOPLE[unit][1] if unit in _PEOPLE else value
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:

@@ -1,0 +1,35 @@
+"""Pages to look at, from the quickest results that have everything on them."""
+
+from pathlib import Path
+
+import numpy as np
+
+import winch_friction as wf
+
+AXE = Path(__file__).with_name("axe.min.js")
+SIZES = (1400, 768, 420)  # px: a desk, a tablet, a phone
+SCHEMES = ("light", "dark")
+
+
+def violations(page):
+    """What axe-core finds wrong with the page, in words."""
+    page.add_script_tag(path=AXE)
+    found = page.evaluate("axe.run()")["violations"]
+    return [f"{each['id']}: {each['nodes'][0]['html'][:120]}" for each in found]
+
+
+def small_gap():
+    """Five minutes of an electric drive whose model lacks a Stribeck peak: found in half a second."""
+    crane, model = wf.load_crane("emps"), wf.load_model("emps_symmetric")
+    return wf.gap([_logged(k, crane, model) for k in range(5)], crane, model)
+
+
+def _logged(number, crane, model):
+    time = 0.02 * np.arange(3000)
+    speed = 0.15 * np.sin(2 * np.pi * time / (6 + number)) * np.sin(2 * np.pi * time / 37 + number)
+    columns = {"time": time, "motor_speed": speed, "motor_torque": 0 * time, "hook_load": 0 * time}
+    peak = 8.0 * np.sign(speed) * np.exp(-((speed / 0.02) ** 2))
+    noise = np.random.default_rng(number).normal(0.0, 0.3, len(time))
+    friction = wf.torque(model, wf.from_frame(columns), crane)
+    drive = crane.inertia * np.gradient(speed, time) + friction + peak + noise
+    return wf.from_frame({**columns, "motor_torque": drive}, f"run {number}")

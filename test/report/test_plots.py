@@ -1,0 +1,67 @@
+"""Plots as data, equations as MathML, effects in words."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.physics.effects import effect_texts
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import registered_terms, term_named
+from winch_friction.report.equations import latex_html, term_html
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
+
+
+def plot(points=10):
+    frame = Frame("run </script>", {"time [s]": np.linspace(0, 1, points), "torque [N·m]": np.full(points, np.nan)})
+    return Plot("A run", [frame], [Line("torque", "time [s]", "torque [N·m]")], "time [s]", ["torque [N·m]"])
+
+
+def test_a_plot_carries_its_data_safely():
+    html = plot_html(plot())
+    content = json.loads(re.search(r'application/json">(.*)</script></figure>', html).group(1))
+    assert content["frames"][0]["name"] == "run </script>"
+    assert html.count("</script>") == 1
+    assert "data:text/csv" in html
+
+
+def test_long_runs_are_thinned():
+    assert len(plot_html(plot(100_000))) < 30_000
+
+
+def test_a_line_without_its_column_is_refused():
+    with pytest.raises(InputError, match="asks for what is not there"):
+        Plot("A", [Frame("a", {"t": np.zeros(1)})], [Line("x", "t", "missing")], "t", ["y"])
+
+
+@pytest.mark.parametrize("name", sorted(registered_terms()))
+def test_every_term_can_be_set_and_each_symbol_is_explained(name):
+    html = term_html(term_named(name))
+    assert "<math" in html
+    assert "mfenced" not in html
+    assert not re.search(r"e-\d\d|10</mn><mrow><mo>-", html.partition("<table>")[0].replace("aria", ""))
+    for parameter in term_named(name).parameters:
+        assert f"<td>{parameter.name}</td>" in html
+        assert parameter.doc
+
+
+def test_the_regularisation_of_a_power_is_not_shown():
+    formula = term_html(term_named("churning")).partition("<table>")[0]
+    assert "0.0047" not in formula
+    assert "2000 rpm" in term_html(term_named("churning"))
+
+
+def test_a_law_in_latex_becomes_mathml():
+    assert "<math" in latex_html(r"\Delta J\,\dot\omega")
+
+
+def test_every_effect_of_the_catalogue_is_described():
+    described = effect_texts()
+    missing = {each.name for each in all_candidates()} - set(described)
+    assert not missing
+    for text in described.values():
+        assert text.title
+        assert text.look
+        assert text.physics.count(".") >= 1

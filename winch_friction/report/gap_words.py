@@ -1,0 +1,98 @@
+"""The discrepancy result in words: the verdict, its size, how sure it is, and what to do next."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from winch_friction.physics.effects import effect_text
+from winch_friction.physics.units import RPM
+from winch_friction.report.tables import number
+
+if TYPE_CHECKING:
+    from winch_friction.report.gap import GapResult
+
+FAST = 0.9  # quantile of speed from which blocks count as top speed
+
+
+def verdict_sentence(result: "GapResult") -> str:
+    """The verdict in one sentence."""
+    titles = " and ".join(f"{e.name}, {_lowered(effect_text(e.name).title)}" for e in result.effects)
+    if result.verdict == "nothing_missing":
+        return "Nothing is missing: what is left is noise and parameters within the model's own uncertainty."
+    if result.verdict == "unexplained":
+        signals = ", ".join(each.signal for each in result.depends) or "no recorded signal"
+        return f"Something is missing that no named effect explains; it depends on {signals} ({result.refused})."
+    if result.verdict == "insufficient":
+        return f"These runs cannot answer the question: {result.refused}."
+    if result.verdict == "ambiguous":
+        rivals = "; ".join(f"{e.name} or {' or '.join(e.rivals)}" for e in result.effects if e.rivals)
+        return f"Missing: {titles}. These runs cannot tell apart: {rivals}."
+    return f"Missing: {titles}."
+
+
+def _lowered(title: str) -> str:
+    return title[:1].lower() + title[1:]
+
+
+def facts(result: "GapResult") -> list[tuple[str, str]]:
+    """Size, proof and certainty, each in a few words."""
+    side, unit = result.holdout, shown_unit(result)
+    found = [
+        ("Gap on locked runs", f"{number(side.size_before.value, 3)} → {number(side.size_after.value, 3)} {unit} RMS"),
+        ("Noise floor", f"{number(side.noise_floor, 3)} {unit}"),
+    ]
+    if result.effects:
+        found.insert(0, ("What the repair changes at top speed", top_speed_change(result)))
+        found.append(("How sure", how_sure(result)))
+    return found
+
+
+def shown_unit(result: "GapResult") -> str:
+    """The unit of the gap as people write it."""
+    return "N·m" if result.unit == "N*m" else result.unit
+
+
+def top_speed_change(result: "GapResult") -> str:
+    """Mean size of before minus after among the fastest blocks of all runs, N m at the shaft and bar."""
+    torque, pressure, speed = [], [], []
+    for side in (result.train, result.holdout):
+        rate = np.array([run.unit_torque for run in side.runs])[side.blocks.run]
+        change = np.abs(side.before - side.after)
+        speed.append(side.blocks.features["motor_speed"])
+        torque.append(change * rate)
+        pressure.append(change)
+    fast = np.concatenate(speed)
+    top = fast >= np.quantile(fast, FAST)
+    size, bar = float(np.concatenate(torque)[top].mean()), float(np.concatenate(pressure)[top].mean())
+    text = f"{number(size, 3)} N·m"
+    text += f" = {number(bar, 3)} bar" if result.unit == "bar" else ""
+    return f"{text} above {number(float(fast[top].min()) / RPM, 3)} rpm"
+
+
+def how_sure(result: "GapResult") -> str:
+    """The weakest of the effects' evidence."""
+    weakest = max(result.effects, key=lambda e: e.p_value)
+    chance = "below 1 in 1000" if weakest.p_value < 1e-3 else f"p = {weakest.p_value:.2g}"
+    first = f"named first in {100 * weakest.selection_frequency:.0f} % of redrawn data"
+    return f"chance finding {chance}; {first}"
+
+
+def next_steps(result: "GapResult") -> list[str]:
+    """What to do now, in order."""
+    steps: list[str] = []
+    plan: Any = result.next_experiment
+    if plan:
+        steps.append(
+            f"Separate {' from '.join(plan['separates'])}: run `winch-friction simulate {plan['scenario']}`, or its "
+            f"likeness on the crane; it parts them by {plan['expected_z']:.1f} sigma."
+        )
+    steps += [f"{e.name}: {effect_text(e.name).look}" for e in result.effects]
+    if result.effects:
+        steps.append("Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the "
+                     "compensator load it (service ~/load_model); it takes over without a bump.")  # fmt: skip
+    if result.verdict == "unexplained":
+        steps.append("Plot the residual below over the named signals, or declare a term of your own and pass it with "
+                     "--effects.")  # fmt: skip
+    if result.verdict == "nothing_missing":
+        steps.append("Nothing needs to be done: keep the model.")
+    return steps

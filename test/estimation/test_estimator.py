@@ -2,6 +2,7 @@
 
 import copy
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from driven_winch import PERIOD, rigid_samples
 
 from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.options import from_mapping
 from winch_friction.physics.signals import GroupSample
@@ -45,6 +47,37 @@ def inside(each):
 
 def raised(seed, factor=1.3):
     return seed.with_values({name: factor * seed.value(name) for name in ("C1", "C3", "C5", "C6")})
+
+
+# -- what the seed knows to be wrong
+def test_what_is_wrong_with_the_signals_is_taken_out_before_anything_is_learned(crane, seed, samples):
+    """The same estimates, to rounding, from erring sensors with corrections as from right ones without."""
+    erring = replace(
+        seed, corrections=(
+            Correction("pressure_offset", 4 * BAR), Correction("pressure_scale", 0.02), Correction("tare_load", 2e3),
+            Correction("displacement_scale", -0.01), Correction("layer_radius", 0.03), Correction("inertia", 0.3),
+        ),
+    )  # fmt: skip
+    radii = tuple(radius - 0.03 for radius in crane.drum.layer_radii)
+    declared = replace(crane, drum=replace(crane.drum, layer_radii=radii), inertia=crane.inertia - 0.3)
+    right, wrong = FrictionEstimator(crane, seed, CONFIG), FrictionEstimator(declared, erring, CONFIG)
+    for sample in samples[:400]:
+        good = right.step(sample)
+        logged = copy.deepcopy(sample)
+        logged.hook_load -= 2e3
+        for group in logged.groups.values():
+            group.pressure_a = group.pressure_a * 1.02 + 4 * BAR
+            group.pressure_b *= 1.02
+            group.displacement *= 0.99
+        found = wrong.step(logged)
+        assert found.innovation == pytest.approx(good.innovation, abs=1e-6, nan_ok=True)
+    assert wrong.model().values == pytest.approx(right.model().values, rel=1e-6)
+    assert wrong.model().corrections == erring.corrections
+
+
+def test_a_late_speed_is_refused_by_name(crane, seed):
+    with pytest.raises(InputError, match="signal_delay"):
+        FrictionEstimator(crane, replace(seed, corrections=(Correction("signal_delay", 0.05),)), CONFIG)
 
 
 # -- learning

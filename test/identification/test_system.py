@@ -1,5 +1,7 @@
 """Steps 3 and 4, the second loop and the joint fit on logs of known truth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cycles import TABLE_2, TABLE_5, cycle, cycles
@@ -14,8 +16,9 @@ from winch_friction.identification.prior import supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, combined, fit_system, second_loop
 from winch_friction.identification.system_identification import identify_system, winch_seed
 from winch_friction.identification.verification import test_errors as errors_of
+from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import RPM
+from winch_friction.physics.units import BAR, RPM
 from winch_friction.records.model_file import load_model, save_model
 
 
@@ -181,3 +184,26 @@ def test_what_cannot_be_identified_says_so(crane, truth, motor, spread):
     still = cycle(truth, crane, "still.csv", 215, 79, speeds=(1,))
     with pytest.raises(InputError, match=r"still.csv: no stretch of constant speed was found; too few plateaus"):
         identify_system([still], crane, motor, spread)
+
+
+def test_what_the_motor_model_knows_to_be_wrong_is_taken_out_of_the_tests(runs, crane, truth, spread):
+    """Logs with an offset and a tare on a crane file with a wrong radius: identified as from right ones."""
+    motor = truth.only("motor")
+    known = (
+        Correction("pressure_offset", 3 * BAR), Correction("tare_load", -1.5e3), Correction("layer_radius", 0.04),
+    )  # fmt: skip
+    radii = tuple(radius - 0.04 for radius in crane.drum.layer_radii)
+    declared = replace(crane, drum=replace(crane.drum, layer_radii=radii))
+    logs = [
+        replace(run, columns={
+            **run.columns, "main.pressure_a": run["main.pressure_a"] + 3 * BAR, "hook_load": run["hook_load"] + 1.5e3,
+        })
+        for run in runs
+    ]  # fmt: skip
+    options = {"restarts": 1, "max_evaluations": 200}
+    right = identify_system(runs, crane, motor, spread, complex_options=options)
+    found = identify_system(logs, declared, replace(motor, corrections=known), spread, complex_options=options)
+    assert found.joint.model.values == pytest.approx(right.joint.model.values, rel=1e-4)
+    seed = winch_seed(found, declared, "my_crane", {})
+    assert seed.corrections == known
+    assert seed.crane == crane.name

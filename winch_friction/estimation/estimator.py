@@ -20,6 +20,7 @@ from winch_friction.estimation.interval import FrictionFunctions, Intervals
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import Accepted, HangingLoad, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
+from winch_friction.physics.corrections import SampleCorrector
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
@@ -43,7 +44,8 @@ class FrictionEstimator:
     """
 
     def __init__(self, crane: Crane, seed_model: FrictionModel, config: EstimatorConfig | None = None) -> None:
-        self.crane, self.seed = crane, seed_model
+        self._correct = SampleCorrector(crane, seed_model)  # refuses by name what only a whole run can be rid of
+        self.crane, self.seed = self._correct.crane, seed_model
         self.config = config or EstimatorConfig()
         self._parameters = ScaledParameters(seed_model, self.config)
         self._enabled = True
@@ -70,7 +72,8 @@ class FrictionEstimator:
 
     # -- one sample
     def step(self, sample: Sample) -> Estimate:
-        """Take one sample."""
+        """Take one sample as it was measured; what the seed knows to be wrong with it is taken out first."""
+        sample = self._correct(sample)
         if not usable(sample, self.crane):
             return self._rejected(sample, NAN, NAN)
         if self._last is None:

@@ -15,6 +15,7 @@ from winch_friction.identification.joint_fit import JointFit, joint_fit, observa
 from winch_friction.identification.plateaus import Plateau, PlateauRule, find_plateaus
 from winch_friction.identification.prior import UnitSpread, supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, EQUATION_10, Loop, fit_system, second_loop
+from winch_friction.physics.corrections import corrected, corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -88,11 +89,16 @@ def identify_system(
     rule: PlateauRule | None = None,
     complex_options: Mapping[str, int] | None = None,
 ) -> SystemIdentification:
-    """Everything from logged tests and a motor model with covariance; `complex_options`: restarts, max_evaluations."""
+    """Everything from logged tests and a motor model with covariance; `complex_options`: restarts, max_evaluations.
+
+    What the motor model's corrections say is wrong with the logs and the crane is taken out of both first.
+    """
     if not runs:
         raise InputError("identify system: no logged test was given")
-    tests = tuple(read_test(run, crane, rule) for run in runs)
-    others = tuple(read_test(run, crane, rule) for run in held_out)
+    as_given = crane
+    crane = corrected_crane(as_given, motor.corrections)
+    tests = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in runs)
+    others = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in held_out)
     data = curve_data([test.curve for test in tests])
     loops = tuple(second_loop(data, motor))
     prior = winch_prior(supplier_prior(motor, spread), loops[0].system, "joint fit")
@@ -140,4 +146,7 @@ def winch_seed(found: SystemIdentification, crane: Crane, name: str, provenance:
         **provenance,
     }
     constants = {"gear_ratio": crane.gear_ratio, **joint.model.constants}
-    return replace(joint.model, name=name, constants=constants, provenance=said)
+    return replace(
+        joint.model, name=name, constants=constants, provenance=said, corrections=found.motor.corrections,
+        crane=crane.name,
+    )  # fmt: skip

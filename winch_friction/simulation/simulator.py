@@ -19,6 +19,7 @@ from winch_friction.simulation.assembly import (
 )
 from winch_friction.simulation.control.settings import CONTROL_STATES
 from winch_friction.simulation.hidden.catalogue import apply_effects
+from winch_friction.simulation.model_errors import put_errors
 from winch_friction.simulation.plant.friction_kernel import friction_kernel
 from winch_friction.simulation.plant.loop import run_periods
 from winch_friction.simulation.plant.point import POINT_LENGTH
@@ -43,6 +44,9 @@ class SimulationResult:
 class Simulator:
     """A crane in a scenario. `model` is the friction's truth; `hidden` adds effects as (name, size), 1 = typical.
 
+    The model's corrections are true too: sensors, geometry, load and inertia of the plant have the errors that they
+    speak of, so that model and log agree.
+
     `step` advances one control period. The sea, the sensors' noise and the controller's are drawn from `seed`.
     """
 
@@ -65,6 +69,7 @@ class Simulator:
         self.channels = channels(scenario)
         pairs = (*scenario.hidden.items(), *(hidden.items() if isinstance(hidden, Mapping) else hidden))
         self.hidden = tuple((str(name), float(size)) for name, size in pairs)
+        put_errors(model, scenario, crane, self._plant, self.channels)
         self._torque = apply_effects(self.hidden, self._plant, self.channels, crane.drum.layer_radii)
         self._draw(seed)
         self._reset()

@@ -1,0 +1,70 @@
+"""The errors that a model's corrections speak of, put into plant and sensors: the log then shows what they take out."""
+
+import numpy as np
+
+from winch_friction.physics.corrections import affected, corrected_crane
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Action, Correction
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.simulation.scenario import Scenario
+from winch_friction.simulation.sensors.channels import Channels
+
+# what the plant makes by itself, and the hidden effect to ask it for
+_OF_THE_PLANT = {
+    Action.WARMTH: "accumulator_thermal",
+    Action.HEAT: "accumulator_thermal",
+    Action.SLIP: "slip_leakage",
+}
+
+
+def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np.ndarray, channels: Channels) -> None:
+    """Change plant and channel settings, in place, so that the model's corrections give the truth back.
+
+    The crane file is what the log is read with: its radius and inertia are wrong, the plant's are right. Raises
+    `InputError` by name for what the plant makes by itself.
+    """
+    for each in model.corrections:
+        action = each.declared.action
+        if action in _OF_THE_PLANT:
+            raise InputError(
+                f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
+                f"of the model and use --hide {_OF_THE_PLANT[action]}"
+            )
+        if action in (Action.OFFSET, Action.SCALE, Action.DELAY):
+            _put_signal(each, channels)
+        elif action is Action.MASS:
+            _put_mass(each, scenario, plant[0])
+    _put_geometry(model, scenario, crane, plant[0])
+    # a signal that comes early means that all the others come late
+    channels.settings["delay"] -= min(0.0, float(channels.settings["delay"].min()))
+
+
+def _put_signal(correction: Correction, channels: Channels) -> None:
+    groups = dict.fromkeys(name.rpartition(".")[0] for name in channels.names if "." in name)
+    columns = affected(correction, groups)
+    for name, row in zip(channels.names, channels.settings, strict=True):
+        if name not in columns:
+            continue
+        if correction.declared.action is Action.OFFSET:
+            row["offset"] += correction.value
+        elif correction.declared.action is Action.SCALE:
+            row["scale"] *= 1.0 + correction.value
+        else:
+            row["delay"] += correction.value
+
+
+def _put_mass(correction: Correction, scenario: Scenario, plant: np.void) -> None:
+    if "wire_out" in correction.declared.reads:
+        plant["wire_mass"] += correction.value
+        plant["mass"] += correction.value * scenario.wire_out
+    else:
+        plant["mass"] += correction.value
+
+
+def _put_geometry(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np.void) -> None:
+    true = corrected_crane(crane, model.corrections)
+    ratio = true.drum.radius(scenario.wire_layer) / crane.drum.radius(scenario.wire_layer)
+    plant["radius"] *= ratio
+    plant["metres_per_radian"] *= ratio
+    plant["inertia"] += true.inertia - crane.inertia

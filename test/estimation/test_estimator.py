@@ -281,6 +281,8 @@ def test_wrong_settings_are_refused(content, said):
 
 def test_a_seed_without_covariance_gets_a_default_sigma(crane, seed):
     each = FrictionEstimator(crane, seed.with_covariance(None), EstimatorConfig(default_std=0.1))
+    assert "states no std: 10 % of each value is assumed" in each.status()["prior"]
+    assert FrictionEstimator(crane, seed).status()["prior"] == "as the seed states it"
     assert [p.std for p in each.parameters()] == pytest.approx([0.1 * abs(v) for v in seed.values])
 
 

@@ -65,6 +65,26 @@ def test_a_wrong_users_file_is_one_line(tmp_path, text, said):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("declared", "said"),
+    [
+        ("'k_test', 'bananas', 1.0", "parameter 'k_test': unit 'bananas' is not a product of SI units"),
+        ("'k_test', 'bar', 1.0", "unit 'bar' is not a product of SI units"),
+        ("'k_test', '', 1.0", "unit '' is not"),
+        ("'k_test', 'N*m', -1.0", "typical value -1 is outside its bounds 0 ... inf"),
+        ("'k_test', 'N*m', float('nan')", "typical value nan is outside"),
+        ("'k_test', 'N*m', 1.0, lower=3.0, upper=2.0", "outside its bounds 3 ... 2"),
+    ],
+)
+def test_a_parameter_that_cannot_be_is_refused_where_it_is_declared(tmp_path, declared, said):
+    path = tmp_path / "wrong.py"
+    path.write_text(f"from winch_friction.physics.friction import Parameter\nParameter({declared})\n")
+    with pytest.raises(InputError, match=said) as refused:
+        load_file(path)
+    assert "wrong.py" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
 @pytest.mark.parametrize("name", ["missing.py", "."])
 def test_a_missing_users_file_is_one_line(tmp_path, name):
     with pytest.raises(InputError, match="not a readable Python file of terms"):

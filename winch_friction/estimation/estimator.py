@@ -22,6 +22,7 @@ from winch_friction.estimation.sample import Accepted, HangingLoad, accepted, sa
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.corrections import SampleCorrector
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.identity import with_stated_std
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
@@ -45,9 +46,10 @@ class FrictionEstimator:
 
     def __init__(self, crane: Crane, seed_model: FrictionModel, config: EstimatorConfig | None = None) -> None:
         self._correct = SampleCorrector(crane, seed_model)  # refuses by name what only a whole run can be rid of
-        self.crane, self.seed = self._correct.crane, seed_model
         self.config = config or EstimatorConfig()
-        self._parameters = ScaledParameters(seed_model, self.config)
+        self.crane = self._correct.crane
+        self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
+        self._parameters = ScaledParameters(self.seed, self.config)
         self._enabled = True
         self.reset()
 
@@ -201,6 +203,7 @@ class FrictionEstimator:
         return {
             "state": self._state,
             "enabled": self._enabled,
+            "prior": self.assumed or "as the seed states it",
             "drum_torque": self.drum_torque,
             "noise_factor": math.sqrt(self._filter.noise_factor),
             "nis_mean": self.consistency.last_mean,

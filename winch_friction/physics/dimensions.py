@@ -9,17 +9,17 @@ from collections.abc import Mapping
 
 from winch_friction.physics.errors import InputError
 
-Dimension = Mapping[str, float]  # exponents of kg, m, s, K; absent: 0
+Dimension = Mapping[str, float]  # exponents of kg, m, s, K, A; absent: 0
 _UNITS: dict[str, dict[str, float]] = {
     "1": {}, "rad": {}, "kg": {"kg": 1}, "m": {"m": 1}, "s": {"s": 1}, "K": {"K": 1}, "degC": {"K": 1},
     "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
-    "W": {"kg": 1, "m": 2, "s": -3}, "Hz": {"s": -1},
+    "W": {"kg": 1, "m": 2, "s": -3}, "Hz": {"s": -1}, "A": {"A": 1},
 }  # fmt: skip
 _TOKEN = re.compile(r"([*/]?)([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
 
 
 def dimension_of(unit: str) -> dict[str, float]:
-    """Exponents of kg, m, s and K; `InputError` for what is no SI unit."""
+    """Exponents of kg, m, s, K and A; `InputError` for what is no SI unit."""
     total: Counter[str] = Counter()
     at = 0
     for token in _TOKEN.finditer(unit):

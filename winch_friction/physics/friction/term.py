@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from winch_friction.physics.dimensions import dimension_of
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import symbols
 
@@ -26,7 +27,8 @@ class Parameter:
     """A parameter of a term, declared once.
 
     `unit` is SI; `lower` and `upper` bound every fit; `typical` is a value of the expected size (start of a fit, scale
-    of a finite difference); `shape` marks a parameter in which the equation is not linear.
+    of a finite difference); `shape` marks a parameter in which the equation is not linear. Raises `InputError` for a
+    unit that is none, and for a typical value outside the bounds.
     """
 
     name: str
@@ -36,6 +38,17 @@ class Parameter:
     upper: float = float("inf")
     shape: bool = False
     doc: str = ""
+
+    def __post_init__(self) -> None:
+        try:
+            dimension_of(self.unit)
+        except InputError as error:
+            raise InputError(f"parameter '{self.name}': {error}") from None
+        if not self.lower <= self.typical <= self.upper:
+            raise InputError(
+                f"parameter '{self.name}': typical value {self.typical:g} is outside its bounds "
+                f"{self.lower:g} ... {self.upper:g}"
+            )
 
     @property
     def symbol(self) -> sp.Symbol:

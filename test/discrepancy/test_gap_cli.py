@@ -80,7 +80,7 @@ def test_the_report_opens_offline_without_console_errors(folder):
          f"--user-data-dir={folder / 'profile'}", "--dump-dom", page.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     )  # fmt: skip
-    assert "Before and after on locked runs" in opened.stdout
+    assert "Proof on locked runs" in opened.stdout
     assert "CONSOLE" not in opened.stderr
 
 

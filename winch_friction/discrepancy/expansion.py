@@ -105,7 +105,12 @@ def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> 
     """
     if not crane.drive.hydraulic:
         return {}
-    return {run.name: _estimated_load(run, crane, model) for run in runs if "hook_load" not in run}
+    return {run.name: _estimated_load(run, crane, model) for run in runs if not _weighed(run)}
+
+
+def _weighed(run: Run) -> bool:
+    """Whether a column says what hangs there."""
+    return any(name in run for name in ("hook_load", "rope_force", "load_torque"))
 
 
 def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:

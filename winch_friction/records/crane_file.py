@@ -6,7 +6,7 @@ from typing import Any
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane, Drum
-from winch_friction.physics.winch.drive import Drive
+from winch_friction.physics.winch.drive import SLOWEST_FOR_POWER, Drive
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
 
@@ -43,16 +43,19 @@ def crane_from_content(content: Any, where: str) -> Crane:
 
 
 def _drive(top: Section) -> Drive:
-    """`drive: hydraulic`, or a mapping where the kind needs a number: `{kind: current, torque_constant: ...}`."""
+    """`drive: hydraulic`, or a mapping where the kind needs a number: `{kind: current, torque_constant: ...}`, or
+    `{kind: power, slowest_speed: ...}`.
+    """
     given = top.need("drive")
     if not isinstance(given, Mapping):
         given = {"kind": given}
     section = Section(given, f"{top.where}: drive")
     kind = section.text("kind")
     constant = section.quantity("torque_constant", "N*m/A") if "torque_constant" in section else 0.0
+    slowest = section.quantity("slowest_speed", "rad/s") if "slowest_speed" in section else SLOWEST_FOR_POWER
     section.close()
     try:
-        return Drive(kind, constant)
+        return Drive(kind, constant, slowest)
     except InputError as error:
         raise InputError(f"{top.where}: {error}") from None
 

@@ -98,8 +98,8 @@ def _check_schema(top: Section) -> None:
 
 def _term_names(top: Section) -> list[str]:
     names = top.need("terms")
-    if not isinstance(names, list) or not names or len(set(map(str, names))) != len(names):
-        raise InputError(f"{top.where}: terms must be a list of different term names")
+    if not isinstance(names, list) or len(set(map(str, names))) != len(names):
+        raise InputError(f"{top.where}: terms must be a list of different term names, [] for a winch without friction")
     return [str(name) for name in names]
 
 

@@ -30,7 +30,7 @@ def shipped_friction() -> list[Candidate]:
             reversal_rival=True),
         _of("dwell_stiction", {"g_dw": (0.4,), "d_dw": (0.5, 1.0, 2.0, 5.0)}, reversal_gain=0.1, reversal_rival=True),
         _of("gear_asymmetry", {"b_g": (0.0,)}),
-        _of("gear_load_loss"),
+        _of("gear_load_loss", plain=True),
         _of("sheave_bending", presumes=("gear_load_loss",)),
         _of("wear_drift", shapes=_observed_time, presumes=COULOMB),
         _of("low_displacement_loss"),

@@ -44,7 +44,8 @@ def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     """The load's torque on the layers concerned."""
     # the radius acts twice on the load's inertia: on its lever and on its acceleration
-    turning = run.load * (run.radius / run.gear_ratio) ** 2 * run.acceleration
+    inertia = 0.0 if run.tension_measured else run.load * (run.radius / run.gear_ratio) ** 2
+    turning = inertia * run.acceleration
     torque = _hanging(run, run.load) + turning
     layer = run.channels.get("wire_layer")
     if values["layer"] == 0.0 or layer is None:
@@ -98,6 +99,9 @@ def geometry_candidates() -> list[Candidate]:
             _radius_shapes,
             kind="geometry",
             needs=("hook_load",),
+            plain=True,
         ),
-        Candidate("inertia_error", r"\Delta J\,\dot\omega", (dJ,), inertia_columns, single_shape, kind="inertia"),
+        Candidate(
+            "inertia_error", r"\Delta J\,\dot\omega", (dJ,), inertia_columns, single_shape, kind="inertia", plain=True
+        ),
     ]

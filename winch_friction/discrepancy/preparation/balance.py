@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, smooth
+from winch_friction.discrepancy.preparation.grid import Grid, dilated, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
@@ -80,6 +80,13 @@ def _loaded(group: GroupSignals, torque: FloatArray) -> GroupSignals:
     return replace(group, pressure=pressure, pressure_sum=np.abs(pressure) + 2.0 * group.low_pressure)
 
 
+def _filled(values: FloatArray) -> FloatArray:
+    """Straight lines over what is not known."""
+    good = np.isfinite(values)
+    samples = np.arange(len(values))
+    return np.interp(samples, samples[good], values[good]) if good.any() else np.zeros(len(values))
+
+
 @dataclass(frozen=True)
 class Accounted:
     """What effects found so far add along a run, N m at the shaft: load on the motors, and what the passive side's
@@ -130,7 +137,7 @@ class Balancing:
         total = self.crane.motor_total(())
         point = self._point(load, ())
         predicted = frictionless + self.model.torque(point)
-        measured = self._smoothed(self.crane.drive.of_run(Run(self.run.name, self.grid.columns), self.crane))
+        measured = self._smoothed(_filled(self._logged_torque))
         return Balance(measured, predicted, (), point, self.model.jacobian(point), float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
@@ -150,6 +157,18 @@ class Balancing:
         """Groups with their measured pressures and the drive torque that these make, whatever the load does."""
         groups = measured_groups(self.grid.columns, self.run, self.crane, self.motion.window)
         return groups, self._smoothed(drive_torque(self.grid.columns, groups))
+
+    @cached_property
+    def _logged_torque(self) -> FloatArray:
+        """Torque of all motors of a drive without pressures, N m; NaN where it is not known, as of a power at rest."""
+        return np.asarray(self.crane.drive.of_run(Run(self.run.name, self.grid.columns), self.crane), float)
+
+    @cached_property
+    def known(self) -> np.ndarray:
+        """Samples in which the drive's torque is known, and with it all that smoothing takes it from."""
+        if self.crane.drive.hydraulic:
+            return np.ones(len(self.grid.time), bool)
+        return ~dilated(~np.isfinite(self._logged_torque), self.motion.window // 2)
 
     def _smoothed(self, torque: FloatArray) -> FloatArray:
         """With the acceleration's kernel: what that takes out of one side must not stay in the other."""

@@ -51,18 +51,20 @@ def prepare(
     motion = motion_of(grid, crane, run.name, turning)
     balancing = Balancing(run, crane, model, grid, motion, accounted or Accounted())
     mode, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
-    used = motion.used & _settled(grid, mode)
+    used = motion.used & _settled(grid, mode) & balancing.known
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
     return PreparedRun(
         name=run.name, start=float(run.time[0]), dt=grid.dt, time=grid.time, speed=motion.speed,
         acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
-        load_acceleration=hanging.acceleration, radius=hanging.radius, drum_torque=hanging.drum_torque,
+        tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
+        drum_torque=hanging.drum_torque,
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
         load_friction=_load_friction(model, balance.point), predicted=balance.predicted, jacobian=balance.jacobian,
         from_speed=balance.predicted - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
-        constants=_constants(crane, model), unit_torque=balance.unit_torque, used=used & grid.valid & ~spikes,
-        spikes=spikes, present=frozenset(run.columns),
+        constants=_constants(crane, model), unit_torque=balance.unit_torque,
+        used=used & grid.valid & ~spikes,
+        spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane),
     )  # fmt: skip
 
@@ -122,7 +124,7 @@ def channels_of(
 ) -> Mapping[str, FloatArray]:
     """Signals over the grid by name; predicted pressures stand for the measured ones, the angle is the drum's, rad."""
     found: dict[str, FloatArray] = {"motor_speed": np.abs(motion.speed), "acceleration": motion.acceleration}
-    if crane.drive.hydraulic or "hook_load" in grid.columns:
+    if crane.drive.hydraulic or load.tension_measured or "hook_load" in grid.columns:
         found["hook_load"] = load.mass
     for group in groups:
         found[f"{group.name}.pressure"] = group.pressure

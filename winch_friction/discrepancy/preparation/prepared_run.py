@@ -36,6 +36,7 @@ class PreparedRun:
     direction: FloatArray
     angle: FloatArray
     load: FloatArray
+    tension_measured: bool  # the load is a measured force, which has its mass's inertia in it
     load_acceleration: FloatArray
     radius: FloatArray
     drum_torque: FloatArray
@@ -53,7 +54,7 @@ class PreparedRun:
     unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
     used: np.ndarray  # samples of the regime: moving, or just reversed
     spikes: np.ndarray
-    present: frozenset[str]  # columns that the file had
+    present: frozenset[str]  # columns that the file had; `hook_load` also where a measured force stands for it
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
 
     @property

@@ -1,4 +1,8 @@
-"""What hangs on the wire: mass, radius, and the acceleration that it takes part in."""
+"""What hangs on the wire: mass, radius, and the acceleration that it takes part in.
+
+Where the rope's force, or the load's torque at the shaft, was measured, that is the load with all it does, and the mass
+behind it need not be known.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -23,6 +27,7 @@ class SuspendedLoad:
     lever: FloatArray  # m, radius over gear ratio
     acceleration: FloatArray
     heave: FloatArray
+    tension_measured: bool = False  # then `mass` is the force over gravity, and its inertia is in it
 
     @property
     def drum_torque(self) -> FloatArray:
@@ -48,18 +53,28 @@ class SuspendedLoad:
 
 
 def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> SuspendedLoad:
-    """The load on a rigid wire; `known` kg where the run has no `hook_load` (NaN: none)."""
+    """The load on a rigid wire; `known` kg where the run has neither `hook_load` nor a measured force (NaN: none)."""
     columns, size = grid.columns, len(grid.time)
+    radius, heave = _radius(grid, crane), np.zeros(size)
+    tension = _tension(grid, radius, crane)
+    if tension is not None:
+        mass = smooth(tension, motion.window) / GRAVITY
+        return SuspendedLoad(mass, radius, radius / crane.gear_ratio, np.zeros(size), heave, tension_measured=True)
     mass = columns.get("hook_load", np.full(size, 0.0 if np.isnan(known) else known))
     steady = np.median(mass)
     is_constant = np.std(mass) <= CONSTANT * abs(steady)
     mass = np.full(size, steady) if is_constant else smooth(mass, 5 * motion.window)
-    radius = _radius(grid, crane)
-    heave = np.zeros(size)
     if "heave_velocity" in columns:
         heave = np.gradient(smooth(columns["heave_velocity"], motion.window), grid.dt)
     lever = radius / crane.gear_ratio
     return SuspendedLoad(mass, radius, lever, lever * motion.acceleration + heave, heave)
+
+
+def _tension(grid: Grid, radius: FloatArray, crane: Crane) -> FloatArray | None:
+    """The rope's force in N as it was measured, directly or as a torque at the motor shaft; None where it was not."""
+    if "load_torque" in grid.columns:
+        return grid.columns["load_torque"] * crane.gear_ratio / radius
+    return None if "hook_load" in grid.columns else grid.columns.get("rope_force")
 
 
 def _radius(grid: Grid, crane: Crane) -> FloatArray:

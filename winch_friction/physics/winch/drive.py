@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from winch_friction.physics.winch.crane import Crane
 
 HYDRAULIC, ELECTRIC, POWER, CURRENT = "hydraulic", "electric", "power", "current"
-# rad/s; a power says nothing of the torque of a shaft that hardly turns: 1 % of 100 kW there is 200 N m
+# rad/s; a power says nothing of the torque of a shaft that hardly turns: 1 % of 100 kW there is 200 N m. A crane file
+# says otherwise where its shaft is a slow one
 SLOWEST_FOR_POWER = 5.0
 
 _Read = Callable[[str], Any]  # a channel's name -> its value, or its column
@@ -33,17 +34,21 @@ class Drive:
     `kind`: 'hydraulic' (pressures and displacement of every motor group), 'electric' (`motor_torque` per motor),
     'power' (`mechanical_power` of all motors over the speed) or 'current' (`motor_current` per motor times
     `torque_constant`, N m/A, gear and efficiency of the motor in it). Raises `InputError` for another kind, and for a
-    constant that is missing, not positive, or given to a drive that has none.
+    constant that is missing, not positive, or given to a drive that has none. `slowest_speed` rad/s: below it a power
+    is not taken for a torque.
     """
 
     kind: str = HYDRAULIC
     torque_constant: float = 0.0
+    slowest_speed: float = SLOWEST_FOR_POWER
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise InputError(f"drive must be one of {', '.join(KINDS)}, found '{self.kind}'")
         if (self.kind == CURRENT) != (self.torque_constant > 0.0):
             raise InputError("a drive of kind 'current', and no other, needs a torque_constant above 0 N*m/A")
+        if not self.slowest_speed > 0.0:
+            raise InputError(f"a drive's slowest_speed must be above 0 rad/s, found {self.slowest_speed:g}")
 
     @property
     def hydraulic(self) -> bool:
@@ -70,7 +75,7 @@ class Drive:
                 )
             )
         speed = sample.motor_speed
-        if self.kind == POWER and not abs(speed) >= SLOWEST_FOR_POWER:
+        if self.kind == POWER and not abs(speed) >= self.slowest_speed:
             return math.nan
         return float(self._torque(lambda name: getattr(sample, name), crane, speed))
 
@@ -83,12 +88,12 @@ class Drive:
             )
         speed = run["motor_speed"]
         if self.kind == POWER:
-            speed = np.where(np.abs(speed) >= SLOWEST_FOR_POWER, speed, np.nan)
+            speed = np.where(np.abs(speed) >= self.slowest_speed, speed, np.nan)
         return self._torque(run.__getitem__, crane, speed)
 
     def lacking(self, sample: Sample) -> tuple[str, ...]:
         """Channels that the torque of a sample needs and that it does not have, or has implausible."""
-        if self.kind == POWER and abs(sample.motor_speed) < SLOWEST_FOR_POWER:
+        if self.kind == POWER and abs(sample.motor_speed) < self.slowest_speed:
             return ("speed enough to tell a torque from the power",)
         if not self.hydraulic:
             return tuple(name for name in self.channels if not plausible(name, getattr(sample, name)))

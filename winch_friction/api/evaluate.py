@@ -14,16 +14,17 @@ from winch_friction.physics.winch.crane import Crane
 def torque(model: FrictionModel, run: Run, crane: Crane, *, load: float | None = None) -> FloatArray:
     """Friction torque along a run, (n,) N m at the motor shaft, all motors; positive when it resists hoisting.
 
-    The load comes from the run's `hook_load`, else from `load` in kg (the whole hanging mass). Raises `InputError` for
-    a channel that the model reads and the run lacks.
+    The load comes from the run's `hook_load`, else from `load` in kg (the whole hanging mass). What the model says is
+    wrong with the signals (its corrections) is taken out first; a delay shortens the run by what it shifts. Raises
+    `InputError` for a channel that the model reads and the run lacks.
 
     >>> import winch_friction as wf
     >>> run = wf.from_frame({"time": [0.0, 0.1], "motor_speed [rpm]": [600.0, -600.0], "motor_torque": [0.0, 0.0]})
     >>> wf.torque(wf.load_model("emps_symmetric"), run, wf.load_crane("emps"), load=0.0).round(3)
     array([ 12803.507, -12809.837])
     """
-    at = _points(run, crane, load)
-    return np.array(np.broadcast_to(model.torque(at), (len(run),)), float)
+    at, time = _points(model, run, crane, load)
+    return np.array(np.broadcast_to(model.torque(at), (len(time),)), float)
 
 
 def contributions(model: FrictionModel, run: Run, crane: Crane, *, load: float | None = None) -> Any:
@@ -36,8 +37,9 @@ def contributions(model: FrictionModel, run: Run, crane: Crane, *, load: float |
     """
     from winch_friction.physics.frames import library
 
-    parts = model.contributions(_points(run, crane, load))
-    frame = library("pandas", "desk").DataFrame(parts, index=run.time)
+    at, time = _points(model, run, crane, load)
+    parts = model.contributions(at)
+    frame = library("pandas", "desk").DataFrame(parts, index=time)
     frame.index.name = "time"
     frame.attrs["units"] = {"time": "s", **dict.fromkeys(parts, "N*m")}
     return frame
@@ -52,7 +54,7 @@ def jacobian(model: FrictionModel, run: Run, crane: Crane, *, load: float | None
     array([[  1.  ,  62.83,   1.  ],
            [ -1.  , -62.83,   1.  ]])
     """
-    return model.jacobian(_points(run, crane, load))
+    return model.jacobian(_points(model, run, crane, load)[0])
 
 
 def friction_curve(
@@ -86,10 +88,13 @@ def friction_curve(
     return frame
 
 
-def _points(run: Run, crane: Crane, load: float | None) -> tuple[Any, ...]:
+def _points(model: FrictionModel, run: Run, crane: Crane, load: float | None) -> tuple[Any, FloatArray]:
+    """Operating points and times of the run without the errors that the model knows of."""
+    from winch_friction.physics.corrections import corrected
     from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
 
     if "hook_load" not in run and load is None:
         raise InputError(f"{run.name}: no column 'hook_load'; give load= in kg, the whole hanging mass")
-    drum_torque = run_drum_torque(run, crane, float("nan") if load is None else float(load))
-    return run_operating_points(run, crane, drum_torque=drum_torque)
+    right, machine = corrected(run, crane, model)
+    drum_torque = run_drum_torque(right, machine, float("nan") if load is None else float(load))
+    return run_operating_points(right, machine, drum_torque=drum_torque), right.time

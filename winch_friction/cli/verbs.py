@@ -38,6 +38,11 @@ VERBS = (
     Verb("gap", "gap", "Where model and runs disagree, the missing effect's name, the repaired model."),
     Verb("fleet", "fleet", "The same verbs over many bags, on Dask."),
     Verb("bench", "bench", "Speed as ratios against what one would use instead."),
+    Verb("list", "list", "What there is by name: models, cranes, scenarios, terms, effects, units."),
+    Verb("show", "show", "A model as a friction curve; a crane, scenario, effect or term with its physics."),
+    Verb("plot", "plot", "Runs as a page: every channel, zoomed together."),
+    Verb("compare", "compare", "Two models against each other, on a grid or on runs."),
+    Verb("doctor", "doctor", "Whether this machine has what it takes: libraries, ROS, DDS, clock, configuration."),
     Verb("terms", "terms", "The declared friction terms: equations, parameters, sources."),
     Verb("convert", "convert", "Run files from one format to another; the EMPS benchmark to a run."),
 )

@@ -38,6 +38,13 @@ def term_html(term: Term) -> str:
     return formulas + symbol_table(term, references)
 
 
+def written(term: Term) -> str:
+    """The term's torque in one line of text, with the symbols that people know."""
+    expression, references = _prepared(term.torque)
+    known = ", ".join(f"{symbol} = {value / RPM:.4g} rpm" for symbol, value in references.items())
+    return str(expression).replace("**", "^") + (f"   ({known})" if known else "")
+
+
 def latex_html(law: str) -> str:
     """A law that is given in LaTeX, as MathML; its source where the converter is absent."""
     try:

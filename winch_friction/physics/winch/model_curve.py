@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import FloatArray
@@ -47,6 +48,7 @@ def model_curve(
     `speed` in rad/s, default 5 ... 2000 rpm hoisting; the group that drives is `main`, or the crane's first. Raises
     `InputError` for a load, setting or speed that cannot be.
     """
+    crane = corrected_crane(crane, model.corrections)
     setting = crane.max_displacement if displacement is None else float(displacement)
     if load < 0.0 or not np.isfinite(load):
         raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")

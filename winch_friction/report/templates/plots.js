@@ -95,11 +95,11 @@
       margin: {l: narrow() ? 52 : 66, r: 12, t: 10, b: 48}, hovermode: "x unified", hoverlabel: {bgcolor: c.card, bordercolor: c.faint, font: {color: c.ink}},
       legend: {orientation: "h", y: 1.0, yanchor: "bottom", x: 0, font: {color: c.ink}}, barmode: "group", dragmode: narrow() ? false : "zoom",
       modebar: {bgcolor: "rgba(0,0,0,0)", color: c.faint, activecolor: c.ink}};
-    const gap = 0.05, height = (1 - gap * (rows - 1)) / rows;
+    const gap = Math.min(0.05, 0.2 / rows), height = (1 - gap * (rows - 1)) / rows;
     for (let row = 0; row < rows; row++) {
       const top = 1 - row * (height + gap), title = content.rows[row] || "";
       made["yaxis" + (row ? row + 1 : "")] = {...axisLook(c), domain: [Math.max(0, top - height), top],
-        title: {...axisLook(c).title, text: narrow() ? title.replace(/ \[/, "<br>[") : title}};
+        title: {...axisLook(c).title, text: narrow() || rows > 3 ? title.replace(/ \[/, "<br>[") : title}};
     }
     made.xaxis = {...axisLook(c), anchor: "y" + (rows > 1 ? rows : ""), title: {...axisLook(c).title, text: content.x}};
     return made;

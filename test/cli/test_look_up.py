@@ -1,0 +1,104 @@
+"""The verbs with which one looks around: list, show, terms, compare, plot, doctor; and completion of names."""
+
+import json
+
+import numpy as np
+import pytest
+
+import winch_friction as wf
+from winch_friction.cli import names
+from winch_friction.cli.main import run
+
+
+@pytest.mark.parametrize("kind", sorted(names.KINDS))
+def test_everything_that_has_a_name_is_listed(kind, capsys):
+    assert run(["list", kind, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["name"] for row in rows] == sorted(names.KINDS[kind].names(), key=[r["name"] for r in rows].index)
+    assert len(rows) >= 2
+
+
+def test_a_list_says_what_there_is(capsys):
+    assert run(["list"]) == 0
+    assert "scenarios" in capsys.readouterr().out
+    assert run(["list", "boats"]) == 2
+    assert "models" in capsys.readouterr().err
+
+
+def test_a_model_is_shown_as_a_curve_and_as_a_page(tmp_path, capsys):
+    page = tmp_path / "model.html"
+    assert run(["show", "a6vm215_crane2", "--load", "100", "--out", str(page)]) == 0
+    shown = capsys.readouterr().out
+    assert "rpm" in shown
+    assert "* total" in shown
+    assert "<math" in page.read_text()
+    assert run(["show", "a6vm215_crane2", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    parts = np.sum([content["curve"]["terms_Nm"][name] for name in content["terms"]], axis=0)
+    assert np.allclose(parts, content["curve"]["torque_Nm"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["show", "crane_150t"], "gear_ratio"),
+        (["show", "ahc_55t_215"], "duration"),
+        (["show", "churning"], "2000 rpm"),
+        (["show", "tare_load"], "Hang the empty hook"),
+        (["terms", "stribeck"], "C4"),
+        (["terms", "--json"], '"stribeck"'),
+    ],
+)
+def test_a_name_is_explained(arguments, said, capsys):
+    assert run(arguments) == 0
+    assert said in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [["show", "nothing"], ["terms", "nothing"], ["compare", "a6vm215", "nothing"]])
+def test_an_unknown_name_is_one_line(arguments, capsys):
+    assert run(arguments) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_two_models_are_compared_on_a_grid_and_on_runs(tmp_path, capsys):
+    model = wf.load_model("a6vm215_crane2")
+    more = wf.save_model(model.with_values({"K4": 1.5 * model.value("K4")}), tmp_path / "more.yaml")
+    assert run(["compare", "a6vm215_crane2", str(more), "--json", "--out", str(tmp_path / "page.html")]) == 0
+    content = json.loads(capsys.readouterr().out)
+    motors = wf.load_crane("crane_150t").groups["main"]
+    assert content["rows"][0]["largest [N*m]"] == pytest.approx(0.5 * model.value("K4") * motors, rel=0.02)
+    assert content["rows"][0]["mostly by"].startswith("motor_coulomb")
+    result = wf.simulate("ahc_55t_215", wf.load_crane("crane_150t"), model, duration=4.0)
+    path = wf.write_run(result.run, tmp_path / "run.csv")
+    assert run(["compare", "a6vm215_crane2", str(more), str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["rows"][0]["RMS [N*m]"] > 50.0
+
+
+def test_a_run_is_drawn(tmp_path, capsys):
+    run_ = wf.from_frame({"time": [0.0, 1.0], "motor_speed [rpm]": [0.0, 60.0], "motor_torque": [0.0, 5.0]}, "a.csv")
+    path = wf.write_run(run_, tmp_path / "a.csv")
+    assert run(["plot", str(path), "--out", str(tmp_path / "a.html"), "--json"]) == 0
+    channels = {row["channel"]: row for row in json.loads(capsys.readouterr().out)["channels"]}
+    assert channels["motor_speed"]["largest"] == pytest.approx(60.0)
+    assert channels["motor_speed"]["unit"] == "rpm"
+    assert "figure" in (tmp_path / "a.html").read_text()
+
+
+def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys):
+    assert run(["doctor", "--no-dds", "--json"]) == 0
+    findings = json.loads(capsys.readouterr().out)
+    assert {"environment", "libraries", "configuration", "permissions", "clock"} <= {each["area"] for each in findings}
+
+
+def test_the_doctor_reports_a_domain_that_cannot_be(capsys, monkeypatch):
+    pytest.importorskip("rclpy")
+    monkeypatch.setenv("ROS_DOMAIN_ID", "500")
+    assert run(["doctor", "--no-dds", "--json"]) == 2
+    bad = [each for each in json.loads(capsys.readouterr().out) if each["state"] == "problem"]
+    assert [each["what"] for each in bad] == ["ROS_DOMAIN_ID"]
+
+
+def test_names_complete():
+    assert names.complete_model("a6vm215_cr") == ["a6vm215_crane1", "a6vm215_crane2", "a6vm215_crane2_loop2"]
+    assert "stribeck" in names.complete_shown("strib")
+    assert names.complete_kind("mo") == ["models"]

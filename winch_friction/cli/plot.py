@@ -1,0 +1,49 @@
+"""`winch-friction plot`: runs as a page with every channel, and a model's friction beside them."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.names import complete_crane, complete_model
+
+
+def command(
+    runs: Annotated[list[Path], typer.Argument(help="Run files: .csv, .parquet, rosbag2.")],
+    out: Annotated[Path, typer.Option(help="Page to write.")] = Path("plot.html"),
+    crane: Annotated[
+        str, typer.Option(help="Crane: for drum speeds, fractions and a model.", autocompletion=complete_crane)
+    ] = "",
+    model: Annotated[
+        str, typer.Option(help="Model whose friction is drawn beside.", autocompletion=complete_model)
+    ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Ranges of every channel as JSON.")] = False,
+) -> None:
+    """Draw runs: every channel in the units people read, zoomed together, data as CSV a click away.
+
+    Examples:
+
+      winch-friction plot runs/*.csv --out runs.html
+
+      winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
+    """
+    from winch_friction.physics.errors import InputError
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+    from winch_friction.records.runs import read_run
+    from winch_friction.report.run_page import channel_rows, write_run_page
+
+    if model and not crane:
+        raise InputError("plot: --model needs --crane")
+    machine = load_crane(crane) if crane else None
+    read = [read_run(path, machine) for path in progress(runs, "reading runs")]
+    for run in read:
+        show_warnings(run.warnings)
+    page = write_run_page(out, read, machine, load_model(model) if model else None)
+    rows = [row for run in read for row in channel_rows(run)]
+    if as_json:
+        show_json({"page": str(page), "channels": rows})
+        return
+    show_table("channels", list(rows[0]), [list(row.values()) for row in rows])
+    print(f"wrote {page}")

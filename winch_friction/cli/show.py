@@ -1,0 +1,203 @@
+"""`winch-friction show`: one model, crane, scenario, effect or term, in the terminal and as a page."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of
+from winch_friction.cli.optional import OptionalPath
+from winch_friction.physics.errors import InputError
+
+LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
+
+
+def command(
+    name: Annotated[
+        str,
+        typer.Argument(help="Model, crane, scenario, effect or term; a name or a file.", autocompletion=complete_shown),
+    ],
+    kind: Annotated[str, typer.Option(help=f"What it is, when a name stands for several: {', '.join(SHOWN)}.")] = "",
+    crane: Annotated[str, typer.Option(help="Crane on which a model is drawn.", autocompletion=complete_crane)] = "",
+    load: Annotated[float, typer.Option(help="Hanging mass for a model's curve, t.")] = 55.0,
+    out: Annotated[OptionalPath, typer.Option(help="Also write a page (.html), for a model or a term.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
+) -> None:
+    """Show what a name stands for: a model as a friction curve, a crane, a scenario, an effect or term.
+
+    Examples:
+
+      winch-friction show a6vm215_crane2
+
+      winch-friction show a6vm215_crane2 --load 100 --out model.html
+
+      winch-friction show churning
+    """
+    what = kind or kind_of(name) or _of_file(name)
+    if what not in SHOWN:
+        raise InputError(f"show: --kind '{what}' is none of {', '.join(SHOWN)}")
+    if out is not None and what not in ("model", "term", "effect"):
+        raise InputError(f"show: a page is drawn of models, terms and effects, not of a {what}; leave out --out")
+    if what == "model":
+        _model(name, crane, load, out, as_json)
+    elif what in ("effect", "term"):
+        show_physics(name, out, as_json)
+    else:
+        _content(name, what, as_json)
+
+
+def _of_file(name: str) -> str:
+    path = Path(name)
+    if not path.is_file():
+        raise InputError(f"show: '{name}' is neither a file nor a known name; 'winch-friction list' says what there is")
+    from winch_friction.records.strict_yaml import read_yaml
+
+    content = read_yaml(path)
+    schema = str(content.get("schema", "")) if isinstance(content, dict) else ""
+    return next((k for k in ("model", "crane", "scenario") if f".{k}/" in schema), "scenario")
+
+
+def curve_crane(model: Any, crane: str) -> Any:
+    """The crane that a model is drawn on: the given one, the model's own, else what fits its drive."""
+    from winch_friction.records.crane_file import load_crane
+
+    electric = not any({"pressure", "displacement"} & set(term.reads) for term in model.terms)
+    own = getattr(model, "crane", "")
+    return load_crane(crane or own or ("emps" if electric and "emps" in model.name else "crane_150t"))
+
+
+def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) -> None:
+    from winch_friction.physics.units import RPM
+    from winch_friction.physics.winch.model_curve import model_curve
+    from winch_friction.records.model_file import load_model
+
+    model = load_model(name)
+    machine = curve_crane(model, crane)
+    curve = model_curve(model, machine, load=1e3 * load)
+    rpm = curve.speed / RPM
+    if as_json:
+        parameters = {
+            p.name: {"value": v, "std": s, "unit": p.unit, "meaning": p.doc}
+            for p, v, s in zip(model.parameters, model.values, model.std.tolist(), strict=True)
+        }
+        show_json(
+            {
+                "name": model.name,
+                "crane": machine.name,
+                "load_t": load,
+                "terms": model.term_names,
+                "parameters": parameters,
+                "curve": {"speed_rpm": rpm, "torque_Nm": curve.torque, "std_Nm": curve.std, "terms_Nm": curve.parts},
+            }
+        )
+    else:
+        _draw_model(model, machine, curve, rpm)
+    if out is not None:
+        from winch_friction.report.curves import write_model_page
+
+        curves = [model_curve(model, machine, load=1e3 * each) for each in sorted({*LOADS[1:], load})]
+        print(f"wrote {write_model_page(out, model, curves, machine.name)}")
+
+
+def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
+    from winch_friction.cli.chart import chart
+    from winch_friction.report.tables import for_people, value_for_people
+
+    largest = sorted(curve.parts, key=lambda name: -float(abs(curve.parts[name]).max()))[:3]
+    lines = {"total": curve.torque, **{name: curve.parts[name] for name in largest}}
+    head = f"{model.name} on {machine.name}, {curve.load / 1e3:g} t: friction torque at the motor shaft [N*m]"
+    print(chart(rpm, lines, "rpm", head))
+    rows = [
+        [
+            p.name,
+            f"{value_for_people(v, p.unit):.4g}",
+            f"{value_for_people(s, p.unit):.2g}" if model.covariance is not None else "-",
+            for_people(p.unit),
+            p.doc,
+        ]
+        for p, v, s in zip(model.parameters, model.values, model.std.tolist(), strict=True)
+    ]
+    show_table(f"parameters of {', '.join(model.term_names)}", ("parameter", "value", "sigma", "unit", "meaning"), rows)
+
+
+def show_physics(name: str, out: Path | None, as_json: bool) -> None:
+    from winch_friction.physics.effects import effect_text
+    from winch_friction.physics.friction import registered_terms
+
+    text, term = effect_text(name), registered_terms().get(name)
+    if as_json:
+        show_json(
+            {
+                "name": name,
+                "title": text.title,
+                "physics": text.physics,
+                "usual_size": text.size,
+                "next": text.look,
+                "latex": term.latex if term else None,
+                "parameters": [
+                    {
+                        "name": p.name,
+                        "unit": p.unit,
+                        "typical": p.typical,
+                        "lower": p.lower,
+                        "upper": p.upper,
+                        "meaning": p.doc,
+                    }
+                    for p in (term.parameters if term else ())
+                ],
+            }
+        )
+        return
+    print(f"{name}: {text.title}\n\n{text.physics}")
+    if text.size:
+        print(f"usual size: {text.size}")
+    print(f"what to do: {text.look}")
+    if term is not None:
+        from winch_friction.report.equations import written
+
+        print(f"\n    T = {written(term)}\n")
+        print(f"reads {', '.join(term.reads) or 'nothing'}; {term.scope.value}; {term.source}")
+        rows = [[p.name, p.unit, p.typical, f"{p.lower:g} ... {p.upper:g}", p.doc] for p in term.parameters]
+        show_table("parameters, SI", ("parameter", "unit", "typical", "bounds", "meaning"), rows)
+    if out is not None:
+        _write_page(text, term, out)
+
+
+def _write_page(text: Any, term: Any, out: Path) -> None:
+    from winch_friction.report.base import TextSection, write_report
+    from winch_friction.report.equations import term_html
+    from winch_friction.report.tables import paragraph
+
+    sections = [TextSection("What it is", paragraph(text.physics) + paragraph(f"What to do: {text.look}"))]
+    if term is not None:
+        sections.append(TextSection("Equation", term_html(term)))
+    print(f"wrote {write_report(out, text.title, sections, text.name)}")
+
+
+def _content(name: str, what: str, as_json: bool) -> None:
+    from winch_friction.records.paths import shipped
+    from winch_friction.records.strict_yaml import read_yaml
+
+    path = shipped({"crane": "cranes", "scenario": "scenarios"}[what], name)
+    if what == "crane":
+        from winch_friction.records.crane_file import load_crane
+
+        load_crane(path)  # refused here rather than shown wrong
+    else:
+        from winch_friction.simulation import load_scenario
+
+        load_scenario(str(path))
+    content = read_yaml(path)
+    if as_json:
+        show_json(content)
+        return
+    show_table(f"{what} {name} ({path})", ("key", "value"), [[key, _plain(value)] for key, value in content.items()])
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, dict) and set(value) == {"value", "unit"}:
+        return f"{value['value']} {value['unit']}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key}: {_plain(each)}" for key, each in value.items())
+    return ", ".join(_plain(each) for each in value) if isinstance(value, list) else str(value)

@@ -45,6 +45,16 @@ EXTRAS = {
     ],
     "xarray": ["xarray>=2023.6"],
     "fleet": ["dask[distributed]>=2024.1", "fsspec>=2024.2", "s3fs>=2024.2"],
+    "import": [
+        "pint>=0.19",
+        "pyarrow>=14",
+        "openpyxl>=3.1",
+        "h5py>=3.8",
+        "npTDMS>=1.7",
+        "asammdf>=7.4",
+        "typer>=0.9",
+        "rich>=13",
+    ],
     "test": [
         "pytest>=7.4",
         "pytest-timeout>=2.2",
@@ -61,7 +71,9 @@ EXTRAS = {
         "colcon-common-extensions>=0.3",
     ],
 }
-EXTRAS["all"] = [requirement for extra in ("desk", "xarray", "ros", "fleet", "test") for requirement in EXTRAS[extra]]
+EXTRAS["all"] = [
+    requirement for extra in ("desk", "import", "xarray", "ros", "fleet", "test") for requirement in EXTRAS[extra]
+]
 
 setup(
     name=PACKAGE,

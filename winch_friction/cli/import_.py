@@ -1,0 +1,167 @@
+"""`winch-friction import`: logs of any origin become run files, by a map that is proposed, read and carried out."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.importing.mapping import LogMap
+from winch_friction.physics.errors import InputError
+
+HELP = """Bring logs of any origin into run files.
+
+First propose a map: what each column is, in which unit, sign and zone, with reason and confidence. Read it (change it
+in an editor, or with --set), then import.
+Logs may be .csv .txt .tsv (also .gz, .zip), .xlsx, .parquet, .mat, .tdms, .mf4.
+
+Examples:
+
+  [cyan]winch-friction import log.xlsx --propose --crane crane_150t --map log_map.yaml[/cyan]
+
+  [cyan]winch-friction import log.xlsx --map log_map.yaml --out runs/[/cyan]
+
+  [cyan]winch-friction import *.csv --map log_map.yaml --out runs/ --set hook_load.unit=short_ton[/cyan]
+"""
+
+app = typer.Typer(add_completion=False, rich_markup_mode="rich")
+FORMATS = ("csv", "parquet")
+
+
+@app.command("import", help=HELP)
+def command(
+    logs: Annotated[list[Path], typer.Argument(help="Logs of one kind.")],
+    map_file: Annotated[Path, typer.Option("--map", help="The map: written with --propose, read without.")],
+    propose: Annotated[bool, typer.Option("--propose", help="Look at the logs and write the map.")] = False,
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name; without it the map's.")] = "",
+    out: Annotated[Path, typer.Option(help="Folder for the run files.")] = Path("runs"),
+    form: Annotated[str, typer.Option("--format", help="Run files as csv or parquet.")] = "csv",
+    settings: Annotated[
+        list[str], typer.Option("--set", help="Change the map: CHANNEL.FIELD=VALUE, e.g. hook_load.unit=t; repeatable.")
+    ] = [],  # noqa: B006  Typer 0.9 wants a list
+    accept: Annotated[bool, typer.Option("--accept", help="Import although questions of the map are open.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Import data that contradict the crane; the runs say so.")
+    ] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace a map or run files that exist.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Say what was found or written as JSON.")] = False,
+) -> None:
+    """Propose a map, or import by one."""
+    if form not in FORMATS:
+        raise InputError(f"--format {form}: use {' or '.join(FORMATS)}")
+    _refuse_doubled(logs)
+    if propose:
+        propose_map(logs, map_file, crane, list(settings), overwrite, as_json)
+    else:
+        import_logs(logs, map_file, crane, out, form, list(settings), accept, force, overwrite, as_json)
+
+
+def _refuse_doubled(logs: list[Path]) -> None:
+    stems = [_stem(path) for path in logs]
+    for stem in stems:
+        if stems.count(stem) > 1:
+            raise InputError(
+                f"{stem}: two logs have this name; a run's identity is its file name, so import them into two folders"
+            )
+
+
+def _stem(path: Path) -> str:
+    """The name of the run that a log becomes: `log.csv.gz` and `log.xlsx` become `log`."""
+    name = path.name.removesuffix(".gz").removesuffix(".zip")
+    return Path(name).stem or path.stem
+
+
+def propose_map(
+    logs: list[Path], map_file: Path, crane: str, settings: list[str], overwrite: bool, as_json: bool
+) -> None:
+    """Write the proposed map; what keeps it from being imported is an `InputError` after it was written."""
+    from winch_friction.importing.map_text import map_text
+    from winch_friction.importing.mapping import with_settings
+    from winch_friction.importing.propose import propose
+    from winch_friction.records.atomic import write_text
+    from winch_friction.records.crane_file import load_crane
+
+    if map_file.exists() and not overwrite:
+        raise InputError(f"{map_file}: exists; give another name, or --overwrite")
+    proposal = propose(logs, load_crane(crane) if crane else None, crane)
+    log_map = with_settings(proposal.log_map, settings)
+    write_text(map_file, map_text(log_map))
+    problems = [p for p in proposal.problems if p not in proposal.log_map.questions or p in log_map.questions]
+    if as_json:
+        show_json(_as_content(log_map, problems, proposal.notes, map_file))
+    else:
+        _show(log_map)
+        show_warnings(proposal.notes)
+        if log_map.unused:
+            print(f"not used: {', '.join(log_map.unused)}")
+        print(f"written: {map_file}")
+    if problems:
+        raise InputError(f"{map_file} needs an answer: {' | '.join(problems)}")
+
+
+def _show(log_map: LogMap) -> None:
+    """The guesses for a person, one a line."""
+    form = f"{log_map.time.form} {log_map.time.unit}" if log_map.time.form in ("seconds", "unix") else log_map.time.form
+    print(f"time <- {' + '.join(log_map.time_from)} ({form}), {log_map.time_confidence:.2f}: {log_map.time_because}")
+    for name, entry in log_map.columns.items():
+        unit = ("-1 * " if entry.sign < 0 else "") + (entry.unit or "-")
+        print(f"{name} <- {entry.source} ({unit}), {entry.confidence:.2f}: {entry.because}")
+
+
+def _as_content(log_map: LogMap, problems: list[str], notes: tuple[str, ...], map_file: Path) -> dict[str, object]:
+    from dataclasses import asdict
+
+    return {"map": str(map_file), "proposal": asdict(log_map), "problems": problems, "notes": notes}
+
+
+def import_logs(
+    logs: list[Path], map_file: Path, crane: str, out: Path, form: str, settings: list[str], accept: bool, force: bool,
+    overwrite: bool, as_json: bool,
+) -> None:  # fmt: skip
+    """Write one run file per log, all or none."""
+    from winch_friction.importing.carry_out import import_log
+    from winch_friction.importing.contradiction import contradictions
+    from winch_friction.importing.mapping import load_map, with_settings
+    from winch_friction.importing.propose import refuse_if_open
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.runs import write_run
+
+    log_map = with_settings(load_map(map_file), settings)
+    if not (accept or force):
+        refuse_if_open(log_map, str(map_file))
+    loaded = load_crane(crane or log_map.crane) if crane or log_map.crane else None
+    targets = [out / f"{_stem(path)}.{form}" for path in logs]
+    _refuse_existing(logs, targets, overwrite)
+    runs, problems = [], []
+    for path, target in zip(logs, targets, strict=True):
+        try:
+            run = import_log(path, log_map, loaded)
+        except InputError as error:
+            problems.append(str(error))
+            continue
+        against = contradictions(run.columns, loaded) if loaded is not None else []
+        problems += [f"{path.name}: {text}" for text in against if not force]
+        forced = {"forced": against} if against else {}
+        runs.append(replace(run, name=target.name, metadata={**run.metadata, **forced}))
+    if problems:
+        hint = "" if force else " (nothing written; --force imports what contradicts the crane)"
+        raise InputError(" | ".join(problems) + hint)
+    written = [str(write_run(run, target)) for run, target in zip(runs, targets, strict=True)]
+    for run in runs:
+        show_warnings(run.warnings)
+    if as_json:
+        show_json(
+            {"written": written, "samples": [len(run) for run in runs], "warnings": [run.warnings for run in runs]}
+        )
+        return
+    for name, run in zip(written, runs, strict=True):
+        print(f"{name}: {len(run)} samples of {', '.join(run.columns)}")
+
+
+def _refuse_existing(logs: list[Path], targets: list[Path], overwrite: bool) -> None:
+    for target in targets:
+        if target.exists() and any(target.resolve() == log.resolve() for log in logs):
+            raise InputError(f"{target}: is the log itself; give another --out")
+        if target.exists() and not overwrite:
+            raise InputError(f"{target}: exists; give another --out, or --overwrite")

@@ -1,0 +1,202 @@
+"""A log and its map become a run in SI: every cell converted, what is no number named, nothing dropped silently."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.importing.log import Log, LogColumn, listed
+from winch_friction.importing.mapping import Entry, LogMap
+from winch_friction.importing.reading import read_log
+from winch_friction.importing.time_base import to_seconds
+from winch_friction.importing.units import CHANNEL_UNITS, conversion
+from winch_friction.physics.channels import limits_of
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.run_checks import checked_run
+
+STRAY = 0.01  # share of cells that are no numbers, or that no sensor can give, up to which they are strays
+_SHOWN = 5  # cells named in one message
+_AT = {
+    "motor_speed": 1.0,
+    "speed_reference": 1.0,
+    "motor_torque": -1.0,
+    "shaft_angle": 1.0,
+}  # power of the gear ratio at the drum
+
+
+@dataclass(frozen=True)
+class Converted:
+    """A log's columns in SI, with what was said and what is wrong (all of it, not only the first)."""
+
+    columns: dict[str, FloatArray]
+    warnings: tuple[str, ...]
+    problems: tuple[str, ...]
+
+
+def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
+    """A run from a log by a map; raises `InputError` with every problem at once."""
+    log = open_with_map(path, log_map)
+    done = convert(log, log_map, crane)
+    if done.problems:
+        raise InputError(f"{path}: {'; '.join(done.problems)}")
+    metadata = {"source": path.name, "imported": {name: entry.source for name, entry in log_map.columns.items()}}
+    warnings = tuple(f"{path.name}: {note}" for note in (*log.notes, *done.warnings))
+    return checked_run(
+        f"{path.name}", done.columns, place=log.place, crane=crane,
+        warnings=warnings, metadata=metadata,
+    )  # fmt: skip
+
+
+def open_with_map(path: Path, log_map: LogMap) -> Log:
+    """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found."""
+    wanted = {*log_map.time_from, *(entry.source for entry in log_map.columns.values())}
+    kind = str(log_map.log.get("kind", ""))
+    try:
+        log = read_log(path, log_map.log if kind in ("text", "workbook") and _is_kind(path, kind) else None)
+        if wanted <= {column.name for column in log.columns}:
+            return log
+    except InputError:
+        if not log_map.log:
+            raise
+    kept = {key: value for key, value in log_map.log.items() if key in ("encoding", "delimiter", "sheet")}
+    log = read_log(path, kept if _is_kind(path, kind) else None)
+    missing = wanted - {column.name for column in log.columns}
+    if missing:
+        raise InputError(
+            f"{path}: no column {listed(sorted(missing))}, which the map wants; "
+            f"found {listed(c.name for c in log.columns)}"
+        )
+    return log
+
+
+def _is_kind(path: Path, kind: str) -> bool:
+    return (path.suffix.lower() in (".xlsx", ".xlsm")) == (kind == "workbook")
+
+
+def convert(log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True) -> Converted:
+    """All columns of a map in SI; problems are collected, not raised."""
+    columns: dict[str, FloatArray] = {}
+    said: list[str] = []
+    problems: list[str] = []
+    for name, step in _steps(log, log_map, crane, said, problems, strict):
+        try:
+            columns[name] = step()
+        except InputError as error:
+            problems.append(str(error))
+    if "time" not in columns and not problems:
+        problems.append("no time: set time.from to the column that holds it")
+    columns = {"time": columns.pop("time"), **columns} if "time" in columns else columns
+    if "time" in columns:
+        columns = _without_footer(columns, log, said)
+    return Converted(columns, tuple(said), tuple(problems))
+
+
+def _steps(log: Log, log_map: LogMap, crane: Crane | None, said: list[str], problems: list[str], strict: bool) -> Any:
+    if log_map.time_from:
+        yield "time", lambda: _time(log, log_map)
+    for name, entry in log_map.columns.items():
+        channel = name.rpartition(".")[2]
+        if channel not in CHANNEL_UNITS:
+            problems.append(
+                f"columns: '{name}' is no channel; use {', '.join(CHANNEL_UNITS)}, for a motor group GROUP.{channel}"
+            )
+            continue
+        yield name, lambda n=name, e=entry, c=channel: _values(log, n, c, e, log_map, crane, said, problems, strict)
+
+
+def _time(log: Log, log_map: LogMap) -> FloatArray:
+    columns = [log.column(name) for name in log_map.time_from]
+    return to_seconds(columns, log_map.time, "time", log.place)
+
+
+def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, crane: Crane | None, said: list[str],
+            problems: list[str], strict: bool) -> FloatArray:  # fmt: skip
+    column = log.column(entry.source)
+    if not column.numeric:
+        first = next((str(c) for c in column.text if c is not None and str(c).strip()), "nothing")
+        raise InputError(f"{name}: column '{column.name}' holds text ('{first[:30]}'), no numbers")
+    if strict:
+        _say_bad_cells(log, name, column, log_map.bad_cells, said, problems)
+    scale, offset = scale_and_offset(name, channel, entry, crane)
+    values = column.values * scale + offset
+    return _within_limits(log, name, channel, column, values, said, problems) if strict else values
+
+
+def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None) -> tuple[float, float]:
+    """What takes a map entry's numbers to SI."""
+    own = CHANNEL_UNITS[channel][0]
+    of = _share_of(entry.of, own, name) if entry.of else _default_share(channel, crane)
+    radius = crane.drum.layer_radii[-1] if crane is not None else float("nan")
+    gear = crane.gear_ratio if crane is not None else 1.0
+    found = conversion(channel, entry.unit or own, name, of=of, rope_radius=radius, gear_ratio=gear)
+    if entry.at == "drum" and channel in _AT:
+        if crane is None:
+            raise InputError(f"{name}: at: drum needs the crane's gear ratio; give the crane")
+        found = type(found)(found.scale * gear ** _AT[channel], found.offset)
+    factor = entry.sign * entry.factor
+    return found.scale * factor, found.offset * factor
+
+
+def _share_of(text: str, si_unit: str, name: str) -> float:
+    value, _, unit = text.strip().partition(" ")
+    try:
+        number = float(value)
+    except ValueError:
+        raise InputError(f"{name}: of: '{text}' must be a number and its unit, e.g. 215 cm^3/rev") from None
+    scale, _ = conversion_to_si(unit.strip() or si_unit, si_unit, f"{name}: of")
+    return number * scale
+
+
+def _default_share(channel: str, crane: Crane | None) -> float:
+    """A displacement's share is of the crane's largest; nothing else is known to be a share of."""
+    return (
+        crane.max_displacement
+        if channel == "displacement" and crane is not None and crane.max_displacement
+        else float("nan")
+    )
+
+
+def _say_bad_cells(log: Log, name: str, column: LogColumn, policy: str, said: list[str], problems: list[str]) -> None:
+    if not column.bad:
+        return
+    shown = ", ".join(f"{log.place(row)} '{cell}'" for row, cell in column.bad[:_SHOWN])
+    more = f" and {len(column.bad) - _SHOWN} more" if len(column.bad) > _SHOWN else ""
+    text = f"{name}: column '{column.name}': {len(column.bad)} cells are no numbers: {shown}{more}"
+    if policy == "refuse" or len(column.bad) > max(3, STRAY * len(column.values)):
+        problems.append(f"{text}; mend them, or map another column")
+    else:
+        said.append(f"{text}; taken as missing")
+
+
+def _within_limits(log: Log, name: str, channel: str, column: LogColumn, values: FloatArray, said: list[str],
+                   problems: list[str]) -> FloatArray:  # fmt: skip
+    """Values beyond what any sensor gives: few are strays and become missing by name, many are a wrong unit."""
+    low, high = limits_of(channel)
+    out = np.flatnonzero(np.isfinite(values) & ((values < low) | (values > high)))
+    if not out.size:
+        return values
+    shown = ", ".join(f"{log.place(int(row))} '{column.values[row]:.6g}'" for row in out[:_SHOWN])
+    usual = f"{low:g} to {high:g} {CHANNEL_UNITS[channel][0]}"
+    text = f"{name}: column '{column.name}': {out.size} values that no sensor gives ({usual}): {shown}"
+    if out.size > max(3, STRAY * len(values)):
+        problems.append(f"{text}; is the unit right?")
+        return values
+    said.append(f"{text}; taken as missing")
+    values = values.copy()
+    values[out] = np.nan
+    return values
+
+
+def _without_footer(columns: Mapping[str, FloatArray], log: Log, said: list[str]) -> dict[str, FloatArray]:
+    """Rows at the end that hold neither a time nor any value are no samples: a footer."""
+    empty = np.all([~np.isfinite(values) for values in columns.values()], axis=0)
+    count = len(empty) - (np.flatnonzero(~empty)[-1] + 1) if (~empty).any() else 0
+    if not count:
+        return dict(columns)
+    said.append(f"{count} rows at the end hold no value (from {log.place(len(empty) - int(count))}): left out")
+    return {name: values[: len(values) - count] for name, values in columns.items()}

@@ -1,0 +1,213 @@
+"""Which column of a log is which channel: by name, unit and size together, each column for one channel at most."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations
+
+import numpy as np
+
+from winch_friction.importing.expectations import fits
+from winch_friction.importing.log import Log, LogColumn
+from winch_friction.importing.names import Concepts, name_concepts, name_score, tokens
+from winch_friction.importing.units import (
+    CHANNEL_UNITS,
+    ambiguity,
+    conversion,
+    fitting_si_unit,
+    header_readings,
+    usual_units,
+)
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import GROUP_CHANNELS, column_unit
+from winch_friction.physics.winch.crane import Crane
+
+FEWEST = 0.14  # score below which a column is left alone: less than a fitting unit with a plausible size has
+_UNIT_ALONE = 0.22  # score of a column whose unit fits and whose name says nothing known
+_NO_UNIT = 0.9
+_WRONG_SIZE = 0.4  # what is left of a score when no reading of the numbers has a plausible size
+_OTHER_GROUP, _NO_GROUP, _NO_PORT = 0.02, 0.75, 0.6
+_EXACT = 1.2  # a column that bears the contract's own name
+
+_HYDRAULIC = ("motor_speed", "drum_speed", "rope_speed", "speed_reference", "hook_load", "rope_force", "heave_velocity",
+              "oil_temperature", "wire_layer", "wire_out", "shaft_angle")  # fmt: skip
+_ELECTRIC = (*_HYDRAULIC, "motor_torque", "load_torque", "mechanical_power", "motor_current")
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A channel of the run that wants a column: its contract name, its kind and its motor group."""
+
+    name: str
+    channel: str
+    group: str = ""
+
+
+@dataclass(frozen=True)
+class Match:
+    """A column for a slot: the unit ('' when the log says none) and how good the match is; `why` in words."""
+
+    slot: Slot
+    column: LogColumn
+    unit: str
+    score: float
+    why: str
+
+    @property
+    def confidence(self) -> float:
+        """The score as a share of certainty."""
+        return float(min(0.99, self.score))
+
+
+def matches(log: Log, crane: Crane | None, taken: Iterable[str] = ()) -> dict[str, Match]:
+    """The best assignment of columns to channels, over the sets of motor groups that the crane can run with."""
+    columns = [c for c in log.columns if c.numeric and c.name not in set(taken) and np.isfinite(c.values).any()]
+    best: tuple[float, dict[str, Match]] = (-np.inf, {})
+    for groups in group_sets(crane):
+        slots = _slots(crane, groups)
+        found = _assigned(columns, slots, crane, len(groups))
+        lacking = sum(1 for s in slots if s.group and s.name not in found)
+        worth = sum(m.score for m in found.values()) - 0.6 * lacking
+        if worth > best[0]:
+            best = (worth, found)
+    return best[1]
+
+
+def group_sets(crane: Crane | None) -> list[tuple[str, ...]]:
+    """The sets of motor groups that may drive at once: each one alone, and those that together are not all of them."""
+    if crane is None:
+        return [("main",), ("active", "passive"), ()]
+    if not crane.drive.hydraulic or not crane.groups:
+        return [()]
+    names = tuple(crane.groups)
+    most = max(crane.groups.values())
+    several = [c for k in range(2, len(names) + 1) for c in combinations(names, k)]
+    alike = [c for c in several if sum(crane.groups[g] for g in c) <= most]  # 3 active + 8 passive are the 11 of main
+    return [(name,) for name in names] + (alike or several)
+
+
+def _slots(crane: Crane | None, groups: Sequence[str]) -> list[Slot]:
+    plain = _HYDRAULIC if crane is not None and crane.drive.hydraulic else _ELECTRIC
+    return [Slot(name, name) for name in plain] + [Slot(f"{g}.{c}", c, g) for g in groups for c in GROUP_CHANNELS]
+
+
+def _assigned(
+    columns: Sequence[LogColumn], slots: Sequence[Slot], crane: Crane | None, groups: int
+) -> dict[str, Match]:
+    from scipy.optimize import linear_sum_assignment
+
+    table = [[_match(column, slot, crane, groups) for slot in slots] for column in columns]
+    if not table:
+        return {}
+    scores = np.array([[m.score if m else 0.0 for m in row] for row in table])
+    rows, picks = linear_sum_assignment(-np.where(scores >= FEWEST, scores, 0.0))
+    return {
+        slots[j].name: match
+        for i, j in zip(rows, picks, strict=True)
+        if (match := table[i][j]) is not None and match.score >= FEWEST
+    }
+
+
+def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> Match | None:
+    """The best reading of a column for a slot, None when its unit belongs to something else."""
+    best: Match | None = None
+    for bare, unit in header_readings(column.name):
+        unit = unit or column.unit
+        score, why = _reading_score(column, bare, unit, slot, groups)
+        if score <= 0.0:
+            continue
+        score, size = _with_size(score, column, unit, slot.channel, crane)
+        if best is None or score > best.score:
+            best = Match(slot, column, unit, score, why + size)
+    return best
+
+
+def _reading_score(column: LogColumn, bare: str, unit: str, slot: Slot, groups: int) -> tuple[float, str]:
+    if column_unit(bare) is not None:
+        return (_EXACT, "the contract's own name") if bare == slot.name else (0.0, "")
+    fitting = fitting_si_unit(slot.channel, unit) if unit else ""
+    if fitting is None or (slot.channel == "rope_speed" and unit and fitting != "m/s"):
+        return 0.0, ""
+    if slot.channel == "motor_speed" and fitting == "m/s":
+        return 0.0, ""  # a speed of the rope has its own slot
+    concepts = _concepts(bare)
+    score = max(name_score(slot.channel, concepts), 0.9 * name_score(slot.channel, _concepts(column.note)))
+    why = f"name '{bare}'"
+    if unit and score < _UNIT_ALONE and _unit_tells(slot.channel, unit) and not _is_other(concepts):
+        score, why = _UNIT_ALONE, f"unit '{unit}' alone, the name '{bare}' says nothing known"
+    if slot.group and score:
+        score *= _group_factor(concepts, bare, slot, groups)
+    return score * (1.0 if unit else _NO_UNIT), why + (f", unit '{unit}'" if unit and "unit" not in why else "")
+
+
+def _is_other(concepts: Sequence[Concepts]) -> bool:
+    """Whether a name says something that no channel is (a valve, a wind, an energy)."""
+    return any(token.get("other", 0.0) > 0.7 or token.get("energy", 0.0) > 0.7 for token in concepts)
+
+
+@lru_cache(maxsize=512)
+def _unit_tells(channel: str, unit: str) -> bool:
+    """Whether few channels are logged in this unit, so that it tells the channel when the name does not."""
+    homes = {c.replace("_b", "_a") for c in CHANNEL_UNITS if fitting_si_unit(c, unit) == CHANNEL_UNITS[c][0]}
+    return channel.replace("_b", "_a") in homes and len(homes - {"drum_speed", "speed_reference", "load_torque"}) <= 2
+
+
+def _group_factor(concepts: Sequence[Concepts], bare: str, slot: Slot, groups: int) -> float:
+    """How well the name's words for motor group and port agree with the slot's."""
+    factor = 1.0
+    if groups > 1 or slot.group != "main":
+        said = {c: q for token in concepts for c, q in token.items() if c in ("active", "passive", "main")}
+        own = slot.group in tokens(bare) or said.get(slot.group, 0.0) > 0.0
+        sure_other = any(
+            c != slot.group
+            for token in concepts
+            for c in token
+            if c in ("active", "passive", "main") and len(token) == 1
+        )
+        factor *= 1.0 if own else (_OTHER_GROUP if sure_other else (_NO_GROUP if said == {} else 0.5))
+    elif any(set(token) & {"active", "passive"} and len(token) == 1 for token in concepts):
+        factor *= 0.3  # a log that names active and passive groups is no log of the main one
+    if slot.channel in ("pressure_a", "pressure_b"):
+        ports = {c for token in concepts for c in token if c in ("port_a", "port_b")}
+        wanted = slot.channel.replace("pressure", "port")
+        factor *= 1.0 if wanted in ports else (_OTHER_GROUP if ports else _NO_PORT)
+    return factor
+
+
+def _with_size(score: float, column: LogColumn, unit: str, channel: str, crane: Crane | None) -> tuple[float, str]:
+    """The score after a look at the numbers; for a column without a unit at what they would be in the usual ones."""
+    if unit and ambiguity(channel, unit):
+        return score, ""
+    if plausible_units(column, unit, channel, crane):
+        return score, ""
+    said = f"; but no usual size in '{unit}'" if unit else "; but no usual size in any usual unit"
+    return score * _WRONG_SIZE, said
+
+
+def plausible_units(column: LogColumn, unit: str, channel: str, crane: Crane | None) -> list[str]:
+    """The units in which a column has the size of the channel: of the one that is said, else of the usual ones."""
+    return [
+        each
+        for each in ([unit] if unit else usual_units(channel))
+        if (values := in_si(column, each, channel, crane)) is not None and fits(channel, values, crane)
+    ]
+
+
+def in_si(column: LogColumn, unit: str, channel: str, crane: Crane | None) -> np.ndarray | None:
+    """A column's values in SI if it were logged in a unit; None when the unit does not fit the channel."""
+    of = crane.max_displacement if crane is not None and channel == "displacement" else 1.0
+    try:
+        found = conversion(channel, unit, "", of=of or 1.0)
+    except InputError:
+        return None
+    return column.values * found.scale + found.offset
+
+
+@lru_cache(maxsize=4096)
+def _concepts(name: str) -> list[Concepts]:
+    return name_concepts(name) if name else []
+
+
+def by_column(found: Mapping[str, Match]) -> dict[str, Match]:
+    """The matches by the name of their column in the log."""
+    return {match.column.name: match for match in found.values()}

@@ -1,0 +1,85 @@
+"""Where a table begins: the rows of its names and units above its first row of values, preamble left aside."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from winch_friction.importing.cells import is_missing, is_number, is_time
+from winch_friction.importing.units import looks_like_unit
+
+_SEEN = 300  # rows looked at for the beginning of the values
+_RUN = 4  # rows of values in a row that make a beginning
+_ABOVE = 5  # rows above the values among which names and units are looked for
+
+Row = Sequence[Any]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Rows counted from 0; `names` and `units` are -1 when there is none; `notes_row`: a row of descriptions."""
+
+    names: int
+    units: int
+    first: int
+    width: int
+    notes_row: int = -1
+
+
+def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layout | None:
+    """The layout of a table, or None when no run of rows with values is found."""
+    seen = rows[:_SEEN]
+    widths = Counter(_width(row) for row in seen if _share_of_values(row, decimal, thousands) >= 0.4)
+    if not widths:
+        return None
+    width = max(widths, key=lambda w: (widths[w], w))
+    good = [_share_of_values(row, decimal, thousands) >= 0.4 and abs(_width(row) - width) <= 1 for row in seen]
+    run = min(_RUN, sum(good))
+    first = next((k for k in range(len(seen)) if all(good[k : k + run]) and len(good[k : k + run]) == run), None)
+    if first is None:
+        return None
+    above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, decimal, thousands)]
+    units = next((k for k in reversed(above) if _is_unit_row(seen[k])), -1)
+    texts = [k for k in above if k != units]
+    names = _names_row(seen, texts)
+    other = [k for k in texts if k != names and abs(k - names) <= 2]
+    return Layout(names, units, first, width, other[-1] if other else -1)
+
+
+def _names_row(rows: Sequence[Row], candidates: list[int]) -> int:
+    """The lowest row of the fullest ones: a title above the names fills few cells."""
+    if not candidates:
+        return -1
+    filled = {k: len({str(c) for c in rows[k] if not is_missing(c)}) for k in candidates}
+    most = max(filled.values())
+    return max(k for k in candidates if filled[k] >= 0.8 * most)
+
+
+def _width(row: Row) -> int:
+    cells = list(row)
+    while cells and is_missing(cells[-1]):
+        cells.pop()
+    return len(cells)
+
+
+def _share_of_values(row: Row, decimal: str, thousands: str) -> float:
+    cells = [cell for cell in row if not is_missing(cell)]
+    if len(cells) < 2:
+        return 0.0
+    values = sum(is_number(cell, decimal, thousands) or is_time(cell) for cell in cells)
+    return values / len(cells)
+
+
+def _is_heading(row: Row, width: int, decimal: str, thousands: str) -> bool:
+    cells = [cell for cell in row if not is_missing(cell)]
+    texts = [
+        cell
+        for cell in cells
+        if isinstance(cell, str) and not is_number(cell, decimal, thousands) and not is_time(cell)
+    ]
+    return len(cells) >= max(2, width // 2) and len(texts) >= 0.7 * len(cells) and _width(row) <= width + 1
+
+
+def _is_unit_row(row: Row) -> bool:
+    cells = [str(cell).strip() for cell in row if not is_missing(cell)]
+    return len(cells) >= 2 and sum(looks_like_unit(cell) for cell in cells) >= 0.6 * len(cells)

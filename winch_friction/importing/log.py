@@ -1,0 +1,80 @@
+"""A log as it was found: columns of numbers or of text, where each cell stands, and what was noticed while reading."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+
+Place = Callable[[int], str]  # index of a row -> how a person finds it in the file
+_LISTED = 60  # columns named in one message
+
+
+@dataclass(frozen=True)
+class LogColumn:
+    """One column: `name` as it stands, `unit` from a row of units or the file's own field ('' for none).
+
+    `values`: numbers, NaN where a cell is empty or no number; `text`: the cells as they stand when they are no numbers
+    (dates), else None; `bad`: (row, cell) of cells that are neither empty nor numbers; `note`: a description.
+    """
+
+    name: str
+    values: FloatArray
+    unit: str = ""
+    text: Any = None
+    bad: tuple[tuple[int, str], ...] = ()
+    note: str = ""
+
+    @property
+    def numeric(self) -> bool:
+        """Whether it is a column of numbers."""
+        return self.text is None
+
+
+@dataclass(frozen=True)
+class Log:
+    """A log: its columns of one length, `settings` that read it again in the same way, `notes` for the person."""
+
+    path: Path
+    columns: tuple[LogColumn, ...]
+    settings: Mapping[str, Any]
+    place: Place
+    notes: tuple[str, ...] = ()
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.columns[0].values) if self.columns else 0
+
+    def column(self, name: str) -> LogColumn:
+        """A column by name; raises `InputError` that lists what the log has."""
+        for each in self.columns:
+            if each.name == name:
+                return each
+        raise InputError(f"{self.path}: no column '{name}'; found {listed(each.name for each in self.columns)}")
+
+
+def listed(names: Any) -> str:
+    """Names in quotes for a message, a long list cut short with its count."""
+    every = [f"'{name}'" for name in names]
+    more = f" and {len(every) - _LISTED} more" if len(every) > _LISTED else ""
+    return ", ".join(every[:_LISTED]) + more if every else "nothing"
+
+
+def unique_names(names: Sequence[str]) -> list[str]:
+    """Names of columns: empty ones are numbered, repeated ones told apart."""
+    seen: dict[str, int] = {}
+    out = []
+    for k, name in enumerate(names):
+        plain = " ".join(str(name).split()) or f"(column {k + 1})"
+        seen[plain] = seen.get(plain, 0) + 1
+        out.append(plain if seen[plain] == 1 else f"{plain} #{seen[plain]}")
+    return out
+
+
+def number_column(name: str, values: Any, unit: str = "", note: str = "") -> LogColumn:
+    """A column of an array of numbers."""
+    return LogColumn(name, np.asarray(values, dtype=float).ravel(), unit, note=note)

@@ -1,0 +1,73 @@
+"""Ports and the sign of the speed, where names do not tell them: by what the crane's physics allows."""
+
+import numpy as np
+
+from winch_friction.importing.balance import closure, groups_of, opposes_motion, told
+from winch_friction.importing.draft import Draft
+from winch_friction.importing.kinematics import rope_over_motor
+from winch_friction.importing.names import name_concepts
+from winch_friction.physics.winch.crane import Crane
+
+
+def settle_orientation(draft: Draft) -> None:
+    """Ports, groups and signs by what the crane's physics allows."""
+    if draft.crane is None:
+        return
+    _settle_ports(draft, draft.crane)
+    if "motor_speed" not in draft.log_map.columns:
+        return
+    ratios = [r.value for c in draft.converted() if (r := rope_over_motor(c.columns, draft.crane)) is not None]
+    if ratios and np.median(ratios) < 0.0:
+        draft.change("motor_speed", sign=-1, because="sign turned: the wire comes in while it counts negative")
+        return
+    if ratios:
+        draft.change("motor_speed", because="its sign agrees with the motion of the wire")
+        return
+    t_values = [opposes_motion(c.columns, draft.crane) for c in draft.converted()]
+    t_value = float(np.median(t_values)) if t_values else 0.0
+    groups = groups_of(draft.converted()[0].columns)
+    if not told(t_value):
+        draft.change(
+            "motor_speed",
+            draft.log_map.columns["motor_speed"].confidence * 0.9,
+            "its sign is not told by the log: hoisting taken as positive",
+        )
+    elif t_value > 0.0:
+        draft.change("motor_speed", because="friction opposes the motion with this sign")
+    elif len(groups) <= 1:
+        draft.change("motor_speed", sign=-1, because="sign turned: friction would drive the motion otherwise")
+    # with several groups swapped ports would do the same: left to the contradictions, as a question
+
+
+def _settle_ports(draft: Draft, crane: Crane) -> None:
+    """Swap ports that the names do not tell, where only then the motors hold the load."""
+    groups = [
+        g
+        for g in crane.groups
+        if f"{g}.pressure_a" in draft.log_map.columns and f"{g}.pressure_b" in draft.log_map.columns
+    ]
+    untold = [g for g in groups if not _ports_told(draft.log_map.columns[f"{g}.pressure_a"].source)]
+    for group in untold:
+        before = _mean_mismatch(draft)
+        a, b = draft.log_map.columns[f"{group}.pressure_a"], draft.log_map.columns[f"{group}.pressure_b"]
+        kept = draft.log_map
+        draft.change(f"{group}.pressure_a", source=b.source, because="port by the load: the side that holds it")
+        draft.change(f"{group}.pressure_b", source=a.source, because="port by the load: the other side")
+        after = _mean_mismatch(draft)
+        if not (after < 1.0 and after < 0.5 * before):
+            draft.log_map = kept
+            held = before < 1.0
+            why = "port by the load: the side that holds it" if held else "which side is port A is not told"
+            for port in ("pressure_a", "pressure_b"):
+                name = f"{group}.{port}"
+                draft.change(name, draft.log_map.columns[name].confidence * (0.95 if held else 0.6), why)
+
+
+def _ports_told(name: str) -> bool:
+    return any(set(token) & {"port_a", "port_b"} for token in name_concepts(name)) or ".pressure_" in name
+
+
+def _mean_mismatch(draft: Draft) -> float:
+    found = [closure(c.columns, draft.crane) for c in draft.converted()] if draft.crane is not None else []
+    known = [f.mismatch for f in found if f is not None]
+    return float(np.mean(known)) if known else 0.0

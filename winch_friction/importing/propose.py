@@ -1,0 +1,211 @@
+"""From logs to a proposed map: time, columns, units, ports and signs, each guess with its reason and confidence."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from winch_friction.importing.contradiction import contradictions
+from winch_friction.importing.draft import Draft
+from winch_friction.importing.guess import Match, matches
+from winch_friction.importing.log import Log, LogColumn, listed
+from winch_friction.importing.mapping import Entry, LogMap
+from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.orientation import settle_orientation
+from winch_friction.importing.reading import read_log
+from winch_friction.importing.time_base import TimeGuess, guess_time
+from winch_friction.importing.unit_guess import settle_units
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, header_readings
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
+
+_POOLED = 20_000  # values of each log that are looked at together
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A proposed map; `problems` keep it from being imported (its questions are among them), `notes` do not."""
+
+    log_map: LogMap
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "") -> Proposal:
+    """A map for logs of one kind; raises `InputError` only for logs that cannot be read at all."""
+    logs = [read_log(path) for path in paths]
+    draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
+    _refuse_different_names(draft)
+    pooled = _pooled(logs)
+    _settle_time(draft)
+    found = matches(pooled, crane, draft.log_map.time_from)
+    _settle_columns(draft, found, pooled)
+    settle_units(draft, found, pooled)
+    settle_orientation(draft)
+    _settle_missing(draft, pooled)
+    if crane is not None:
+        _settle_contradictions(draft)
+    used = {*draft.log_map.time_from, *(e.source for e in draft.log_map.columns.values())}
+    unused = tuple(c.name for c in logs[0].columns if c.name not in used)
+    log_map = replace(draft.log_map, unused=unused, questions=tuple(dict.fromkeys(draft.questions)))
+    notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes)
+    problems = tuple(dict.fromkeys([*draft.problems, *log_map.questions]))
+    return Proposal(log_map, problems, notes + tuple(_bad_cells(logs, log_map)))
+
+
+def _refuse_different_names(draft: Draft) -> None:
+    first, *others = draft.logs
+    names = {c.name for c in first.columns}
+    for log in others:
+        missing = names - {c.name for c in log.columns}
+        if missing:
+            draft.problems.append(
+                f"{log.path.name} has other columns than {first.path.name}: {listed(sorted(missing))} are not in it; "
+                "propose a map for each kind of log"
+            )
+
+
+def _pooled(logs: Sequence[Log]) -> Log:
+    """The logs' columns put together, thinned."""
+    columns = []
+    for column in logs[0].columns:
+        same = [c for log in logs for c in log.columns if c.name == column.name and c.numeric == column.numeric]
+        thin = [c.values[:: max(1, len(c.values) // _POOLED)] for c in same]
+        columns.append(replace(column, values=np.concatenate(thin)))
+    return replace(logs[0], columns=tuple(columns))
+
+
+def _settle_time(draft: Draft) -> None:
+    best: tuple[float, tuple[LogColumn, ...], TimeGuess] | None = None
+    for columns in _time_candidates(draft.logs[0]):
+        bare, unit = header_readings(columns[0].name)[0]
+        unit = unit or columns[0].unit
+        if unit and fitting_si_unit("time", unit) is None:
+            continue
+        named = name_score("time", name_concepts(bare))
+        guess = guess_time(columns, unit)
+        if guess is None or (not named and not _steady(draft.logs[0], columns)):
+            continue
+        worth = 0.3 + named + 0.2 * (not columns[0].numeric) + 0.1 * (len(columns) > 1) + guess.confidence
+        if best is None or worth > best[0]:
+            because = f"name '{columns[0].name}', {guess.because}" if named else f"rises steadily, {guess.because}"
+            best = (
+                worth,
+                tuple(columns),
+                replace(guess, because=because, confidence=guess.confidence * (1.0 if named else 0.7)),
+            )
+    if best is None:
+        draft.problems.append(f"time: no column of times found among {listed(c.name for c in draft.logs[0].columns)}")
+        return
+    _, columns, guess = best
+    draft.log_map = replace(
+        draft.log_map, time_from=tuple(c.name for c in columns), time=guess.base, time_confidence=guess.confidence,
+        time_because=guess.because,
+    )  # fmt: skip
+    if guess.question:
+        draft.questions.append(f"time: {guess.question}")
+
+
+def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:
+    single = [(c,) for c in log.columns]
+    texts = [c for c in log.columns if not c.numeric]
+    return single + [(a, b) for a in texts for b in texts if a is not b]
+
+
+def _steady(log: Log, columns: Sequence[LogColumn]) -> bool:
+    """Whether a column without the name of a time rises like one: by the same step from row to row, or as dates."""
+    if not columns[0].numeric:
+        return True
+    steps = np.diff(columns[0].values)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    return usual > 0.0 and float(np.mean(np.abs(steps - usual) < 0.5 * usual)) > 0.9 and columns[0] is log.columns[0]
+
+
+def _settle_columns(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
+    entries = {}
+    for name, match in found.items():
+        target, at = ("motor_speed", "rope") if name == "rope_speed" else (name, "motor")
+        if name == "rope_speed" and ({"motor_speed", "drum_speed"} & set(found) or draft.crane is None):
+            if draft.crane is None and "motor_speed" not in found:
+                draft.questions.append(
+                    f"motor_speed: '{match.column.name}' is a speed of the rope; give --crane for drum and gear"
+                )
+            continue
+        entries[target] = Entry(match.column.name, match.unit, at=at, confidence=match.confidence, because=match.why)
+        choices = ambiguity(match.slot.channel, match.unit) if match.unit else ""
+        if choices:
+            draft.questions.append(
+                f"{target}: the unit '{match.unit}' of '{match.column.name}' is ambiguous; "
+                f"set {target}.unit to {choices}"
+            )
+    draft.log_map = replace(draft.log_map, columns=entries)
+
+
+def _settle_missing(draft: Draft, pooled: Log) -> None:
+    """Say at once every channel that a run needs and no column gives, beside what was found."""
+    names, crane = set(draft.log_map.columns), draft.crane
+    lacking = [] if {"motor_speed", "drum_speed"} & names else ["motor_speed (or drum_speed)"]
+    groups = dict.fromkeys(n.rpartition(".")[0] for n in names if "." in n)
+    for group in groups:
+        lacking += [f"{group}.{c}" for c in ("pressure_a", "pressure_b", "displacement") if f"{group}.{c}" not in names]
+    electric = not crane.drive.hydraulic if crane is not None else not groups
+    if electric and not names & {"motor_torque", "rope_force", "mechanical_power", "motor_current"}:
+        lacking.append("motor_torque (or rope_force with mechanical_power)")
+    if not electric and not groups:
+        lacking.append("pressures and displacement of a motor group")
+    if lacking:
+        free = [
+            c.name
+            for c in pooled.columns
+            if c.name not in {e.source for e in draft.log_map.columns.values()}
+            and c.name not in draft.log_map.time_from
+        ]
+        draft.problems.append(
+            f"{', '.join(lacking)}: no column found; not used are {listed(free)}; "
+            f"name one by --set {lacking[0].split()[0]}.from=COLUMN"
+        )
+    for name, entry in draft.log_map.columns.items():
+        channel = name.rpartition(".")[2]
+        shares = (
+            entry.unit
+            and len(CHANNEL_UNITS[channel]) > 1
+            and CHANNEL_UNITS[channel][1] == "1"
+            and channel != "displacement"
+        )
+        if shares and not entry.of and entry.unit.strip() in ("%", "percent", "Prozent", "prosent"):
+            own = CHANNEL_UNITS[channel][0]
+            draft.questions.append(
+                f"{name}: '{entry.source}' is in {entry.unit}; of what? --set '{name}.of=NUMBER {own}'"
+            )
+
+
+def _settle_contradictions(draft: Draft) -> None:
+    assert draft.crane is not None
+    if draft.questions or draft.problems:
+        return  # what is open already may be the cause
+    said: dict[str, list[str]] = {}
+    for log, done in zip(draft.logs, draft.converted(), strict=True):
+        for text in contradictions(done.columns, draft.crane):
+            said.setdefault(text.rpartition(":")[2] or text, []).append(f"{log.path.name}: {text}")
+    draft.questions += [f"crane: {texts[0]}" for texts in said.values()]
+
+
+def _bad_cells(logs: Sequence[Log], log_map: LogMap) -> list[str]:
+    used = {e.source: name for name, e in log_map.columns.items()}
+    return [
+        f"{log.path.name}: {used[c.name]}: {len(c.bad)} cells of '{c.name}' are no numbers: "
+        f"{log.place(c.bad[0][0])} '{c.bad[0][1]}'"
+        for log in logs
+        for c in log.columns
+        if c.bad and c.name in used
+    ]
+
+
+def refuse_if_open(log_map: LogMap, where: str) -> None:
+    """Raise `InputError` with every open question of a map."""
+    if log_map.questions:
+        raise InputError(
+            f"{where}: {' | '.join(log_map.questions)} (answer by --set CHANNEL.FIELD=VALUE, or in the map and "
+            "remove the question; --accept imports as it stands)"
+        )

@@ -1,0 +1,44 @@
+"""Which reader a log needs, by its ending; what it is called in the map."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from winch_friction.importing.log import Log
+from winch_friction.physics.errors import InputError
+
+TEXT = (".csv", ".txt", ".tsv", ".asc", ".log", ".gz", ".zip", ".prn")
+WORKBOOK = (".xlsx", ".xlsm")
+SIGNALS = (".parquet", ".pq", ".mat", ".tdms", ".mf4", ".mdf")
+BAGS = (".mcap", ".db3")
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a log is a recording of ROS 2."""
+    return path.is_dir() or path.suffix in BAGS
+
+
+def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
+    """A log of any kind; raises `InputError` in one line for what is missing, empty or of no known kind."""
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"{path}: no such file")
+    suffix = path.suffix.lower()
+    if path.is_file() and path.stat().st_size == 0:
+        raise InputError(f"{path}: the file is empty")
+    if suffix in WORKBOOK:
+        from winch_friction.importing.workbook_log import read_workbook_log
+
+        return read_workbook_log(path, settings)
+    if suffix in SIGNALS:
+        from winch_friction.importing.signal_logs import read_signal_log
+
+        return read_signal_log(path, settings)
+    if suffix in TEXT or not suffix:
+        from winch_friction.importing.text_log import read_text_log
+
+        return read_text_log(path, settings)
+    old = "; save it as .xlsx" if suffix == ".xls" else ""
+    raise InputError(
+        f"{path}: no reader for '{suffix}' files{old}; use {', '.join(TEXT + WORKBOOK + SIGNALS)} or a bag"
+    )

@@ -1,0 +1,190 @@
+"""Logs of measuring programs: Parquet, MATLAB .mat (v5 and v7.3), LabVIEW .tdms, ASAM .mf4 / .mdf.
+
+Signals of rates of their own are put on the densest signal's times, each held at its latest value, as a node sees it.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from winch_friction.importing.log import Log, LogColumn, listed, number_column, unique_names
+from winch_friction.importing.optional import library
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+
+TIME = "time"  # the name given to the times that a file keeps beside its signals
+_DEEPEST = 6  # structs within structs of a .mat file
+_MOST = 50_000_000  # values of one signal: ten days at 50 Hz
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal with its unit and its own times in s, or None where the file gives no times."""
+
+    name: str
+    values: Any
+    unit: str = ""
+    times: FloatArray | None = None
+    note: str = ""
+
+
+def read_signal_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
+    """A log of signals by the file's ending; raises `InputError` in one line for what cannot be read."""
+    kind = path.suffix.lower()
+    try:
+        signals, metadata = _READERS[kind](path)
+    except InputError:
+        raise
+    except Exception as error:  # every one of these libraries raises what its parser meets
+        said = (str(error) or type(error).__name__).splitlines()[0][:100]
+        raise InputError(f"{path}: not a readable {kind} file ({said})") from error
+    columns, notes = _aligned(path, [each for each in signals if np.ndim(each.values) == 1 and len(each.values) > 1])
+    return Log(
+        path, tuple(columns), {"kind": kind.lstrip(".")}, lambda row: f"sample {row + 1}", tuple(notes), metadata
+    )
+
+
+def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:
+    if not signals:
+        raise InputError(f"{path}: holds no signal of more than one value")
+    timed = [each for each in signals if each.times is not None and len(each.times) == len(each.values)]
+    if not timed:
+        return _of_one_length(path, signals)
+    base = max((each.times for each in timed), key=lambda t: len(t) if t is not None else 0)
+    assert base is not None
+    others = [each for each in timed if each.times is not None and not np.array_equal(each.times, base)]
+    columns = [number_column(TIME, base, "s")]
+    names = unique_names([TIME, *(each.name for each in timed)])[1:]
+    columns += [_column(name, each, base) for name, each in zip(names, timed, strict=True)]
+    left = [each.name for each in signals if each not in timed]
+    notes = (
+        [f"{len(others)} signals have times of their own: held at their latest value on the times of the densest"]
+        if others
+        else []
+    )
+    return columns, notes + ([f"signals without times left out: {listed(left)}"] if left else [])
+
+
+def _of_one_length(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:
+    lengths = [len(each.values) for each in signals]
+    length = max(set(lengths), key=lambda n: (lengths.count(n), n))
+    kept = [each for each in signals if len(each.values) == length]
+    names = unique_names([each.name for each in kept])
+    left = [f"{each.name} ({len(each.values)})" for each in signals if len(each.values) != length]
+    notes = [f"arrays of another length than {length} left out: {listed(left)}"] if left else []
+    return [_column(name, each, None) for name, each in zip(names, kept, strict=True)], notes
+
+
+def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
+    values = np.asarray(signal.values)
+    if base is not None and signal.times is not None and len(signal.times) != len(base) or (
+        base is not None and signal.times is not None and not np.array_equal(signal.times, base)
+    ):  # fmt: skip
+        index = np.searchsorted(signal.times, base, side="right") - 1
+        values = np.where(index >= 0, values[np.maximum(index, 0)], np.nan)
+    if np.issubdtype(values.dtype, np.datetime64):
+        return LogColumn(name, np.full(len(values), np.nan), signal.unit, text=values, note=signal.note)
+    if values.dtype.kind in "biuf":
+        return number_column(name, values, signal.unit, signal.note)
+    from winch_friction.importing.cells import as_column
+
+    return as_column(name, values.tolist(), ".", "", signal.unit, signal.note)
+
+
+def _parquet(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+    table = library("pyarrow.parquet", "Parquet logs").ParquetFile(path).read()
+    return [Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names], {}
+
+
+def _mat(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+    from scipy.io import loadmat
+
+    try:
+        content = loadmat(path, squeeze_me=True, struct_as_record=False, simplify_cells=True)
+    except NotImplementedError:  # version 7.3 is HDF5
+        return list(_hdf5(path)), {}
+    return [
+        each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)
+    ], {}
+
+
+def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
+    """Arrays of numbers in nested structs under dotted names; a matrix gives one signal per column."""
+    if isinstance(value, dict):
+        for key, part in value.items() if depth < _DEEPEST else ():
+            yield from _arrays(f"{name}.{key}", part, depth + 1)
+        return
+    array = np.asarray(value)
+    if array.dtype.kind not in "biufMU" or array.size < 2 or array.size > _MOST or array.ndim > 2:
+        return
+    if array.ndim == 1:
+        yield Signal(name, array)
+        return
+    tall = array if array.shape[0] >= array.shape[1] else array.T
+    if tall.shape[1] <= 100:
+        yield from (Signal(f"{name}.{k + 1}" if tall.shape[1] > 1 else name, tall[:, k]) for k in range(tall.shape[1]))
+
+
+def _hdf5(path: Path) -> Iterator[Signal]:
+    h5py = library("h5py", "MATLAB files of version 7.3")
+    found: list[tuple[str, Any]] = []
+
+    def visit(name: str, item: Any) -> None:
+        if (
+            isinstance(item, h5py.Dataset)
+            and not name.startswith("#")
+            and item.dtype.kind in "biuf"
+            and 1 < item.size <= _MOST
+        ):
+            found.append((name.replace("/", "."), np.squeeze(item[()])))
+
+    with h5py.File(path, "r") as file:
+        file.visititems(visit)
+    for name, array in found:
+        yield from _arrays(name, array, 0)
+
+
+def _tdms(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+    tdms = library("nptdms", "LabVIEW .tdms logs").TdmsFile.read(path)
+    channels = [channel for group in tdms.groups() for channel in group.channels() if len(channel)]
+    signals = []
+    for channel in channels:
+        unit = str(channel.properties.get("unit_string", ""))
+        step = channel.properties.get("wf_increment")
+        times = None
+        if step:
+            start = float(channel.properties.get("wf_start_offset", 0.0))
+            times = np.asarray(start + float(step) * np.arange(len(channel)), dtype=np.float64)
+        signals.append(Signal(channel.name, channel[:], unit, times))
+    return signals, {key: str(value) for key, value in tdms.properties.items()}
+
+
+def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+    mdf = library("asammdf", "ASAM .mf4 logs").MDF(path)
+    try:
+        start = mdf.header.start_time.timestamp()
+        signals = [
+            Signal(
+                each.name, each.samples, each.unit or "", np.asarray(each.timestamps, dtype=float), each.comment or ""
+            )
+            for each in mdf.iter_channels(skip_master=True)
+            if np.ndim(each.samples) == 1
+        ]
+    finally:
+        mdf.close()
+    return signals, {"start": start}
+
+
+_READERS = {
+    ".parquet": _parquet,
+    ".pq": _parquet,
+    ".mat": _mat,
+    ".tdms": _tdms,
+    ".mf4": _mdf,
+    ".mdf": _mdf,
+    ".dat": _mdf,
+}
+ENDINGS = tuple(_READERS)

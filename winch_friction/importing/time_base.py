@@ -1,0 +1,255 @@
+"""A log's time as seconds: which form its cells have, told from the values, and the way to seconds.
+
+Forms: `seconds` (any unit, from any origin), `unix` (counted since 1970), `excel` and `matlab` (days), `datetime`
+(dates with a time of day, in one column or two) and `clock` (a time of day alone, from midnight).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from typing import Any
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+import numpy as np
+
+from winch_friction.importing.log import LogColumn, Place
+from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.records.headers import conversion_to_si
+
+FORMS = ("seconds", "unix", "excel", "matlab", "datetime", "clock")
+ORDERS = ("ymd", "dmy", "mdy")
+_DAY = 86_400.0
+_EXCEL_EPOCH = 25_569.0  # days from 1899-12-30 to 1970-01-01
+_MATLAB_EPOCH = 719_529.0  # days from year 0 to 1970-01-01
+_UNIX_YEARS = (6.3e8, 2.6e9)  # s: 1990 to 2052
+
+
+@dataclass(frozen=True)
+class TimeBase:
+    """How a column (or a date and a clock) becomes seconds.
+
+    `form` one of FORMS; `unit` of numbers; `order` of a date's parts; `zone` for dates without an offset, '' where
+    none is needed; `spread`: rows of one tick lie evenly between this tick and the next.
+    """
+
+    form: str
+    unit: str = "s"
+    order: str = ""
+    zone: str = ""
+    spread: bool = False
+
+
+@dataclass(frozen=True)
+class TimeGuess:
+    """A time base with its confidence 0 ... 1 and reason; `question` is what must be answered first, '' for nothing."""
+
+    base: TimeBase
+    confidence: float
+    because: str
+    question: str = ""
+
+
+def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
+    """The time base of a column, or of a date and a clock beside it; None when the values are no time."""
+    guess = _guess_text(columns) if not columns[0].numeric else _guess_numbers(columns[0], unit)
+    if guess is None:
+        return None
+    seconds = to_seconds(columns, guess.base, "", lambda row: f"row {row + 1}", strict=False)
+    finite = seconds[np.isfinite(seconds)]
+    if len(finite) < 2 or finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02:
+        return None
+    ticks = _rows_of_one_tick(finite)
+    if ticks > 1.5:
+        return replace(
+            guess,
+            base=replace(guess.base, spread=True),
+            because=f"{guess.because}; about {ticks:.3g} rows share a time, so the rows of a tick are spread evenly",
+        )
+    return guess
+
+
+def _rows_of_one_tick(seconds: FloatArray) -> float:
+    """Rows per different time where the ticks are regular, else 1."""
+    _, counts = np.unique(seconds, return_counts=True)
+    inner = counts[1:-1]
+    if len(inner) < 3 or np.median(inner) < 2:
+        return 1.0
+    return float(np.mean(inner)) if np.mean(np.abs(inner - np.median(inner)) <= 0.35 * np.median(inner)) > 0.8 else 1.0
+
+
+def _guess_numbers(column: LogColumn, unit: str) -> TimeGuess | None:
+    values = column.values[np.isfinite(column.values)]
+    if len(values) < 2:
+        return None
+    low, high = float(values.min()), float(values.max())
+    for name, factor in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)):
+        if _UNIX_YEARS[0] < low * factor and high * factor < _UNIX_YEARS[1]:
+            return TimeGuess(TimeBase("unix", name), 0.95, f"values of {low:.4g} are {name} since 1970")
+    if not unit and low > 3.0e4 and high < 6.0e4 and high - low < 60.0:
+        return TimeGuess(TimeBase("excel", "day"), 0.9, f"values of {low:.6g} are days as spreadsheets count them")
+    if not unit and low > 7.2e5 and high < 7.6e5 and high - low < 60.0:
+        return TimeGuess(TimeBase("matlab", "day"), 0.9, f"values of {low:.6g} are days as MATLAB counts them")
+    if unit:
+        return TimeGuess(TimeBase("seconds", unit), 0.97, f"unit '{unit}'")
+    return _guess_bare_numbers(values)
+
+
+def _guess_bare_numbers(values: FloatArray) -> TimeGuess:
+    step = float(np.median(np.diff(values)))
+    if 1e-4 <= step <= 1.5:
+        return TimeGuess(TimeBase("seconds", "s"), 0.85, f"no unit; a step of {step:.4g} is taken for seconds")
+    if 1.5 < step <= 2000.0:
+        return TimeGuess(TimeBase("seconds", "ms"), 0.7, f"no unit; a step of {step:.4g} is taken for ms")
+    if 0.0 < step < 1e-4:
+        return TimeGuess(TimeBase("seconds", "day"), 0.6, f"no unit; a step of {step:.3g} is taken for days")
+    return TimeGuess(TimeBase("seconds", "us"), 0.6, f"no unit; a step of {step:.4g} is taken for us")
+
+
+def _guess_text(columns: Sequence[LogColumn]) -> TimeGuess | None:
+    cells = _joined(columns)
+    parts = [p for p in (time_parts(cell) for cell in _sample(cells)) if p is not None]
+    if len(parts) < 0.8 * len(_sample(cells)):
+        return None
+    dated = sum(p[0] is not None for p in parts) > len(parts) / 2
+    if not dated:
+        return TimeGuess(TimeBase("clock"), 0.9, f"times of day such as '{_first(cells)}', from midnight")
+    if any(isinstance(c, (datetime, np.datetime64)) for c in _sample(cells)):
+        return TimeGuess(TimeBase("datetime", order="ymd", zone="UTC"), 0.95, "dates; no zone is given, taken for UTC")
+    order, sure = _order_of(parts)
+    zoned = any(p[7] for p in parts)
+    zone = "with its zone" if zoned else "no zone is given, taken for UTC (it only dates the run)"
+    days = len({p[:3] for p in parts})
+    because = f"dates such as '{_first(cells)}', order {order}, {zone}"
+    question = ""
+    if not sure and days > 1:
+        question = f"is '{_first(cells)}' day or month first? set time.order to dmy or mdy"
+    elif not sure:
+        because += "; day or month first is open, which dates the run but changes no duration"
+    return TimeGuess(
+        TimeBase("datetime", order=order, zone="" if zoned else "UTC"), 0.95 if sure else 0.7, because, question
+    )
+
+
+def _order_of(parts: Sequence[Any]) -> tuple[str, bool]:
+    """Order of year, month, day and whether it is sure."""
+    dates = [p[:3] for p in parts if p[0] is not None]
+    if max(_int(d[0]) for d in dates) > 31:
+        return "ymd", True
+    if any(not d[1].isdigit() for d in dates):
+        return "dmy", True
+    if max(_int(d[0]) for d in dates) > 12:
+        return "dmy", True
+    if max(_int(d[1]) for d in dates) > 12:
+        return "mdy", True
+    point = any(p[8] == "." for p in parts)
+    return "dmy", point
+
+
+def to_seconds(
+    columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool = True
+) -> FloatArray:
+    """Seconds of every row; NaN where a cell is empty; raises `InputError` by row for a cell that is no time."""
+    if columns[0].numeric:
+        seconds = _from_numbers(columns[0].values, base, where)
+    else:
+        seconds = _from_text(columns, base, where, place, strict)
+    return spread_ticks(seconds) if base.spread else seconds
+
+
+def _from_numbers(values: FloatArray, base: TimeBase, where: str) -> FloatArray:
+    if base.form == "excel":
+        return (values - _EXCEL_EPOCH) * _DAY
+    if base.form == "matlab":
+        return (values - _MATLAB_EPOCH) * _DAY
+    if base.form not in ("seconds", "unix"):
+        raise InputError(
+            f"{where}: time.form is '{base.form}', but the column holds plain numbers; use seconds or unix"
+        )
+    scale, _ = conversion_to_si(base.unit or "s", "s", where)
+    return values * scale
+
+
+def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool) -> FloatArray:
+    cells = _joined(columns)
+    if isinstance(columns[0].text, np.ndarray) and np.issubdtype(columns[0].text.dtype, np.datetime64):
+        return np.asarray(columns[0].text.astype("datetime64[ns]").astype(np.int64) * 1e-9, dtype=np.float64)
+    shift = _zone_shift(cells, base, where)
+    known: dict[tuple[Any, ...], float] = {}
+    seconds = np.full(len(cells), np.nan)
+    for row, cell in enumerate(cells):
+        parts = time_parts(cell)
+        if parts is None:
+            if strict and cell is not None and str(cell).strip():
+                raise InputError(f"{where}: {place(row)}: '{str(cell)[:40]}' is no time of the form '{base.form}'")
+            continue
+        key = parts[:3]
+        if key not in known:
+            known[key] = days_since_1970(key, base.order or "ymd", where) * _DAY if parts[0] is not None else 0.0
+        seconds[row] = known[key] + clock_seconds(parts) - (zone_seconds(parts[7]) if parts[7] else shift)
+    return _over_midnight(seconds) if base.form == "clock" else seconds
+
+
+def _over_midnight(seconds: FloatArray) -> FloatArray:
+    """Times of day that fall from the end of a day to its beginning go on into the next one."""
+    steps = np.diff(seconds, prepend=seconds[0])
+    return seconds + _DAY * np.cumsum(np.nan_to_num(steps) < -0.9 * _DAY)
+
+
+def spread_ticks(seconds: FloatArray) -> FloatArray:
+    """Rows of one time laid evenly between this time and the next; the first and last tick like the others."""
+    ticks, first, counts = np.unique(seconds, return_index=True, return_counts=True)
+    if len(ticks) < 2 or np.any(np.diff(seconds) < 0.0) or not np.isfinite(seconds).all():
+        return seconds
+    usual = float(np.median(counts[1:-1])) if len(ticks) > 2 else float(max(counts))
+    width = float(np.median(np.diff(ticks)))
+    rank = np.arange(len(seconds)) - np.repeat(first, counts)
+    share = np.repeat(np.maximum(counts, 1), counts).astype(float)
+    ends = np.repeat(np.append(np.diff(ticks), width), counts)
+    last, begin = (
+        np.repeat(np.arange(len(ticks)) == len(ticks) - 1, counts),
+        np.repeat(np.arange(len(ticks)) == 0, counts),
+    )
+    share = np.where(last, np.maximum(share, usual), share)
+    rank = np.where(begin, rank + np.maximum(usual - counts[0], 0.0), rank)  # the first tick was joined late
+    share = np.where(begin, np.maximum(share, usual), share)
+    return seconds + ends * rank / share
+
+
+def _joined(columns: Sequence[LogColumn]) -> Any:
+    if len(columns) == 1:
+        return columns[0].text
+    return [
+        " ".join(str(part).removesuffix(" 00:00:00") for part in row)
+        for row in zip(*(c.text for c in columns), strict=True)
+    ]
+
+
+def _sample(cells: Any) -> list[Any]:
+    step = max(1, len(cells) // 200)
+    return [cell for cell in list(cells[::step]) if cell is not None and str(cell).strip()]
+
+
+def _first(cells: Any) -> str:
+    return str(next((cell for cell in cells if cell is not None and str(cell).strip()), ""))[:40]
+
+
+def _zone_shift(cells: Any, base: TimeBase, where: str) -> float:
+    """Offset of the zone from UTC in s at the log's first date; one for the whole log, so no hour is lost in it."""
+    if not base.zone or base.zone == "UTC" or base.form != "datetime":
+        return 0.0
+    try:
+        zone = ZoneInfo(base.zone)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
+        raise InputError(f"{where}: time.zone '{base.zone}' is not known; write e.g. UTC or Europe/Oslo") from error
+    parts = next(p for p in (time_parts(cell) for cell in cells) if p is not None)
+    local = datetime(1970, 1, 1) + timedelta(
+        days=days_since_1970(parts[:3], base.order or "ymd", where), seconds=clock_seconds(parts)
+    )
+    offset = local.replace(tzinfo=zone).utcoffset()
+    return offset.total_seconds() if offset else 0.0
+
+
+def _int(text: str) -> int:
+    return int(text) if text.isdigit() else 0

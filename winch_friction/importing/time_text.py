@@ -1,0 +1,68 @@
+"""A cell that holds a date, a time of day, or both: its parts, and what they are in days and seconds."""
+
+import re
+from datetime import date, datetime, time, timedelta
+from typing import Any
+
+import numpy as np
+
+from winch_friction.physics.errors import InputError
+
+_MONTHS = {
+    name: k + 1
+    for k, names in enumerate(
+        ("jan", "feb", "mar mär mae", "apr", "may mai", "jun", "jul", "aug", "sep", "oct okt", "nov", "dec dez des")
+    )
+    for name in names.split()
+}
+_STAMP = re.compile(
+    r"^\W?(?:(\d{1,4})[-./ ](\d{1,2}|[^\W\d_]{3,9})\.?[-./ ](\d{1,4}))?[T ,]*"
+    r"(?:(\d{1,3}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?)?\s*([AaPp][Mm])?\s*(Z|UTC|[+-]\d\d:?\d\d)?\W?$"
+)
+_COMPACT = re.compile(r"^(\d{4})(\d\d)(\d\d)[T _-](\d\d):?(\d\d):?(\d\d)")
+
+
+def time_parts(cell: Any) -> tuple[Any, ...] | None:
+    """Three parts of the date (or None), hour, minute, second, am/pm, zone, and the date's mark."""
+    if isinstance(cell, np.datetime64):
+        cell = cell.astype("datetime64[us]").item()
+    if isinstance(cell, timedelta):
+        total = cell.total_seconds()
+        return None, None, None, "0", "0", str(total), None, None, ""
+    if isinstance(cell, (datetime, date, time)):
+        cell = cell.isoformat()
+    text = _COMPACT.sub(r"\1-\2-\3 \4:\5:\6", str(cell).strip()) if cell is not None else ""
+    match = _STAMP.match(text)
+    if not text or match is None or (match[1] is None and match[4] is None):
+        return None
+    mark = text[len(match[1])] if match[1] and len(match[1]) < len(text) else ""
+    return (*match.groups(), mark)
+
+
+def clock_seconds(parts: tuple[Any, ...]) -> float:
+    """Seconds since midnight of a cell's parts."""
+    hour, minute = float(parts[3] or 0), float(parts[4] or 0)
+    second = float((parts[5] or "0").replace(",", ".").replace(":", "."))
+    if parts[6]:
+        hour = hour % 12 + (12 if parts[6].lower() == "pm" else 0)
+    return hour * 3600.0 + minute * 60.0 + second
+
+
+def days_since_1970(key: tuple[str, str, str], order: str, where: str) -> float:
+    """Days since 1970 of a date's three parts in an order; raises `InputError` for what is no date."""
+    named = dict(zip(order, key, strict=True))
+    month = named["m"]
+    number = int(month) if month.isdigit() else _MONTHS.get(month[:3].lower(), 0)
+    year = int(named["y"]) + (2000 if int(named["y"]) < 70 and len(named["y"]) <= 2 else 0)
+    try:
+        return (datetime(year, number, int(named["d"])) - datetime(1970, 1, 1)).days
+    except ValueError as error:
+        raise InputError(f"{where}: '{'-'.join(key)}' is no date of the order {order}; set time.order") from error
+
+
+def zone_seconds(zone: str) -> float:
+    """Offset of a zone such as +02:00 from UTC, s."""
+    if zone in ("Z", "UTC"):
+        return 0.0
+    digits = zone[1:].replace(":", "")
+    return (1.0 if zone[0] == "+" else -1.0) * (int(digits[:2]) * 3600.0 + int(digits[2:]) * 60.0)

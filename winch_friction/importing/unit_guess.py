@@ -1,0 +1,123 @@
+"""Units that a log does not say: by the size that its numbers would have, and by the torque balance."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from winch_friction.importing.balance import closure
+from winch_friction.importing.carry_out import convert
+from winch_friction.importing.draft import Draft
+from winch_friction.importing.expectations import usual_size
+from winch_friction.importing.guess import Match, plausible_units
+from winch_friction.importing.kinematics import rope_over_motor
+from winch_friction.importing.log import Log
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, usual_units
+
+_COMBINATIONS = 300  # of units tried against the torque balance
+_RARER = 0.6  # prior of each next unit in the order of usual ones
+
+
+def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
+    """Units that the log does not say, by size, and by the torque balance where several sizes fit."""
+    axes: dict[str, list[str]] = {}
+    members: dict[str, list[str]] = {}
+    for name in list(draft.log_map.columns):
+        match = found.get(name) or found["rope_speed"]
+        if ambiguity(match.slot.channel, match.unit):
+            continue
+        options = _options(draft, name, match, pooled)
+        kind = "pressures" if match.slot.channel.startswith("pressure_") else name
+        axes[kind] = [u for u in axes.get(kind, options) if u in options] or axes.get(kind, options)
+        members.setdefault(kind, []).append(name)
+    open_axes = {kind: options for kind, options in axes.items() if len(options) > 1}
+    chosen = _by_balance(draft, open_axes, members) if open_axes else {}
+    for kind, options in axes.items():
+        for name in members[kind]:
+            _set_unit(draft, name, options, chosen.get(kind))
+
+
+def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
+    column = pooled.column(match.column.name)
+    options = plausible_units(column, match.unit, match.slot.channel, draft.crane)
+    if match.unit and not options:  # what the log says gives no usual size: which unit would?
+        others = [u for u in usual_units(match.slot.channel) if u != match.unit]
+        likely = [u for u in others if plausible_units(column, u, match.slot.channel, draft.crane)]
+        low, high = usual_size(match.slot.channel, draft.crane)
+        size = float(np.nanpercentile(np.abs(column.values), 95.0))
+        hint = f"; '{likely[0]}' would give a usual size: set {name}.unit={likely[0]}" if likely else ""
+        own = CHANNEL_UNITS[match.slot.channel][0]
+        draft.questions.append(
+            f"{name}: '{match.column.name}' says '{match.unit}', but {size:.4g} {match.unit} is no usual size "
+            f"({low:.3g} to {high:.3g} {own}){hint}"
+        )
+        return [match.unit]
+    if match.unit or options:
+        own = CHANNEL_UNITS[match.slot.channel][0]
+        named = column.name == name and own in options  # the contract's own name without a unit is SI
+        return [own] if named else options
+    return []
+
+
+def _by_balance(draft: Draft, axes: Mapping[str, list[str]], members: Mapping[str, list[str]]) -> dict[str, str]:
+    best: tuple[float, dict[str, str]] = (-1.0, {})
+    for count, units in enumerate(product(*axes.values())):
+        if count >= _COMBINATIONS:
+            break
+        choice = dict(zip(axes, units, strict=True))
+        prior = float(np.prod([_RARER ** axes[kind].index(unit) for kind, unit in choice.items()]))
+        worth = prior * _closing(draft, {n: unit for kind, unit in choice.items() for n in members[kind]})
+        if worth > best[0]:
+            best = (worth, choice)
+    return best[1]
+
+
+def _closing(draft: Draft, units: Mapping[str, str]) -> float:
+    """How well the torque balance and the rope's motion fit with these units, 0 ... 1."""
+    if draft.crane is None:
+        return 1.0
+    entries = {n: replace(e, unit=units.get(n, e.unit)) for n, e in draft.log_map.columns.items()}
+    trial = replace(draft.log_map, columns=entries)
+    worth = []
+    for log in draft.logs[:4]:
+        columns = convert(log, trial, draft.crane, strict=False).columns
+        found = closure(columns, draft.crane)
+        ratio = rope_over_motor(columns, draft.crane)
+        off = 0.0 if ratio is None else np.log(max(abs(ratio.value), 1e-9)) / 0.3
+        worth.append(np.exp(-0.5 * (min(found.mismatch, 30.0) ** 2 if found else 0.0) - 0.5 * min(off**2, 400.0)))
+    return float(np.mean(worth)) + 1e-12
+
+
+def _set_unit(draft: Draft, name: str, options: Sequence[str], chosen: str | None) -> None:
+    entry = draft.log_map.columns[name]
+    if entry.unit:
+        return
+    if not options:
+        column = draft.logs[0].column(entry.source)
+        size = float(np.nanpercentile(np.abs(column.values), 95.0))
+        channel = name.rpartition(".")[2]
+        draft.questions.append(
+            f"{name}: '{entry.source}' says no unit, and {size:.4g} is no usual size in "
+            f"{', '.join(usual_units(channel))}; set {name}.unit"
+        )
+        return
+    unit = chosen or options[0]
+    if unit == "-" and CHANNEL_UNITS[name.rpartition(".")[2]][0] == "1":
+        draft.change(name, unit="")
+        return
+    if len(options) == 1:
+        draft.change(
+            name,
+            entry.confidence * 0.95,
+            f"no unit is said: of the usual ones only {unit} gives a usual size",
+            unit=unit,
+        )
+    else:
+        others = ", ".join(u for u in options if u != unit)
+        draft.change(
+            name,
+            entry.confidence * 0.8,
+            f"no unit is said: {unit} closes the balance best or is the most usual ({others} possible)",
+            unit=unit,
+        )

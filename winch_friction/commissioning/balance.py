@@ -1,0 +1,221 @@
+"""Does the torque balance close? A small Bayesian fit: what ordinary friction and ordinary errors may be is a prior.
+
+Friction may be wrong by its share, the load by a layer or a tare, inertia by a third; a catalogue effect of twice its
+usual size stays within these. What is left after them, and how far they had to be stretched, is the score: about the
+number of effective samples when the record is the crane's, many times that when it is not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.commissioning.view import RunView
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.direction import smooth_signs
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.winch.operating_point import operating_point
+
+EFFECTIVE = 40.0  # samples that a run counts for: neighbouring blocks repeat each other
+# ordinary errors, 1 sigma
+FRICTION_SHARE = 0.3  # of a given model's friction
+TYPICAL_SHARE = 0.6  # of the typical friction that stands in for a model
+LOAD_FRICTION = 0.05  # of T_d/i: gear, sheave and seal losses that a model lacks
+MOTOR_FRICTION = 0.010  # of the rated torque: brake drag, wear
+FAST_FRICTION = 0.03  # of the rated torque at the run's top speed: line losses, churning
+SLOW_FRICTION = 0.02  # of the rated torque near standstill: Stribeck
+LOAD_SHARE = 0.05  # of T_d/i: a layer, a load cell, a displacement feedback
+OFFSET_SHARE = 0.010  # of the rated torque: tare, transducer offsets
+# an effect that a model lacks adds friction; only so many sigma may be missing from it
+MISSING, LEAST_FRICTION = 0.3, 0.6
+LEAST_INERTIA, MOST_INERTIA = 0.7, 2.0  # by how much the inertia may be wrong, as shares of it
+# beyond these a friction law means nothing: the rest of a wrong channel must show as residual, not as friction
+MOST_SPEED, MOST_PRESSURE = 650.0, 600e5  # rad/s, Pa
+SLOW_SPEED = 0.1  # of the run's top speed: the e-fold of friction at low speed
+INERTIA_SHARE = 0.3
+HEAVE_SHARE, NO_HEAVE_SHARE = 0.15, 0.7  # of the load's inertia, with and without a logged heave
+NOISE_SHARE = 0.008  # of the rated torque: what no prior above covers
+FRICTION_NOISE = 0.08  # of the friction
+CAUCHY = 3.0  # sigma beyond which a block counts less
+FEWEST = 5  # moving blocks; a run with fewer tells nothing
+FREE_OFFSET = 2.0  # of the rated torque, where no load is logged
+
+
+@dataclass(frozen=True)
+class Closure:
+    """How one run closes: `score`, residual as it stands and its RMS after ordinary errors, N m at the shaft.
+
+    `needed` says how many sigma each ordinary error had to be stretched, by name; `level` is the RMS of the load torque.
+    """
+
+    run: str
+    score: float
+    before: float
+    after: float
+    level: float
+    needed: dict[str, float]
+    time: FloatArray
+    drive: FloatArray
+    expected: FloatArray
+
+
+def closure(view: RunView, model: FrictionModel | None) -> Closure:
+    """Close one run's balance as well as ordinary errors allow."""
+    with np.errstate(all="ignore"):
+        friction, share = _friction(view, model), FRICTION_SHARE if model is not None else TYPICAL_SHARE
+        load = static_torque(view)
+        known = np.isfinite(load).any()
+        load = np.nan_to_num(load) if not known else load
+        inertial = view.inertia * view.acceleration
+        swing = _swing(view)
+        drive = view.drive_torque
+        expected = load + friction + inertial + swing
+        rated = view.rated_torque
+        sign = np.sign(view.speed)
+        relative = np.abs(view.speed) / np.nanpercentile(np.abs(view.speed), 99)
+        swings = HEAVE_SHARE if view.heave is not None else NO_HEAVE_SHARE
+        errors = (
+            _Error("friction", friction, share, -LEAST_FRICTION / share),
+            _Error("load-proportional friction", sign * np.abs(load), LOAD_FRICTION, -MISSING),
+            _Error("motor friction", sign * rated, MOTOR_FRICTION, -MISSING),
+            _Error("friction at speed", sign * rated * relative**2, FAST_FRICTION, -MISSING),
+            _Error("friction at low speed", sign * rated * np.exp(-relative / SLOW_SPEED), SLOW_FRICTION, -MISSING),
+            _Error("load", load, LOAD_SHARE),
+            _Error("offset", np.full(len(drive), rated), OFFSET_SHARE if known else FREE_OFFSET),
+            _Error("inertia", inertial, INERTIA_SHARE, -LEAST_INERTIA / INERTIA_SHARE, MOST_INERTIA / INERTIA_SHARE),
+            _Error("load inertia", swing, swings, -1.0 / swings, 2.0 / swings),
+        )
+        sigma = np.hypot(NOISE_SHARE * rated, FRICTION_NOISE * friction)
+        return _fit(view, drive, expected, errors, sigma, load)
+
+
+def static_torque(view: RunView) -> FloatArray:
+    """Torque of the load at rest at the shaft, N m; NaN where it is not known."""
+    if view.load_torque is not None:
+        return view.load_torque
+    return view.load * GRAVITY * view.lever
+
+
+def _swing(view: RunView) -> FloatArray:
+    """Inertia of the load, with the crane's heave, N m at the shaft."""
+    if view.load_torque is not None:
+        return np.zeros(len(view.time))
+    acceleration = view.lever * view.acceleration + view.heave_acceleration
+    return np.nan_to_num(view.load * view.lever * acceleration)
+
+
+def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:
+    stateless = _without_memory(model)
+    if stateless is None or (view.groups and stateless.constants.get("max_displacement", 1.0) <= 0.0):
+        return typical_friction(view)
+    groups = [
+        (
+            np.full(len(view.time), g.count),
+            np.minimum(np.abs(g.drop), MOST_PRESSURE),
+            np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
+            np.clip(g.displacement, 0.0, view.max_displacement),
+        )
+        for g in view.groups.values()
+    ]
+    speed = np.clip(view.speed, -MOST_SPEED, MOST_SPEED)
+    drum = np.clip(np.nan_to_num(static_torque(view)), -view.rated_torque, view.rated_torque) * view.gear_ratio
+    point = operating_point(
+        direction=smooth_signs(view.speed, 0.0),
+        speed=speed,
+        drum_torque=np.abs(drum),
+        groups=groups,
+        motor_total=np.full(len(view.time), view.motors),
+        time=view.time,
+        **({} if view.oil is None else {"oil_temperature": np.where(np.isfinite(view.oil), view.oil, 40.0)}),
+        wire_layer=np.where(np.isfinite(view.layer), view.layer, 1.0),
+    )
+    return np.broadcast_to(np.asarray(stateless.torque(point), float), view.time.shape)
+
+
+def _without_memory(model: FrictionModel | None) -> FrictionModel | None:
+    """The model's terms without a state: memory averages out over blocks, and would need the whole record."""
+    if model is None:
+        return None
+    names = [term.name for term in model.terms if term.state is None]
+    return model.subset(names) if names else None
+
+
+def typical_friction(view: RunView) -> FloatArray:
+    """Friction of a hydraulic winch where no model is given: 2 % of the rated torque, 4 % more at 200 rad/s, and 4.5 %
+    of the load's (paper 2's cranes lie within a factor of two of it). N m at the shaft."""
+    if not view.groups:
+        return np.sign(view.speed) * 0.2 * np.nanmedian(np.abs(view.drive_torque))
+    speed = np.minimum(np.abs(view.speed) / 200.0, 3.0)
+    load = np.minimum(np.abs(np.nan_to_num(static_torque(view))), view.rated_torque)
+    level = view.rated_torque * (0.02 + 0.04 * speed**2) + 0.045 * load
+    return np.sign(view.speed) * level
+
+
+@dataclass(frozen=True)
+class _Error:
+    """One ordinary error: its torque at 1, its sigma, and between how many sigma it may lie."""
+
+    name: str
+    torque: FloatArray
+    sigma: float
+    lower: float = -np.inf
+    upper: float = np.inf
+
+
+def _fit(
+    view: RunView,
+    drive: FloatArray,
+    expected: FloatArray,
+    errors: Sequence[_Error],
+    sigma: FloatArray,
+    load: FloatArray,
+) -> Closure:
+    residual = drive - expected
+    good = view.moving & np.isfinite(residual) & np.isfinite(sigma)
+    for each in errors:
+        good &= np.isfinite(each.torque)
+    needed, score = {}, 0.0
+    after = before = float("nan")
+    if good.sum() >= FEWEST:
+        design = np.column_stack([each.torque[good] * each.sigma / sigma[good] for each in errors])
+        limits = np.array([(each.lower, each.upper) for each in errors])
+        theta, score, left = _robust_ridge(design, residual[good] / sigma[good], limits)
+        needed = {each.name: value for each, value in zip(errors, theta.tolist(), strict=True)}
+        before = float(np.sqrt(np.mean(residual[good] ** 2)))
+        after = float(np.sqrt(np.mean((left * sigma[good]) ** 2)))
+    level = float(np.sqrt(np.nanmean(load[good] ** 2))) if good.any() else 0.0
+    return Closure(view.name, score, before, after, level, needed, view.time, drive, expected)
+
+
+def _robust_ridge(design: FloatArray, target: FloatArray, limits: FloatArray) -> tuple[FloatArray, float, FloatArray]:
+    """Errors in their sigmas, score (residual and stretching together) and residual; unit prior on every column."""
+    limit = 1e12
+    design, target = np.clip(design, -limit, limit), np.clip(target, -limit, limit)
+    share = EFFECTIVE / len(target)
+    weight = np.ones(len(target))
+    theta = np.zeros(design.shape[1])
+    left = target
+    for _ in range(3):
+        weighted = design * (share * weight)[:, None]
+        theta = _bounded(weighted.T @ design + np.eye(len(theta)), weighted.T @ target, limits)
+        left = target - design @ theta
+        weight = 1.0 / (1.0 + (left / CAUCHY) ** 2)
+    loss = CAUCHY**2 * np.log1p((left / CAUCHY) ** 2)
+    return theta, float(share * loss.sum() + theta @ theta), left
+
+
+def _bounded(matrix: FloatArray, target: FloatArray, limits: FloatArray) -> FloatArray:
+    """The ridge solution with those errors held at their limit that would pass it, the farthest first."""
+    free = np.ones(len(target), bool)
+    theta = np.zeros(len(target))
+    while free.any():
+        rest = target - matrix[:, ~free] @ theta[~free]
+        theta[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest[free])
+        excess = np.where(free, np.maximum(limits[:, 0] - theta, theta - limits[:, 1]), -np.inf)
+        worst = int(np.argmax(excess))
+        if excess[worst] <= 0.0:
+            break
+        theta[worst] = np.clip(theta[worst], *limits[worst])
+        free[worst] = False
+    return theta

@@ -1,0 +1,268 @@
+"""Mistakes that a log or a crane file may hold, each as what would undo it in a run's view.
+
+One entry, one mistake: what it is called, which channel it concerns, how it is put right, and what it costs before any
+data are seen (twice the negative log of its prior odds, up to a constant): the common ones come cheap, those with a
+free number dear.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from winch_friction.commissioning.view import GroupView, RunView
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.units import CM3_PER_REV, GRAVITY, RPM
+from winch_friction.physics.winch.crane import Crane
+
+Repair = Callable[[RunView], RunView]
+
+UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 5.0, 6.0, 12.0  # prior costs
+
+# channel -> factor to the true value, what is written in the log and under which unit it stands
+_TURN = 2.0 * np.pi
+LOAD_UNITS = (
+    (1e-3, "kg under [t]"), (1e3, "t under [kg]"), (1.0 / GRAVITY, "kN under [t]"), (1e3 / GRAVITY, "kN under [kg]"),
+    (GRAVITY, "t under [kN]"), (0.45359237, "lb under [kg]"), (0.45359237e-3, "lb under [t]"),
+)  # fmt: skip
+PRESSURE_UNITS = (
+    (1e-5, "Pa under [bar]"), (1e5, "bar under [Pa]"), (10.0, "MPa under [bar]"), (0.1, "bar under [MPa]"),
+    (0.0689476, "psi under [bar]"), (14.5038, "bar under [psi]"), (1e-2, "kPa under [bar]"), (1e2, "bar under [kPa]"),
+    (1e-6, "Pa under [MPa]"), (1e6, "MPa under [Pa]"), (1e3, "kPa under [Pa]"), (1e-3, "Pa under [kPa]"),
+)  # fmt: skip
+SPEED_UNITS = (
+    (1.0 / RPM, "rad/s under [rpm]"), (RPM, "rpm under [rad/s]"), (60.0, "1/s under [rpm]"), (1.0 / 60.0, "rpm under [1/s]"),
+    (_TURN / 360.0, "deg/s under [rad/s]"), (1.0 / 6.0, "deg/s under [rpm]"),
+)  # fmt: skip
+DISPLACEMENT_UNITS = (
+    (_TURN, "cm^3/rad under [cm^3/rev]"), (1.0 / _TURN, "cm^3/rev under [cm^3/rad]"), (1e3, "l/rev under [cm^3/rev]"),
+    (1e-6, "cm^3/rad under [m^3/rad]"), (CM3_PER_REV, "cm^3/rev under [m^3/rad]"), (1e-3, "mm^3/rev under [cm^3/rev]"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake: `cause` and `channel` as in `Finding`, `words` that complete 'most likely ...', `undo` puts it right.
+
+    `factor` is the number by which the channel was put right, NaN where there is none.
+    """
+
+    cause: str
+    channel: str
+    words: str
+    cost: float
+    undo: Repair
+    factor: float = float("nan")
+
+
+def speed_times(factor: float) -> Repair:
+    """The speed and what follows from it, times a factor."""
+    return lambda view: replace(view, speed=view.speed * factor, acceleration=view.acceleration * factor)
+
+
+def load_times(factor: float) -> Repair:
+    """The load times a factor."""
+
+    def undo(view: RunView) -> RunView:
+        torque = None if view.load_torque is None else view.load_torque * factor
+        return replace(view, load=view.load * factor, load_torque=torque)
+
+    return undo
+
+
+def groups_changed(change: Callable[[str, GroupView], GroupView]) -> Repair:
+    """Every motor group changed by its name."""
+    return lambda view: replace(view, groups={name: change(name, group) for name, group in view.groups.items()})
+
+
+def drop_times(factor: float, only: str = "") -> Repair:
+    """Pressures times a factor, of one group or of all."""
+
+    def change(name: str, group: GroupView) -> GroupView:
+        if only and name != only:
+            return group
+        return replace(group, drop=group.drop * factor, pressure_sum=group.pressure_sum * abs(factor))
+
+    return groups_changed(change)
+
+
+def displacement_times(factor: float, only: str = "") -> Repair:
+    """Displacements times a factor, of one group or of all."""
+
+    def change(name: str, group: GroupView) -> GroupView:
+        return group if only and name != only else replace(group, displacement=group.displacement * factor)
+
+    return groups_changed(change)
+
+
+def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
+    """All mistakes without a free number that these runs can hold."""
+    groups = tuple(dict.fromkeys(name for view in views for name in view.groups))
+    yield from _units(views, crane, groups)
+    yield from _signs(views, groups)
+    yield from _swaps(views, groups)
+    yield from _cranes(views, crane, others)
+    yield from _layers(views, crane)
+
+
+def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> Iterator[Mistake]:
+    def each(channel: str, table: Sequence[tuple[float, str]], undo: Callable[[float], Repair]) -> Iterator[Mistake]:
+        for factor, words in table:
+            yield Mistake("unit", channel, f"{channel} holds {words}", UNIT, undo(factor), factor)
+
+    if any(np.isfinite(view.load).any() for view in views):
+        yield from each("hook_load", LOAD_UNITS, load_times)
+    yield from each("motor_speed", SPEED_UNITS, speed_times)
+    ratio = crane.gear_ratio
+    if ratio > 1.5:
+        yield Mistake("unit", "motor_speed", "motor_speed holds the drum's speed", UNIT + 1.0, speed_times(ratio), ratio)
+        words = "drum_speed (or its gear ratio) holds the motor's speed"
+        yield Mistake("unit", "motor_speed", words, UNIT + 1.0, speed_times(1.0 / ratio), 1.0 / ratio)
+    if any(view.motor_torque is not None for view in views):
+        yield from each("motor_torque", ((1e3, "kN*m under [N*m]"), (1e-3, "N*m under [kN*m]")), _motor_torque_times)
+    if not groups:
+        return
+    yield from each("pressure", PRESSURE_UNITS, drop_times)
+    yield from each("displacement", _displacement_table(crane), displacement_times)
+    for name in groups if len(groups) > 1 else ():
+        for channel, table, undo in (
+            ("pressure", PRESSURE_UNITS, drop_times), ("displacement", _displacement_table(crane), displacement_times),
+        ):  # fmt: skip
+            for factor, words in table:
+                said = f"{name}.{channel} holds {words}"
+                yield Mistake("unit", f"{name}.{channel}", said, UNIT + 2.0, undo(factor, name), factor)
+
+
+def _motor_torque_times(factor: float) -> Repair:
+    return lambda v: v if v.motor_torque is None else replace(v, motor_torque=v.motor_torque * factor)
+
+
+def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
+    largest = crane.max_displacement
+    fractions = (
+        (largest, "a fraction of the largest displacement, read as m^3/rad"),
+        (largest / CM3_PER_REV, "a fraction under [cm^3/rev]"),
+        (largest / 100.0 / CM3_PER_REV, "per cent under [cm^3/rev]"),
+        (largest / 100.0, "per cent, read as m^3/rad"),
+    )
+    return (*DISPLACEMENT_UNITS, *fractions) if largest > 0.0 else DISPLACEMENT_UNITS
+
+
+def _signs(views: Sequence[RunView], groups: tuple[str, ...]) -> Iterator[Mistake]:
+    said = "the sign of motor_speed is flipped: positive must mean hoisting"
+    yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
+    if any(view.heave is not None for view in views):
+        said = "the sign of heave_velocity is flipped: positive must mean the crane tip rises"
+        yield Mistake("sign", "heave_velocity", said, SIGN, _heave_times(-1.0), -1.0)
+    if any(view.motor_torque is not None for view in views):
+        said = "the sign of motor_torque is flipped: positive must hold the load"
+        yield Mistake("sign", "motor_torque", said, SIGN, _motor_torque_times(-1.0), -1.0)
+    if groups:
+        said = "the ports are swapped: pressure_a must be the port that holds the load"
+        yield Mistake("ports", "pressure", said, PORTS, drop_times(-1.0), -1.0)
+    for name in groups if len(groups) > 1 else ():
+        said = f"{name}.pressure_a and {name}.pressure_b are swapped"
+        yield Mistake("ports", f"{name}.pressure", said, PORTS, drop_times(-1.0, name), -1.0)
+
+
+def _heave_times(factor: float) -> Repair:
+    def undo(view: RunView) -> RunView:
+        if view.heave is None:
+            return view
+        rates = {name: (v * factor if name == "heave_velocity" else v) for name, v in view.rates.items()}
+        changed = view.heave_acceleration * factor
+        return replace(view, heave=view.heave * factor, heave_acceleration=changed, rates=rates)
+
+    return undo
+
+
+def _swaps(views: Sequence[RunView], groups: tuple[str, ...]) -> Iterator[Mistake]:
+    for k, first in enumerate(groups):
+        for second in groups[k + 1 :]:
+            if any({first, second} <= set(view.groups) for view in views):
+                said = f"the columns of motor groups {first} and {second} are exchanged"
+                yield Mistake("groups", f"{first}, {second}", said, SWAP, _exchanged(first, second))
+
+
+def _exchanged(first: str, second: str) -> Repair:
+    def undo(view: RunView) -> RunView:
+        if not {first, second} <= set(view.groups):
+            return view
+        a, b = view.groups[first], view.groups[second]
+        swapped = {first: replace(b, count=a.count), second: replace(a, count=b.count)}
+        return replace(view, groups={**view.groups, **swapped})
+
+    return undo
+
+
+def _cranes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
+    for name, other in others.items():
+        if other == crane or other.electric != crane.electric or any(_lacks(view, other) for view in views):
+            continue
+        said = f"these are runs of crane '{name}', not of '{crane.name}'"
+        yield Mistake("crane", "", said, CRANE, _on(other))
+
+
+def _on(crane: Crane) -> Repair:
+    return lambda view: view.on(crane)
+
+
+def _lacks(view: RunView, crane: Crane) -> bool:
+    try:
+        view.on(crane)
+    except InputError:
+        return True
+    return False
+
+
+def _layers(views: Sequence[RunView], crane: Crane) -> Iterator[Mistake]:
+    radii = crane.drum.layer_radii
+    if len(radii) < 2:
+        return
+    for k, radius in enumerate(radii, 1):
+        if all(np.all(view.layer == k) for view in views):
+            continue
+
+        def undo(view: RunView, radius: float = radius) -> RunView:
+            return replace(view, radius=np.full(len(view.time), radius))
+
+        yield Mistake("layer", "wire_layer", f"the wire lies on layer {k}, not where wire_layer says", LAYER, undo, k)
+
+
+def free_mistakes(views: Sequence[RunView], scale_of: Mapping[str, float], tare: float) -> Iterator[Mistake]:
+    """Mistakes with a number that the data give: `scale_of` by what is scaled (`load`, `pressure`, a group's name),
+    `tare` kg missing in the load."""
+    load = scale_of.get("load", float("nan"))
+    if np.isfinite(load) and load > 0.0:
+        words = f"the gear ratio of the crane file is wrong: {views[0].gear_ratio / load:.4g} would close"
+        yield Mistake("gear", "gear_ratio", words, SCALE - 2.0, _geared(1.0 / load), 1.0 / load)
+        words = f"displacement is wrong by a factor (or per group, not per motor): times {1.0 / load:.3g} would close"
+        yield Mistake("scale", "displacement", words, SCALE - 2.0, displacement_times(1.0 / load), 1.0 / load)
+        words = f"hook_load is wrong by a factor: times {load:.3g} would close"
+        yield Mistake("scale", "hook_load", words, SCALE, load_times(load), load)
+    for name, factor in scale_of.items():
+        if name != "load" and np.isfinite(factor) and factor > 0.0:
+            words = f"{name}.displacement (or its pressures) is wrong by a factor: times {factor:.3g} would close"
+            yield Mistake("scale", f"{name}.displacement", words, SCALE + 1.0, displacement_times(factor, name), factor)
+    if tare > 0.0:
+        words = f"hook_load lacks a tare (hook, block or wire) of {tare / 1e3:.3g} t"
+        yield Mistake("tare", "hook_load", words, TARE + 2.0, lambda v: replace(v, load=v.load + tare), tare)
+
+
+def _geared(factor: float) -> Repair:
+    return lambda view: replace(view, gear_ratio=view.gear_ratio * factor)
+
+
+def delayed(seconds: float) -> Mistake:
+    """The speed and its companions are logged late (positive) against pressures, by this many seconds."""
+    which = "motor_speed is late against the pressures" if seconds > 0.0 else "the pressures are late against motor_speed"
+    words = f"{which} by about {abs(seconds):.2g} s"
+    return Mistake("delay", "motor_speed", words, DELAY, lambda view: _shifted(view, seconds), seconds)
+
+
+def _shifted(view: RunView, seconds: float) -> RunView:
+    def at(values: FloatArray) -> FloatArray:
+        return np.interp(view.time + seconds, view.time, values)
+
+    return replace(view, speed=at(view.speed), acceleration=at(view.acceleration))

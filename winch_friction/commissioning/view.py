@@ -1,0 +1,241 @@
+"""A run in blocks of a fifth of a second: what the balance and the comparison of speeds are reckoned on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from winch_friction.physics.plausible import LIMITS
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch.crane import Crane
+
+BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an encoder's steps
+MOST_BLOCKS = 600  # per run; evenly thinned beyond, so that a dozen runs are checked within a second
+BROKEN_SHARE = 0.02  # of a channel's samples beyond what a sensor can say: broken cells; more: a wrong unit
+MOVING = 0.03  # of the run's largest speed: slower blocks have no certain direction
+WRAPS = 2.05 * np.pi  # rad; an angle that stays within one turn wraps around and tells no rate
+
+
+@dataclass(frozen=True)
+class GroupView:
+    """One motor group: number of motors, pressure drop Pa, p_A + p_B Pa, displacement m^3/rad per motor."""
+
+    count: float
+    drop: FloatArray
+    pressure_sum: FloatArray
+    displacement: FloatArray
+
+    @property
+    def torque(self) -> FloatArray:
+        """n D dp, N m."""
+        return self.count * self.displacement * self.drop
+
+
+@dataclass(frozen=True)
+class RunView:
+    """A run as the crane explains it, in blocks; SI.
+
+    `load` is NaN where it is not logged; `load_torque` N m at the shaft stands in for it where it is measured. `rates`
+    are other channels' words on the speed: shaft speed rad/s (`shaft_angle`, `speed_reference`) or wire speed m/s, up
+    positive (`wire_out`, `heave_velocity`).
+    """
+
+    name: str
+    time: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    load: FloatArray
+    layer: FloatArray
+    radius: FloatArray
+    gear_ratio: float
+    inertia: float
+    motors: float
+    max_displacement: float
+    heave: FloatArray | None
+    heave_acceleration: FloatArray
+    groups: Mapping[str, GroupView]
+    motor_torque: FloatArray | None = None
+    load_torque: FloatArray | None = None
+    oil: FloatArray | None = None
+    rates: Mapping[str, FloatArray] = field(default_factory=dict)
+
+    @property
+    def lever(self) -> FloatArray:
+        """Metres of wire per radian of the motor shaft."""
+        return self.radius / self.gear_ratio
+
+    @property
+    def drive_torque(self) -> FloatArray:
+        """Torque of all motors at the shaft, N m."""
+        if self.motor_torque is not None:
+            return self.motor_torque * self.motors
+        return np.asarray(sum(group.torque for group in self.groups.values()))
+
+    @property
+    def rated_torque(self) -> float:
+        """What all motors give at 300 bar, or what was seen where the drive is electric; N m. The scale of errors."""
+        if self.groups and self.max_displacement > 0.0:
+            return sum(group.count for group in self.groups.values()) * self.max_displacement * 300e5
+        seen = np.abs(self.drive_torque)
+        return float(np.nanpercentile(seen, 98)) if np.isfinite(seen).any() else 1.0
+
+    @property
+    def moving(self) -> np.ndarray:
+        """Blocks whose direction is certain: neither they nor their neighbours are slow or of another direction."""
+        slow = np.abs(self.speed) <= MOVING * np.nanmax(np.abs(self.speed), initial=1e-9)
+        sign = np.sign(self.speed)
+        turned = np.zeros(len(sign), bool)
+        turned[1:] = sign[1:] != sign[:-1]
+        turned[:-1] |= turned[1:]
+        return ~(slow | turned) & np.isfinite(self.speed)
+
+    def on(self, crane: Crane) -> "RunView":
+        """The same record as another crane would explain it; raises `InputError` where it has not these groups."""
+        groups = {name: replace(g, count=float(crane.motor_count(name))) for name, g in self.groups.items()}
+        return replace(
+            self,
+            radius=_radius(self.layer, crane),
+            gear_ratio=crane.gear_ratio,
+            inertia=crane.inertia,
+            groups=groups,
+            motors=float(crane.motor_total(tuple(groups))),
+            max_displacement=crane.max_displacement,
+        )
+
+
+def view_of(run: Run, crane: Crane) -> RunView:
+    """A run in blocks; broken cells are left out, whole channels of a wrong unit are not."""
+    blocks = _Blocks(run)
+    names = [g for g in run.groups if g in crane.groups]
+    groups = {name: _group(blocks, name, float(crane.motor_count(name))) for name in names}
+    speed = blocks.mean("motor_speed")
+    time = blocks.time
+    heave = blocks.mean("heave_velocity") if "heave_velocity" in run else None
+    layer = np.round(blocks.mean("wire_layer"))
+    view = RunView(
+        name=run.name,
+        time=time,
+        speed=speed,
+        acceleration=_slope(speed, time),
+        load=blocks.mean("hook_load"),
+        layer=layer,
+        radius=_radius(layer, crane),
+        gear_ratio=crane.gear_ratio,
+        inertia=crane.inertia,
+        motors=float(crane.motor_total(tuple(names))),
+        max_displacement=crane.max_displacement,
+        heave=heave,
+        heave_acceleration=np.zeros(len(time)) if heave is None else np.nan_to_num(_slope(heave, time)),
+        groups=groups,
+        motor_torque=blocks.mean("motor_torque") if "motor_torque" in run and not groups else None,
+        load_torque=_load_torque(blocks, crane, layer),
+        oil=blocks.mean("oil_temperature") if "oil_temperature" in run else None,
+        rates=_rates(blocks, heave),
+    )
+    return _thinned(view)
+
+
+class _Blocks:
+    """Block means of a run's columns."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        time = run.time
+        step = float(np.median(np.diff(time))) if len(time) > 1 else BLOCK
+        self.length = max(BLOCK, step)
+        # a wrong clock (ms read as s) may span days: never more blocks than samples
+        self.length = max(self.length, float(time[-1] - time[0]) / max(len(time), 1))
+        self.index = np.floor((time - time[0]) / self.length + 1e-9).astype(int)
+        self.size = int(self.index[-1]) + 1
+        self.time = time[0] + (np.arange(self.size) + 0.5) * self.length
+
+    def mean(self, column: str) -> FloatArray:
+        """Means of a column, NaN where a block has no value or the run no such column."""
+        if column not in self.run:
+            return np.full(self.size, np.nan)
+        return self.of(usable(column, self.run[column]))
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """Means of any values along the run."""
+        good = np.isfinite(values)
+        count = np.bincount(self.index[good], minlength=self.size)
+        total = np.bincount(self.index[good], values[good], minlength=self.size)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.where(count > 0, total / count, np.nan)
+
+
+def broken_cells(column: str, values: FloatArray) -> np.ndarray:
+    """Indices of the few cells beyond what a sensor can say; none where the whole channel is (a wrong unit)."""
+    lower, upper = LIMITS.get(column.rpartition(".")[2], (-1e9, 1e9))
+    beyond = np.flatnonzero((values < lower) | (values > upper))
+    return beyond if beyond.size <= max(BROKEN_SHARE * len(values), 1) else beyond[:0]
+
+
+def usable(column: str, values: FloatArray) -> FloatArray:
+    """A column without its broken cells."""
+    bad = broken_cells(column, values)
+    if not bad.size:
+        return values
+    values = values.copy()
+    values[bad] = np.nan
+    return values
+
+
+def _group(blocks: _Blocks, name: str, count: float) -> GroupView:
+    a, b = blocks.mean(f"{name}.pressure_a"), blocks.mean(f"{name}.pressure_b")
+    return GroupView(count, a - b, a + b, blocks.mean(f"{name}.displacement"))
+
+
+def _radius(layer: FloatArray, crane: Crane) -> FloatArray:
+    """Rope radius along the record; a layer that the drum has not counts as its nearest (the range check says so)."""
+    radii = np.array(crane.drum.layer_radii)
+    known = np.where(np.isfinite(layer), layer, len(radii))
+    return radii[np.clip(known.astype(int), 1, len(radii)) - 1]
+
+
+def _load_torque(blocks: _Blocks, crane: Crane, layer: FloatArray) -> FloatArray | None:
+    if "load_torque" in blocks.run:
+        return blocks.mean("load_torque")
+    if "rope_force" in blocks.run:
+        return blocks.mean("rope_force") * _radius(layer, crane) / crane.gear_ratio
+    return None
+
+
+def _rates(blocks: _Blocks, heave: FloatArray | None) -> dict[str, FloatArray]:
+    run, rates = blocks.run, {}
+    if "speed_reference" in run:
+        rates["speed_reference"] = blocks.mean("speed_reference")
+    if "shaft_angle" in run and np.ptp(usable("shaft_angle", run["shaft_angle"])) > WRAPS:
+        rates["shaft_angle"] = _slope(blocks.mean("shaft_angle"), blocks.time)
+    if "wire_out" in run:
+        rates["wire_out"] = -_slope(blocks.mean("wire_out"), blocks.time)
+    if heave is not None:
+        rates["heave_velocity"] = -heave
+    return rates
+
+
+def _slope(values: FloatArray, time: FloatArray) -> FloatArray:
+    return np.gradient(values, time) if len(values) > 2 else np.zeros(len(values))
+
+
+def _thinned(view: RunView) -> RunView:
+    step = -(-len(view.time) // MOST_BLOCKS)
+    return view if step < 2 else select(view, slice(None, None, step))
+
+
+def select(view: RunView, keep: slice | np.ndarray) -> RunView:
+    """Some blocks of a view."""
+
+    def cut(values: FloatArray | None) -> FloatArray | None:
+        return None if values is None else values[keep]
+
+    names = ("time", "speed", "acceleration", "load", "layer", "radius", "heave", "heave_acceleration", "motor_torque")
+    return replace(
+        view,
+        **{name: cut(getattr(view, name)) for name in (*names, "load_torque", "oil")},
+        groups={
+            name: replace(g, drop=g.drop[keep], pressure_sum=g.pressure_sum[keep], displacement=g.displacement[keep])
+            for name, g in view.groups.items()
+        },
+        rates={name: values[keep] for name, values in view.rates.items()},
+    )

@@ -39,7 +39,8 @@ NOISE_SHARE = 0.008  # of the rated torque: what no prior above covers
 FRICTION_NOISE = 0.08  # of the friction
 CAUCHY = 3.0  # sigma beyond which a block counts less
 FEWEST = 5  # moving blocks; a run with fewer tells nothing
-FREE_OFFSET = 2.0  # of the rated torque, where no load is logged
+MOST_STRETCH = 4.0  # sigma; a load or an offset farther off is no ordinary error
+FREE_OFFSET = 1.2  # of the rated torque, where no load is logged: what hangs there, which cannot push the wire
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,8 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
             _Error("motor friction", sign * rated, MOTOR_FRICTION, -MISSING),
             _Error("friction at speed", sign * rated * relative**2, FAST_FRICTION, -MISSING),
             _Error("friction at low speed", sign * rated * np.exp(-relative / SLOW_SPEED), SLOW_FRICTION, -MISSING),
-            _Error("load", load, LOAD_SHARE),
-            _Error("offset", np.full(len(drive), rated), OFFSET_SHARE if known else FREE_OFFSET),
+            _Error("load", load, LOAD_SHARE, -MOST_STRETCH, MOST_STRETCH),
+            _offset(len(drive), rated, known, bool(view.groups)),
             _Error("inertia", inertial, INERTIA_SHARE, -LEAST_INERTIA / INERTIA_SHARE, MOST_INERTIA / INERTIA_SHARE),
             _Error("load inertia", swing, swings, -1.0 / swings, 2.0 / swings),
         )
@@ -161,6 +162,13 @@ class _Error:
     sigma: float
     lower: float = -np.inf
     upper: float = np.inf
+
+
+def _offset(size: int, rated: float, known: bool, hydraulic: bool) -> _Error:
+    torque = np.full(size, rated)
+    if known:
+        return _Error("offset", torque, OFFSET_SHARE, -MOST_STRETCH, MOST_STRETCH)
+    return _Error("offset", torque, FREE_OFFSET, -OFFSET_SHARE if hydraulic else -1.0, 1.0)
 
 
 def _fit(

@@ -258,7 +258,7 @@ def delayed(seconds: float) -> Mistake:
     """The speed and its companions are logged late (positive) against pressures, by this many seconds."""
     which = "motor_speed is late against the pressures" if seconds > 0.0 else "the pressures are late against motor_speed"
     words = f"{which} by about {abs(seconds):.2g} s"
-    return Mistake("delay", "motor_speed", words, DELAY, lambda view: _shifted(view, seconds), seconds)
+    return Mistake("delay", "motor_speed", words, DELAY * (1.0 + abs(seconds)), lambda view: _shifted(view, seconds), seconds)
 
 
 def _shifted(view: RunView, seconds: float) -> RunView:

@@ -1,0 +1,138 @@
+"""Every channel by itself: range, rate, gaps, steps, saturation, standing still; and the clock."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.commissioning.finding import Finding
+from winch_friction.commissioning.view import broken_cells, usable
+from winch_friction.physics.plausible import LIMITS
+from winch_friction.physics.signals import FloatArray, Run, column_unit
+from winch_friction.physics.winch.crane import Crane
+
+GAP = 5.0  # usual steps, as in records.run_checks
+LONG = 1000.0  # a recording is at most this many times as long as its samples say: else the clock has jumped
+SLOW_RATE = 5.0  # Hz; friction at a reversal takes place within a fifth of a second
+UNEVEN = 0.3  # of the usual step: scatter of the steps beyond which the clock is worth a word
+COARSE = 200.0  # steps over a channel's range; fewer are coarse
+SATURATED = 0.02  # of the samples at one extreme value of a moving channel
+STUCK = 3.0  # s without any change in a channel that otherwise changes at every sample
+HOT = (-20.0, 95.0)  # degC, oil outside is unusual
+MAY_STAND = ("hook_load", "wire_layer", "oil_temperature", "displacement", "wire_out", "speed_reference")
+
+
+@dataclass(frozen=True)
+class ChannelSummary:
+    """One channel of one run in numbers: SI values, `step` its smallest change, `longest_still` s without a change."""
+
+    channel: str
+    unit: str
+    smallest: float
+    largest: float
+    missing: float
+    step: float
+    longest_still: float
+
+
+def clock_findings(run: Run) -> Iterator[Finding]:
+    """What is wrong with the time of a run."""
+    steps = np.diff(run.time)
+    usual = float(np.median(steps))
+    span = float(run.time[-1] - run.time[0])
+    if not np.isfinite(span) or span > LONG * usual * len(run):
+        said = f"{run.name}: the clock jumps: {span:.3g} s long with {len(run)} samples of {usual:.3g} s; cut it there"
+        yield Finding("error", "clock", said, "time", (run.name,), {"span": span, "usual_step": usual})
+        return
+    if 1.0 / usual < SLOW_RATE:
+        said = f"{run.name}: {1.0 / usual:.3g} Hz is slow: log at 10 Hz or more to see reversals"
+        yield Finding("warning", "rate", said, "time", (run.name,), {"rate": 1.0 / usual})
+    scatter = float(np.percentile(np.abs(steps - usual), 90)) / usual
+    if scatter > UNEVEN:
+        said = f"{run.name}: uneven clock: one step in ten is {100 * scatter:.0f} % or more off the usual {usual:.3g} s"
+        yield Finding("warning", "jitter", said, "time", (run.name,), {"scatter": scatter})
+    gaps = steps[steps > GAP * usual]
+    if gaps.size:
+        said = f"{run.name}: {gaps.size} gaps in time, the widest {gaps.max():.3g} s"
+        yield Finding("note", "gaps", said, "time", (run.name,), {"count": int(gaps.size), "widest": float(gaps.max())})
+
+
+def cell_findings(run: Run) -> Iterator[Finding]:
+    """Few cells beyond what any sensor can say: not a unit, but broken."""
+    for column, values in run.columns.items():
+        bad = broken_cells(column, values) if column != "time" else np.empty(0, int)
+        if bad.size:
+            k = int(bad[0])
+            said = (
+                f"{run.name}: {column} = {values[k]:.3g} {column_unit(column) or ''} at {run.time[k]:.6g} s (sample "
+                f"{k + 1}) is no measurement; {bad.size} such of {len(values)}: empty the cell or mend the logger"
+            )
+            yield Finding("error", "cell", said, column, (run.name,), {"count": int(bad.size), "value": float(values[k])})
+
+
+def summaries(run: Run) -> list[ChannelSummary]:
+    """Every channel in numbers."""
+    return [_summary(run, name, usable(name, values)) for name, values in run.columns.items() if name != "time"]
+
+
+def _summary(run: Run, name: str, values: FloatArray) -> ChannelSummary:
+    good = values[np.isfinite(values)]
+    changes = np.abs(np.diff(good))
+    moved = changes[changes > 0.0]
+    return ChannelSummary(
+        name,
+        column_unit(name) or "",
+        float(good.min()) if good.size else float("nan"),
+        float(good.max()) if good.size else float("nan"),
+        1.0 - good.size / len(values),
+        float(np.percentile(moved, 5)) if moved.size else 0.0,
+        _longest_still(run.time, values),
+    )
+
+
+def _longest_still(time: FloatArray, values: FloatArray) -> float:
+    places = np.concatenate(([0], np.flatnonzero(np.diff(values) != 0.0) + 1, [len(values) - 1]))
+    return float(np.diff(time[places]).max(initial=0.0))
+
+
+def channel_findings(run: Run, crane: Crane) -> Iterator[Finding]:
+    """What deserves a look in the channels of one run; nothing of it contradicts the crane."""
+    for each in summaries(run):
+        kind = each.channel.rpartition(".")[2]
+        yield from _span_findings(run, each, kind)
+        if kind == "wire_layer" and not (crane.drum.has(each.smallest) and crane.drum.has(each.largest)):
+            layers = len(crane.drum.layer_radii)
+            said = f"{run.name}: wire_layer is {each.smallest:g} ... {each.largest:g}, the drum has layers 1 ... {layers}"
+            yield Finding("error", "range", said, each.channel, (run.name,))
+        if kind == "oil_temperature" and not (HOT[0] <= each.smallest and each.largest <= HOT[1]):
+            said = f"{run.name}: oil of {each.smallest:.3g} ... {each.largest:.3g} degC; is it degF or kelvin?"
+            yield Finding("warning", "range", said, each.channel, (run.name,))
+        if each.missing > 0.0:
+            said = f"{run.name}: {each.channel} has no value in {100 * each.missing:.2g} % of the samples"
+            yield Finding("note", "missing", said, each.channel, (run.name,), {"share": each.missing})
+
+
+def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Finding]:
+    values = run[each.channel]
+    span = each.largest - each.smallest
+    if span <= 0.0 and kind not in MAY_STAND:
+        said = f"{run.name}: {each.channel} never changes ({each.smallest:.4g} {each.unit}): is the sensor connected?"
+        yield Finding("warning", "stuck", said, each.channel, (run.name,))
+        return
+    if kind in MAY_STAND or span <= 0.0:
+        return
+    if each.longest_still > STUCK and _changes_always(values):
+        said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
+        yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
+    if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
+        said = f"{run.name}: {each.channel} has steps of {each.step:.3g} {each.unit}, {span / each.step:.0f} over its range"
+        yield Finding("note", "quantisation", said, each.channel, (run.name,), {"step": each.step})
+    for extreme in (each.smallest, each.largest):
+        share = float(np.mean(values == extreme))
+        if share > SATURATED and kind in ("pressure_a", "pressure_b", "motor_speed", "motor_torque") and extreme != 0.0:
+            said = f"{run.name}: {each.channel} is at {extreme:.4g} {each.unit} in {100 * share:.1f} % of samples: saturated?"
+            yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
+
+
+def _changes_always(values: FloatArray) -> bool:
+    return float(np.mean(np.diff(values) != 0.0)) > 0.8

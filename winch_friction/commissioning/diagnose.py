@@ -1,0 +1,182 @@
+"""Which single mistake would make these runs this crane's? Every hypothesis is scored alike and the least score wins."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, static_torque, typical_friction
+from winch_friction.commissioning.kinematics import agreements
+from winch_friction.commissioning.mistakes import Mistake, delayed, fixed_mistakes, free_mistakes
+from winch_friction.commissioning.ranges import range_score
+from winch_friction.commissioning.view import RunView, select
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.winch.crane import Crane
+
+# score of a run above which it cannot be the crane's: ordinary friction and twice a catalogue effect stay below 75
+CONTRADICTS = 100.0
+SURE = 60.0  # a mistake that lowers the score of all runs by this much is named even where each alone would pass
+NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes at least half away
+MIXED = 10.0  # for a mistake that only some of the runs hold
+HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
+DELAYS = (0.4, 0.7, 1.0, 1.5, 2.5, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
+FIRST_RUNS, FIRST_BLOCKS, FINALISTS = 4, 200, 8  # every mistake is tried on these, the best of them on all runs
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A mistake against the data: `score` of all runs with it undone, by run, and the runs that hold it."""
+
+    mistake: Mistake
+    score: float
+    scores: tuple[float, ...]
+    runs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """`score` and `scores` as it stands, the hypotheses from the likeliest on, and how each run closes as it stands."""
+
+    score: float
+    scores: tuple[float, ...]
+    hypotheses: tuple[Hypothesis, ...]
+    closures: tuple[Closure, ...]
+    names: tuple[str, ...]
+
+    @property
+    def contradicting(self) -> tuple[str, ...]:
+        """Runs that cannot be the crane's."""
+        return tuple(n for n, s in zip(self.names, self.scores, strict=True) if s > CONTRADICTS)
+
+    @property
+    def best(self) -> Hypothesis | None:
+        """The likeliest mistake, where one takes away most of what does not fit."""
+        first = self.hypotheses[0] if self.hypotheses else None
+        if first is None or first.score > NOTICED * self.score:
+            return None
+        sure = self.score - first.score >= SURE and (_is_sure(first.mistake) or first.mistake.cause == "companion")
+        return first if self.contradicting or sure else None
+
+
+def score_of(view: RunView, model: FrictionModel | None) -> float:
+    """How badly a run fits the crane: balance, agreement of its channels, range."""
+    return closure(view, model).score + _beside_balance(view)
+
+
+def _beside_balance(view: RunView) -> float:
+    return sum(each.score for each in agreements(view)) + range_score(view)
+
+
+def diagnose(
+    views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane]
+) -> Diagnosis:
+    """Score the runs as they stand; when they contradict the crane, under every mistake, else under the sure ones."""
+    closures = tuple(closure(view, model) for view in views)
+    balance = [each.score for each in closures]
+    scores = np.array([b + _beside_balance(view) for b, view in zip(balance, views, strict=True)])
+    bench = _Bench(views, scores, model)
+    contradict = bool((scores > CONTRADICTS).any())
+    mistakes = [each for each in fixed_mistakes(views, crane, others) if contradict or _is_sure(each)]
+    mistakes += [delayed(sign * d) for d in DELAYS for sign in (1.0, -1.0)]
+    if contradict:
+        mistakes += _free([v for v, s in zip(views, scores, strict=True) if s > CONTRADICTS])
+    mistakes += _companions(views) if contradict or scores.sum() > SURE else []
+    hypotheses = bench.ranked(mistakes)
+    names = tuple(view.name for view in views)
+    return Diagnosis(float(scores.sum()), tuple(scores.tolist()), tuple(hypotheses), closures, names)
+
+
+def _is_sure(mistake: Mistake) -> bool:
+    """Mistakes that no friction, no catalogue effect and no scale can look like; asked even where every run passes."""
+    if mistake.channel == "motor_speed":
+        return mistake.cause in ("unit", "sign")
+    return mistake.cause in ("sign", "groups", "ports", "delay")
+
+
+class _Bench:
+    """Scores mistakes: all of them on the runs that fit worst, the best of these on every run."""
+
+    def __init__(self, views: Sequence[RunView], as_is: np.ndarray, model: FrictionModel | None) -> None:
+        self.views, self.as_is, self.model = views, as_is, model
+        order = np.argsort(-as_is)
+        self.first = sorted(order[:FIRST_RUNS].tolist())
+
+    def ranked(self, mistakes: Sequence[Mistake]) -> list[Hypothesis]:
+        """The mistakes that are worth a look on every run, least score first."""
+        whole = [self.views[k] for k in self.first]
+        thin = [_thin(view) for view in whole]
+
+        def quick(mistake: Mistake) -> float:
+            views = whole if mistake.cause == "delay" else thin  # a shift of time needs the neighbours
+            return mistake.cost + sum(self._undone(mistake, view) for view in views)
+
+        kept = sorted(mistakes, key=quick)[:FINALISTS]
+        return sorted((self._tried(each) for each in kept), key=lambda each: each.score)
+
+    def _undone(self, mistake: Mistake, view: RunView) -> float:
+        return score_of(mistake.undo(view), self.model) + _shrinking(mistake, view)
+
+    def _tried(self, mistake: Mistake) -> Hypothesis:
+        undone = np.array([self._undone(mistake, view) for view in self.views])
+        every, some = float(undone.sum()), float(np.minimum(undone, self.as_is).sum()) + MIXED
+        held = undone < self.as_is - HELPED
+        mixed = some < every and not held.all()
+        scores = np.minimum(undone, self.as_is) if mixed else undone
+        names = tuple(v.name for v, holds in zip(self.views, held, strict=True) if holds or not mixed)
+        return Hypothesis(mistake, (some if mixed else every) + mistake.cost, tuple(scores.tolist()), names)
+
+
+def _shrinking(mistake: Mistake, view: RunView) -> float:
+    """What it costs to make the measured torque smaller where no load says how large it should be: with the torque the
+    misfit shrinks as well, and that proves nothing (the Jacobian of the likelihood)."""
+    smaller = mistake.cause in ("unit", "scale") and mistake.channel.endswith(("pressure", "displacement", "torque"))
+    known = view.load_torque is not None or np.isfinite(view.load).any()
+    return 2.0 * EFFECTIVE * max(0.0, -float(np.log(mistake.factor))) if smaller and not known else 0.0
+
+
+def _thin(view: RunView) -> RunView:
+    step = len(view.time) // FIRST_BLOCKS
+    return select(view, slice(None, None, step)) if step > 1 else view
+
+
+def _free(views: Sequence[RunView]) -> list[Mistake]:
+    """Mistakes whose number the contradicting runs give: by least squares of the balance without any prior."""
+    parts: dict[str, list[float]] = {}
+    tares = []
+    for view in views:
+        with np.errstate(all="ignore"):
+            load, drive = static_torque(view), view.drive_torque
+            rest = typical_friction(view) + view.inertia * view.acceleration
+            good = view.moving & np.isfinite(load) & np.isfinite(drive) & np.isfinite(rest)
+            if good.sum() < 5:
+                continue
+            parts.setdefault("load", []).append(_ratio(load[good], (drive - rest)[good]))
+            for name, group in view.groups.items() if len(view.groups) > 1 else ():
+                own = group.torque[good]
+                parts.setdefault(name, []).append(_ratio(own, (load + rest - drive)[good] + own))
+            lacking = (drive - rest - load)[good].mean() / (9.81 * np.median(view.lever))
+            tares.append(float(lacking))
+    factors = {name: float(np.median(values)) for name, values in parts.items()}
+    return list(free_mistakes(views, factors, float(np.median(tares)) if tares else 0.0))
+
+
+def _ratio(x: np.ndarray, y: np.ndarray) -> float:
+    size = float(np.sum(x * x))
+    return float(np.sum(x * y)) / size if size > 0.0 else float("nan")
+
+
+def _companions(views: Sequence[RunView]) -> list[Mistake]:
+    """Channels that merely tell the speed again may be wrong themselves: without them the rest fits."""
+    found = []
+    for channel in dict.fromkeys(name for view in views for name in view.rates):
+        if channel == "heave_velocity":
+            continue  # it moves the load as well: its sign is a mistake of its own
+
+        def undo(view: RunView, channel: str = channel) -> RunView:
+            return replace(view, rates={n: v for n, v in view.rates.items() if n != channel})
+
+        ratios = [a.ratio for v in views for a in agreements(v) if a.channel == channel]
+        ratio = float(np.median(ratios)) if ratios else 1.0
+        words = f"{channel} contradicts motor_speed: it tells {ratio:.3g} times the speed"
+        found.append(Mistake("companion", channel, words, 8.0, undo, ratio))
+    return found

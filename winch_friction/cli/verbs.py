@@ -33,6 +33,7 @@ class Verb:
 VERBS = (
     Verb("demo", "demo", "The whole loop on a simulated sea: three nodes over DDS, a bag, a report."),
     Verb("simulate", "simulate", "A scenario becomes run files."),
+    Verb("check", "check", "Can these runs be this crane's? Names the most likely mistake; commissioning page."),
     Verb("identify", "identify", "Supplier tables and logged tests become a friction model."),
     Verb("replay", "replay", "A bag or run through the nodes' own step: table or bag, and a picture."),
     Verb("gap", "gap", "Where model and runs disagree, the missing effect's name, the repaired model."),

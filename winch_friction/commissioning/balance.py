@@ -7,6 +7,7 @@ number of effective samples when the record is the crane's, many times that when
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -107,12 +108,18 @@ def _swing(view: RunView) -> FloatArray:
 
 
 def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:
-    stateless = _without_memory(model)
-    if stateless is None or (view.groups and stateless.constants.get("max_displacement", 1.0) <= 0.0):
+    stateless = without_memory(model)
+    if stateless is None:
         return typical_friction(view)
+    return np.broadcast_to(np.asarray(stateless.torque(friction_point(view)), float), view.time.shape)
+
+
+def friction_point(view: RunView) -> tuple[Any, ...]:
+    """The operating point along a view, within what a friction law means."""
+    size = view.time.shape
     groups = [
         (
-            np.full(len(view.time), g.count),
+            np.full(size, g.count),
             np.minimum(np.abs(g.drop), MOST_PRESSURE),
             np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
             np.clip(g.displacement, 0.0, view.max_displacement),
@@ -121,20 +128,19 @@ def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:
     ]
     speed = np.clip(view.speed, -MOST_SPEED, MOST_SPEED)
     drum = np.clip(np.nan_to_num(static_torque(view)), -view.rated_torque, view.rated_torque) * view.gear_ratio
-    point = operating_point(
+    return operating_point(
         direction=smooth_signs(view.speed, 0.0),
         speed=speed,
         drum_torque=np.abs(drum),
         groups=groups,
-        motor_total=np.full(len(view.time), view.motors),
+        motor_total=np.full(size, view.motors),
         time=view.time,
         **({} if view.oil is None else {"oil_temperature": np.where(np.isfinite(view.oil), view.oil, 40.0)}),
         wire_layer=np.where(np.isfinite(view.layer), view.layer, 1.0),
     )
-    return np.broadcast_to(np.asarray(stateless.torque(point), float), view.time.shape)
 
 
-def _without_memory(model: FrictionModel | None) -> FrictionModel | None:
+def without_memory(model: FrictionModel | None) -> FrictionModel | None:
     """The model's terms without a state: memory averages out over blocks, and would need the whole record."""
     if model is None:
         return None

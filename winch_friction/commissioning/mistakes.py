@@ -20,6 +20,7 @@ Repair = Callable[[RunView], RunView]
 
 UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 5.0, 6.0, 12.0  # prior costs
 
+RARELY, RARE = ("deg/s", "1/s", "lb", "l/rev", "mm^3", "kPa", "kN under [kg]", "t under [kN]"), 4.0
 # channel -> factor to the true value, what is written in the log and under which unit it stands
 _TURN = 2.0 * np.pi
 LOAD_UNITS = (
@@ -31,6 +32,7 @@ PRESSURE_UNITS = (
     (0.0689476, "psi under [bar]"), (14.5038, "bar under [psi]"), (1e-2, "kPa under [bar]"), (1e2, "bar under [kPa]"),
     (1e-6, "Pa under [MPa]"), (1e6, "MPa under [Pa]"), (1e3, "kPa under [Pa]"), (1e-3, "Pa under [kPa]"),
 )  # fmt: skip
+THOUSANDS = ((1e3, "thousands under the plain unit"), (1e-3, "the plain unit under thousands"))
 SPEED_UNITS = (
     (1.0 / RPM, "rad/s under [rpm]"), (RPM, "rpm under [rad/s]"), (60.0, "1/s under [rpm]"), (1.0 / 60.0, "rpm under [1/s]"),
     (_TURN / 360.0, "deg/s under [rad/s]"), (1.0 / 6.0, "deg/s under [rpm]"),
@@ -100,7 +102,7 @@ def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, 
     """All mistakes without a free number that these runs can hold."""
     groups = tuple(dict.fromkeys(name for view in views for name in view.groups))
     yield from _units(views, crane, groups)
-    yield from _signs(views, groups)
+    yield from _signs(views, groups, crane)
     yield from _swaps(views, groups)
     yield from _cranes(views, crane, others)
     yield from _layers(views, crane)
@@ -109,7 +111,8 @@ def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, 
 def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> Iterator[Mistake]:
     def each(channel: str, table: Sequence[tuple[float, str]], undo: Callable[[float], Repair]) -> Iterator[Mistake]:
         for factor, words in table:
-            yield Mistake("unit", channel, f"{channel} holds {words}", UNIT, undo(factor), factor)
+            cost = UNIT + (RARE if words.startswith(RARELY) else 0.0)
+            yield Mistake("unit", channel, f"{channel} holds {words}", cost, undo(factor), factor)
 
     if any(np.isfinite(view.load).any() for view in views):
         yield from each("hook_load", LOAD_UNITS, load_times)
@@ -119,8 +122,8 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
         yield Mistake("unit", "motor_speed", "motor_speed holds the drum's speed", UNIT + 1.0, speed_times(ratio), ratio)
         words = "drum_speed (or its gear ratio) holds the motor's speed"
         yield Mistake("unit", "motor_speed", words, UNIT + 1.0, speed_times(1.0 / ratio), 1.0 / ratio)
-    if any(view.motor_torque is not None for view in views):
-        yield from each("motor_torque", ((1e3, "kN*m under [N*m]"), (1e-3, "N*m under [kN*m]")), _motor_torque_times)
+    if crane.drive.channels:
+        yield from each(crane.drive.channels[0], THOUSANDS, _motor_torque_times)
     if not groups:
         return
     yield from each("pressure", PRESSURE_UNITS, drop_times)
@@ -149,15 +152,15 @@ def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
     return (*DISPLACEMENT_UNITS, *fractions) if largest > 0.0 else DISPLACEMENT_UNITS
 
 
-def _signs(views: Sequence[RunView], groups: tuple[str, ...]) -> Iterator[Mistake]:
+def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> Iterator[Mistake]:
     said = "the sign of motor_speed is flipped: positive must mean hoisting"
     yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
     if any(view.heave is not None for view in views):
         said = "the sign of heave_velocity is flipped: positive must mean the crane tip rises"
         yield Mistake("sign", "heave_velocity", said, SIGN, _heave_times(-1.0), -1.0)
-    if any(view.motor_torque is not None for view in views):
-        said = "the sign of motor_torque is flipped: positive must hold the load"
-        yield Mistake("sign", "motor_torque", said, SIGN, _motor_torque_times(-1.0), -1.0)
+    for channel in crane.drive.channels:
+        said = f"the sign of {channel} is flipped: positive must hold the load"
+        yield Mistake("sign", channel, said, SIGN, _motor_torque_times(-1.0), -1.0)
     if groups:
         said = "the ports are swapped: pressure_a must be the port that holds the load"
         yield Mistake("ports", "pressure", said, PORTS, drop_times(-1.0), -1.0)
@@ -198,7 +201,7 @@ def _exchanged(first: str, second: str) -> Repair:
 
 def _cranes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
     for name, other in others.items():
-        if other == crane or other.electric != crane.electric or any(_lacks(view, other) for view in views):
+        if other == crane or other.drive.kind != crane.drive.kind or any(_lacks(view, other) for view in views):
             continue
         said = f"these are runs of crane '{name}', not of '{crane.name}'"
         yield Mistake("crane", "", said, CRANE, _on(other))

@@ -13,6 +13,7 @@ BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an en
 MOST_BLOCKS = 600  # per run; evenly thinned beyond, so that a dozen runs are checked within a second
 BROKEN_SHARE = 0.02  # of a channel's samples beyond what a sensor can say: broken cells; more: a wrong unit
 MOVING = 0.03  # of the run's largest speed: slower blocks have no certain direction
+MOST_NUMBER = 1e12  # in any SI unit: channels without a limit of their own (a Unix time, a shaft angle) stay below
 WRAPS = 2.05 * np.pi  # rad; an angle that stays within one turn wraps around and tells no rate
 
 
@@ -127,7 +128,7 @@ def view_of(run: Run, crane: Crane) -> RunView:
         heave=heave,
         heave_acceleration=np.zeros(len(time)) if heave is None else np.nan_to_num(_slope(heave, time)),
         groups=groups,
-        motor_torque=blocks.mean("motor_torque") if "motor_torque" in run and not groups else None,
+        motor_torque=None if crane.drive.hydraulic else _measured_torque(blocks, crane),
         load_torque=_load_torque(blocks, crane, layer),
         oil=blocks.mean("oil_temperature") if "oil_temperature" in run else None,
         rates=_rates(blocks, heave),
@@ -166,7 +167,8 @@ class _Blocks:
 
 def broken_cells(column: str, values: FloatArray) -> np.ndarray:
     """Indices of the few cells beyond what a sensor can say; none where the whole channel is (a wrong unit)."""
-    lower, upper = LIMITS.get(column.rpartition(".")[2], (-1e9, 1e9))
+    lower, upper = LIMITS.get(column.rpartition(".")[2], (-MOST_NUMBER, MOST_NUMBER))
+    lower, upper = max(lower, -MOST_NUMBER), min(upper, MOST_NUMBER)
     beyond = np.flatnonzero((values < lower) | (values > upper))
     return beyond if beyond.size <= max(BROKEN_SHARE * len(values), 1) else beyond[:0]
 
@@ -191,6 +193,13 @@ def _radius(layer: FloatArray, crane: Crane) -> FloatArray:
     radii = np.array(crane.drum.layer_radii)
     known = np.where(np.isfinite(layer), layer, len(radii))
     return radii[np.clip(known.astype(int), 1, len(radii)) - 1]
+
+
+def _measured_torque(blocks: _Blocks, crane: Crane) -> FloatArray:
+    """Torque per motor of a drive without pressures, N m."""
+    channels = {name: usable(name, blocks.run[name]) for name in (*crane.drive.channels, "motor_speed")}
+    run = replace(blocks.run, columns={**blocks.run.columns, **channels})
+    return blocks.of(np.asarray(crane.drive.of_run(run, crane), float)) / crane.motor_total(())
 
 
 def _load_torque(blocks: _Blocks, crane: Crane, layer: FloatArray) -> FloatArray | None:

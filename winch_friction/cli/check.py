@@ -1,0 +1,86 @@
+"""`winch-friction check`: can these runs be this crane's, and which mistake would explain why not?"""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.optional import OptionalPath
+
+PLAUSIBLE, CONTRADICTED = 0, 2
+
+
+def command(
+    runs: Annotated[list[Path], typer.Argument(help="Run files, bags, or folders of them.")],
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "",
+    model: Annotated[str, typer.Option(help="Model file or shipped name: judges more sharply.")] = "",
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    out: Annotated[OptionalPath, typer.Option(help="Folder for check.html and check.json.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Findings as JSON.")] = False,
+) -> None:
+    """Check runs against their crane before anything is learned from them.
+
+    Exit status 0: plausible; 2: not, and the first line names the most likely mistake.
+
+    Examples:
+
+      winch-friction check runs/ --crane my_crane.yaml
+
+      winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
+    """
+    from winch_friction.cli.inputs import crane_of, run_paths
+    from winch_friction.commissioning.check import known_cranes
+    from winch_friction.commissioning.commissioning import check
+    from winch_friction.physics.friction.registry import load_file
+    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.records.model_file import load_model
+    from winch_friction.records.runs import read_run
+
+    if terms_file is not None:
+        load_file(terms_file)
+    paths = run_paths(runs)
+    seed = load_model(model) if model else None
+    winch = crane_of(crane, seed, paths)
+    if seed is not None:
+        refuse_other_crane(seed, winch)
+    read = [read_run(path, winch) for path in progress(paths, "reading runs")]
+    near = [path.resolve().parent for path in (*paths, *((Path(crane),) if crane else ()))]
+    result = check(read, winch, seed, known_cranes(*near))
+    content = result.content()
+    if out is not None:
+        _write(result, content, out)
+    if as_json:
+        show_json(content)
+    else:
+        _show(result, read, out)
+    raise typer.Exit(PLAUSIBLE if result.plausible else CONTRADICTED)
+
+
+def _write(result: Any, content: dict[str, Any], out: Path) -> None:
+    from winch_friction.records.atomic import write_text
+    from winch_friction.report.check import write_check_report
+
+    write_text(out / "check.json", json.dumps(content, indent=2, allow_nan=False, default=str) + "\n")
+    write_check_report(out / "check.html", result)
+
+
+def _show(result: Any, runs: list[Any], out: Path | None) -> None:
+    print(result.sentence)
+    for run in runs:
+        show_warnings(run.warnings)
+    rest = [each for each in result.findings if each.sentence != result.sentence]
+    if rest:
+        show_table("findings", ("severity", "finding"), [(each.severity, each.sentence) for each in rest])
+    columns = ("run", "misfit", "limit", "as it stands [N*m]", "after ordinary errors [N*m]", "load [N*m]")
+    rows = [(b.run, b.score, result.limit, b.before, b.after, b.level) for b in result.balance]
+    show_table("torque balance at the motor shaft", columns, rows)
+    if result.identifiable:
+        columns = ("parameter", "relative std, model", "relative std, with these runs", "these runs tell")
+        rows = [(p.name, p.before, p.after, p.words) for p in result.identifiable]
+        show_table("what these runs can teach", columns, rows)
+    for line in result.log_next:
+        print(f"log next: {line}")
+    if out is not None:
+        print(f"written: {out / 'check.json'}, {out / 'check.html'}")

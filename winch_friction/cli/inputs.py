@@ -1,0 +1,87 @@
+"""What the verbs ask of their inputs before they work: which runs, of which crane, and can that be."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from winch_friction.cli.console import show_warnings
+from winch_friction.physics.errors import InputError
+
+RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
+TRUTH = "_truth"  # what simulate --truth appends to a run's name
+
+
+def run_paths(paths: Sequence[Path]) -> list[Path]:
+    """Run files named one by one or by folder; a folder with metadata.yaml is a bag, truth files are no runs."""
+    found: list[Path] = []
+    for path in map(Path, paths):
+        if path.is_dir() and not (path / "metadata.yaml").is_file():
+            inside = [each for each in sorted(path.iterdir()) if _is_run(each)]
+            if not inside:
+                kinds = ", ".join(RUN_SUFFIXES)
+                raise InputError(f"{path}: the folder holds no run ({kinds} or a rosbag2 folder)")
+            found += inside
+        else:
+            found.append(path)
+    return found
+
+
+def _is_run(path: Path) -> bool:
+    if path.stem.endswith(TRUTH) or path.name.startswith("."):
+        return False
+    return path.suffix in RUN_SUFFIXES if path.is_file() else (path / "metadata.yaml").is_file()
+
+
+def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:
+    """The crane that is named, else the one that the model or the runs say they are of, which is told on stderr.
+
+    `model` is a loaded model or None. Raises `InputError` where nobody says: no crane is assumed.
+    """
+    from winch_friction.records.crane_file import load_crane
+
+    if crane:
+        return load_crane(crane)
+    recorded, by = (model.crane, f"model '{model.name}'") if model is not None and model.crane else ("", "")
+    if not recorded:
+        recorded, by = _crane_of_runs(paths)
+    if not recorded:
+        raise InputError("which crane? Give --crane with a crane file or a shipped name (winch-friction init crane)")
+    try:
+        loaded = load_crane(recorded)
+    except InputError as error:
+        raise InputError(f"{by} is of crane '{recorded}': give its file with --crane ({error})") from None
+    show_warnings([f"no --crane: taken as '{recorded}', as {by} says"])
+    return loaded
+
+
+def _crane_of_runs(paths: Sequence[Path]) -> tuple[str, str]:
+    from winch_friction.records.runs import read_run
+
+    for path in list(paths)[:1]:
+        try:
+            return str(read_run(path, None, complete=False).metadata.get("crane") or ""), f"run '{path.name}'"
+        except InputError:
+            break  # whatever is wrong with the run is said when it is read for good
+    return "", ""
+
+
+def refuse_implausible(
+    runs: Sequence[Any], crane: Any, model: Any = None, force: bool = False, near: Sequence[Path] = ()
+) -> dict[str, Any]:
+    """Refuse runs that cannot be this crane's in one sentence; with `force` only warn.
+
+    `near` are paths beside which the user's other cranes may lie. Returns what a result's provenance is to hold:
+    nothing where the data are plausible, `forced` with the sentence where they are not.
+    """
+    from winch_friction.commissioning.check import known_cranes, quick_check, refuse
+    from winch_friction.commissioning.finding import first_contradiction
+
+    findings = quick_check(runs, crane, model, known_cranes(*(Path(each).resolve().parent for each in near)))
+    show_warnings(f"{each.sentence}" for each in findings if each.severity == "warning")
+    contradiction = first_contradiction(findings)
+    if contradiction is None:
+        return {}
+    if not force:
+        refuse(findings)
+    show_warnings([f"--force: {contradiction.sentence}"])
+    return {"forced": contradiction.sentence}

@@ -1,0 +1,124 @@
+"""The whole commissioning check: quick part, every channel, what the runs can teach, what to log next."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from winch_friction.commissioning.balance import Closure
+from winch_friction.commissioning.channels import ChannelSummary, channel_findings, summaries
+from winch_friction.commissioning.check import diagnosed
+from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
+from winch_friction.commissioning.excitation import Taught, log_next, taught
+from winch_friction.commissioning.finding import Finding, first_contradiction
+from winch_friction.commissioning.kinematics import Agreement, agreements
+from winch_friction.commissioning.view import view_of
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch.crane import Crane
+
+SCHEMA = "winch_friction.check/1"
+
+
+@dataclass(frozen=True)
+class RunBalance:
+    """How one run closes: its misfit and the residual before and after ordinary errors, N m at the shaft."""
+
+    run: str
+    score: float
+    before: float
+    after: float
+    level: float
+    needed: Mapping[str, float]
+    agreements: tuple[Agreement, ...]
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """Everything that was found; `findings` from the gravest on, `sentence` is the first line for a person."""
+
+    crane: Crane
+    model: str
+    runs: tuple[Run, ...]
+    findings: tuple[Finding, ...]
+    balance: tuple[RunBalance, ...]
+    closures: tuple[Closure, ...]
+    channels: Mapping[str, Sequence[ChannelSummary]]
+    diagnosis: Diagnosis
+    identifiable: tuple[Taught, ...]
+    log_next: tuple[str, ...]
+    limit: float = CONTRADICTS
+
+    @property
+    def plausible(self) -> bool:
+        """Whether the runs can be the crane's."""
+        return first_contradiction(self.findings) is None
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one line: the most likely mistake, or that there is none."""
+        first = first_contradiction(self.findings)
+        if first is not None:
+            return first.sentence
+        count = len(self.runs)
+        return f"plausible: {count} run{'s' if count > 1 else ''} of crane '{self.crane.name}' close the torque balance"
+
+    def content(self) -> dict[str, Any]:
+        """Plain types, for check.json."""
+        return {
+            "schema": SCHEMA,
+            "plausible": self.plausible,
+            "sentence": self.sentence,
+            "crane": self.crane.name,
+            "model": self.model,
+            "findings": [each.content() for each in self.findings],
+            "balance": [_finite(asdict(each)) for each in self.balance],
+            "limit": self.limit,
+            "channels": {run: [_finite(asdict(c)) for c in each] for run, each in self.channels.items()},
+            "identifiable": [{**asdict(each), "tells": each.words} for each in self.identifiable],
+            "log_next": list(self.log_next),
+        }
+
+
+def check(
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Mapping[str, Crane] | None = None
+) -> CheckResult:
+    """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
+    findings, diagnosis = diagnosed(runs, crane, model, others)
+    per_channel = [finding for run in runs for finding in channel_findings(run, crane)]
+    order = {"error": 0, "warning": 1, "note": 2}
+    # a stable sort: the diagnosis stays first among what is equally grave
+    findings = sorted([*findings, *per_channel], key=lambda finding: order[finding.severity])
+    views = [view_of(run, crane) for run in runs if run.name in diagnosis.names]
+    balance = [
+        RunBalance(c.run, s, c.before, c.after, c.level, c.needed, tuple(agreements(view)))
+        for c, s, view in zip(diagnosis.closures, diagnosis.scores, views, strict=True)
+    ]
+    lessons: tuple[list[Taught], list[str]] = ([], [])
+    if model is not None and first_contradiction(findings) is None:
+        parameters, information = taught(views, model)
+        lessons = parameters, log_next(crane, views, model, information) if crane.drive.hydraulic else []
+    return CheckResult(
+        crane=crane,
+        model=model.name if model is not None else "",
+        runs=tuple(runs),
+        findings=tuple(findings),
+        balance=tuple(balance),
+        closures=diagnosis.closures,
+        channels={run.name: summaries(run) for run in runs},
+        diagnosis=diagnosis,
+        identifiable=tuple(lessons[0]),
+        log_next=tuple(lessons[1]),
+    )
+
+
+def _finite(content: dict[str, Any]) -> dict[str, Any]:
+    """Not-a-number as null, as JSON wants it."""
+    return {key: _plain(value) for key, value in content.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, float) and value != value:
+        return None
+    if isinstance(value, dict):
+        return _finite(value)
+    return [_plain(each) for each in value] if isinstance(value, (list, tuple)) else value

@@ -77,9 +77,9 @@ def _show(result: Any, runs: list[Any], out: Path | None) -> None:
     rows = [(b.run, b.score, result.limit, b.before, b.after, b.level) for b in result.balance]
     show_table("torque balance at the motor shaft", columns, rows)
     if result.identifiable:
-        columns = ("parameter", "relative std, model", "relative std, with these runs", "these runs tell")
-        rows = [(p.name, p.before, p.after, p.words) for p in result.identifiable]
-        show_table("what these runs can teach", columns, rows)
+        head = ("parameter", "model's std [%]", "std with these runs [%]", "these runs tell")
+        lessons = [(p.name, 100.0 * p.before, 100.0 * p.after, p.words) for p in result.identifiable]
+        show_table("what these runs can teach", head, lessons)
     for line in result.log_next:
         print(f"log next: {line}")
     if out is not None:

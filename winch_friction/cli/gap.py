@@ -1,6 +1,7 @@
 """`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -30,7 +31,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 @app.command("gap", help=HELP)
 def command(
     runs: Annotated[OptionalPaths, typer.Argument(help="Run files: .csv, .parquet, rosbag2.")] = None,
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "crane_150t",
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the model's.")] = "",
     model: Annotated[str, typer.Option(help="Model file or shipped name.")] = "a6vm215_crane2",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
@@ -39,16 +40,18 @@ def command(
         OptionalPath, typer.Option(help="Python file that registers candidate terms of your own.")
     ] = None,
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
+    force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; gap.json says so.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
     blind: Annotated[int, typer.Option(help="No runs: hide an effect N times, search for it, then open the seal.")] = 0,
 ) -> None:
     """Search runs for what the model lacks."""
     if blind:
         from winch_friction.cli.gap_blind import blind_trials
+        from winch_friction.records.model_file import load_model
 
-        blind_trials(blind, crane, model, out, seed, as_json)
+        blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json)
         return
-    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report)
+    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force)
     if as_json:
         show_json(content)
     else:
@@ -56,32 +59,46 @@ def command(
 
 
 def run_gap(
-    paths: list[Path], crane: str, model: str, out: Path, holdout: float, seed: int, effects: Path | None, report: bool
+    paths: list[Path],
+    crane: str,
+    model: str,
+    out: Path,
+    holdout: float,
+    seed: int,
+    effects: Path | None,
+    report: bool,
+    force: bool = False,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
+    from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
     from winch_friction.discrepancy.options import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
+    from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.atomic import write_text
-    from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model, save_model
     from winch_friction.records.runs import read_run
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
-    loaded_crane = load_crane(crane)
+    paths = run_paths(paths)
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
     seed_model = load_model(model)
+    loaded_crane = crane_of(crane, seed_model, paths)
+    refuse_other_crane(seed_model, loaded_crane)
     read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
     for run in read:
         show_warnings(run.warnings)
+    forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
     steps = progress(["searching"], "comparing with the model")
     for _ in steps:
         result = find_gap(read, loaded_crane, seed_model, options)
     content = result.content()
-    save_model(result.model, out / "model.yaml")
+    if forced:
+        content["provenance"] = {**content.get("provenance", {}), **forced}
+    save_model(replace(result.model, provenance={**result.model.provenance, **forced}), out / "model.yaml")
     if content["next_experiment"] and result.next_scenario:
         write_text(out / content["next_experiment"]["scenario"], result.next_scenario)
     write_text(out / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")

@@ -1,5 +1,6 @@
 """`winch-friction identify motor | system | practice`: from supplier tables and logged tests to a friction model."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +11,7 @@ from winch_friction.cli.optional import OptionalPaths, OptionalTexts
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
 
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
+Force = Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")]
 Seed = Annotated[int, typer.Option(help="Seed of the complex method and of the bootstrap.")]
 Restarts = Annotated[int, typer.Option(min=1, help="Restarts of the complex method.")]
 Evaluations = Annotated[int, typer.Option(min=100, help="Most evaluations of the complex method per restart.")]
@@ -92,12 +94,13 @@ def system(
     runs: Annotated[list[Path], typer.Argument(help="Logged test cycles, one per test.")],
     out: Annotated[Path, typer.Option(help="Model file to write.")],
     motor: Annotated[str, typer.Option(help="Motor model: file or shipped name.")],
-    crane: Annotated[str, typer.Option(help="Crane: file or shipped name.")] = "crane_150t",
+    crane: Annotated[str, typer.Option(help="Crane: file or shipped name; none: what the runs say.")] = "",
     held_out: Annotated[OptionalPaths, typer.Option(help="Test kept out of the fit; repeat.")] = None,
     resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
     restarts: Restarts = 3,
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
+    force: Force = False,
     json: Json = False,
 ) -> None:
     """Steps 2 to 4 of paper 2, its second loop and the joint fit: from logged tests to a winch model.
@@ -105,26 +108,30 @@ def system(
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
     from winch_friction.cli.identify_output import show_system
+    from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
-    from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model, save_model
     from winch_friction.records.runs import read_runs
 
-    known = load_crane(crane)
+    runs, held_out = run_paths(runs), run_paths(held_out or [])
+    supplied = load_model(motor).only("motor")
+    known = crane_of(crane, supplied, runs)
+    tests, others = read_runs(runs, known), read_runs(held_out, known)
+    forced = refuse_implausible([*tests, *others], known, force=force, near=runs)
     found = identify_system(
-        read_runs(runs, known),
+        tests,
         known,
-        load_model(motor).only("motor"),
+        supplied,
         load_unit_spread(),
-        held_out=read_runs(held_out or [], known),
+        held_out=others,
         resamples=resamples,
         seed=seed,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
-    hashes = {path.name: _hash(path) for path in (*runs, *(held_out or ())) if path.is_file()}
-    model = winch_seed(found, known, out.stem, {"data_sha256": hashes, "motor": motor})
+    hashes = {path.name: _hash(path) for path in (*runs, *held_out) if path.is_file()}
+    model = winch_seed(found, known, out.stem, {"data_sha256": hashes, "motor": motor, **forced})
     errors = test_errors(found.joint.model, [test.curve for test in (*found.tests, *found.held_out)])
     save_model(model, out)
     show_system(found, model, errors, out, json)
@@ -138,6 +145,7 @@ def practice(
     restarts: Restarts = 2,
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
+    force: Force = False,
     json: Json = False,
 ) -> None:
     """All four steps, the second loop, the joint fit and the verification of paper 2, from one folder into one report.
@@ -146,11 +154,13 @@ def practice(
     """
     from winch_friction.cli.console import progress, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
+    from winch_friction.cli.inputs import refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
     folder = read_practice(_example(example))
+    forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)
     done = run_practice(
         folder,
         resamples=resamples,
@@ -160,7 +170,7 @@ def practice(
     )
     write_practice_report(done, out / "report.html")
     save_model(done.motor_seed, out / "motor.yaml")
-    save_model(done.seed, out / "seed.yaml")
+    save_model(replace(done.seed, provenance={**done.seed.provenance, **forced}), out / "seed.yaml")
     if json:
         return show_json({"summary": summary_lines(done), "seed": seed_json(done.seed, out / "seed.yaml")})
     show_parameters(done.seed, "seed (joint fit)")

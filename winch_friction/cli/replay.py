@@ -1,5 +1,6 @@
 """`winch-friction replay`: a recording through the nodes' own step."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,8 +12,8 @@ from winch_friction.cli.optional import OptionalPath, OptionalTexts
 
 def command(
     recording: Annotated[Path, typer.Argument(help="Bag folder, .mcap, .db3, or a run file (.csv, .parquet).")],
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")],
     model: Annotated[str, typer.Option(help="Seed model: file or shipped name.")],
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the model's.")] = "",
     out: Annotated[OptionalPath, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file of the nodes.")] = None,
@@ -22,6 +23,7 @@ def command(
     joint: Annotated[str, typer.Option(help="Joint of the speed.")] = "winch_motor",
     pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "gauge",
     namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",
+    force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Summary as JSON.")] = False,
 ) -> None:
     """Run compensator and estimator over a recording.
@@ -35,8 +37,9 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
+    from winch_friction.cli.inputs import crane_of
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.records.crane_file import load_crane
+    from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.model_file import load_model
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
@@ -47,23 +50,43 @@ def command(
         load_file(terms_file)
     settings = settings_from_file(params_file) if params_file else None
     seed = load_model(model)
+    winch = crane_of(crane, seed, [recording])
+    refuse_other_crane(seed, winch)
+    forced = _refuse_implausible(recording, winch, seed, force, options)
     with stderr.status("replaying"):
-        result = replay_recording(recording, load_crane(crane), seed, settings, learn=learn, **options)
+        result = replay_recording(recording, winch, seed, settings, learn=learn, **options)
     show_warnings(result.warnings)
     if out is not None:
         from winch_friction.replay.outputs import write_outputs
 
-        write_outputs(out, result.compensator, result.estimator, result.model)
+        said = replace(result.model, provenance={**result.model.provenance, **forced})
+        write_outputs(out, replace(result.compensator, metadata=forced), result.estimator, said)
     if picture is not None:
         from winch_friction.report.figures import save_figure
         from winch_friction.report.replay_picture import replay_figure
 
         save_figure(replay_figure(result.compensator, result.estimator, seed), picture)
-    content = summary(result)
+    content = {**summary(result), **forced}
     if as_json:
         show_json(content)
         return
     _show(content)
+
+
+def _refuse_implausible(
+    recording: Path, crane: Any, model: Any, force: bool, options: dict[str, Any]
+) -> dict[str, Any]:
+    """As `inputs.refuse_implausible`; a recording that lacks what the torque balance needs is replayed unasked."""
+    from winch_friction.cli.inputs import refuse_implausible
+    from winch_friction.physics.errors import InputError
+    from winch_friction.records.runs import read_run
+
+    is_bag = recording.is_dir() or recording.suffix in (".mcap", ".db3")
+    try:
+        run = read_run(recording, crane, **(options if is_bag else {}))
+    except InputError:
+        return {}  # the replay needs less than a run does, and says itself what it lacks
+    return refuse_implausible([run], crane, model, force, [recording])
 
 
 def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace: str) -> dict[str, Any]:

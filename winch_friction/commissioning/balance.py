@@ -48,7 +48,7 @@ FREE_OFFSET = 1.2  # of the rated torque, where no load is logged: what hangs th
 class Closure:
     """How one run closes: `score`, residual as it stands and its RMS after ordinary errors, N m at the shaft.
 
-    `needed` says how many sigma each ordinary error had to be stretched, by name; `level` is the RMS of the load torque.
+    `needed` says how many sigma each ordinary error had to be stretched, by name; `level`: RMS of the load torque.
     """
 
     run: str
@@ -67,7 +67,7 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
     with np.errstate(all="ignore"):
         friction, share = _friction(view, model), FRICTION_SHARE if model is not None else TYPICAL_SHARE
         load = static_torque(view)
-        known = np.isfinite(load).any()
+        known = bool(np.isfinite(load).any())
         load = np.nan_to_num(load) if not known else load
         inertial = view.inertia * view.acceleration
         swing = _swing(view)

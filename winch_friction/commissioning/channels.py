@@ -19,6 +19,7 @@ COARSE = 200.0  # steps over a channel's range; fewer are coarse
 SATURATED = 0.02  # of the samples at one extreme value of a moving channel
 STUCK = 3.0  # s without any change in a channel that otherwise changes at every sample
 HOT = (-20.0, 95.0)  # degC, oil outside is unusual
+MAY_SATURATE = ("pressure_a", "pressure_b", "motor_speed", "motor_torque", "motor_current")
 MAY_STAND = ("hook_load", "wire_layer", "oil_temperature", "displacement", "wire_out", "speed_reference")
 
 
@@ -67,7 +68,9 @@ def cell_findings(run: Run) -> Iterator[Finding]:
                 f"{run.name}: {column} = {values[k]:.3g} {column_unit(column) or ''} at {run.time[k]:.6g} s (sample "
                 f"{k + 1}) is no measurement; {bad.size} such of {len(values)}: empty the cell or mend the logger"
             )
-            yield Finding("error", "cell", said, column, (run.name,), {"count": int(bad.size), "value": float(values[k])})
+            yield Finding(
+                "error", "cell", said, column, (run.name,), {"count": int(bad.size), "value": float(values[k])}
+            )
 
 
 def summaries(run: Run) -> list[ChannelSummary]:
@@ -102,7 +105,9 @@ def channel_findings(run: Run, crane: Crane) -> Iterator[Finding]:
         yield from _span_findings(run, each, kind)
         if kind == "wire_layer" and not (crane.drum.has(each.smallest) and crane.drum.has(each.largest)):
             layers = len(crane.drum.layer_radii)
-            said = f"{run.name}: wire_layer is {each.smallest:g} ... {each.largest:g}, the drum has layers 1 ... {layers}"
+            said = (
+                f"{run.name}: wire_layer is {each.smallest:g} ... {each.largest:g}, the drum has layers 1 ... {layers}"
+            )
             yield Finding("error", "range", said, each.channel, (run.name,))
         if kind == "oil_temperature" and not (HOT[0] <= each.smallest and each.largest <= HOT[1]):
             said = f"{run.name}: oil of {each.smallest:.3g} ... {each.largest:.3g} degC; is it degF or kelvin?"
@@ -125,12 +130,14 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
         said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
         yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
     if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
-        said = f"{run.name}: {each.channel} has steps of {each.step:.3g} {each.unit}, {span / each.step:.0f} over its range"
+        steps = f"steps of {each.step:.3g} {each.unit}, {span / each.step:.0f} over its range"
+        said = f"{run.name}: {each.channel} has {steps}"
         yield Finding("note", "quantisation", said, each.channel, (run.name,), {"step": each.step})
     for extreme in (each.smallest, each.largest):
         share = float(np.mean(values == extreme))
-        if share > SATURATED and kind in ("pressure_a", "pressure_b", "motor_speed", "motor_torque") and extreme != 0.0:
-            said = f"{run.name}: {each.channel} is at {extreme:.4g} {each.unit} in {100 * share:.1f} % of samples: saturated?"
+        if share > SATURATED and kind in MAY_SATURATE and extreme != 0.0:
+            often = f"in {100 * share:.1f} % of the samples: saturated?"
+            said = f"{run.name}: {each.channel} is at {extreme:.4g} {each.unit} {often}"
             yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
 
 

@@ -132,7 +132,7 @@ def _named_crane(runs: Sequence[Run], crane: Crane, others: Mapping[str, Crane])
 
 def same_machine(first: Crane, second: Crane) -> bool:
     """Whether two cranes are one to the torque balance, whatever their names."""
-    own = lambda c: (c.gear_ratio, c.drum.layer_radii, dict(c.groups), c.max_displacement, c.drive)  # noqa: E731
+    own = lambda c: (c.gear_ratio, c.drum.layer_radii, dict(c.groups), c.max_displacement, c.drive)
     return own(first) == own(second)
 
 

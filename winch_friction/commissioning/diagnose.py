@@ -1,4 +1,4 @@
-"""Which single mistake would make these runs this crane's? Every hypothesis is scored alike and the least score wins."""
+"""Which single mistake would make these runs this crane's? All are scored alike; the least score wins."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

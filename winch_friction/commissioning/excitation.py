@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.commissioning.balance import EFFECTIVE, NOISE_SHARE, friction_point, without_memory
+from winch_friction.commissioning.balance import EFFECTIVE, friction_point, without_memory
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.identity import with_stated_std
@@ -15,7 +15,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import operating_point
 
 TAUGHT, SOME = 0.6, 0.9  # of the model's own sigma: below, a parameter is taught; between, a little
-LOAD_TIE = 0.01  # of T_d/i, 1 sigma: an error of the load that all runs share, which hides what goes with the load
+FIT_NOISE = 0.002  # of the rated torque: what a plateau's mean is good for (a transducer of 0.25 % less its offset)
 # a grid of tests that a crane can make: speeds rpm, loads as shares of what the motors hold, displacements as shares
 SPEEDS = (20.0, 60.0, 150.0, 400.0, 1000.0, 2000.0)
 LOADS = (0.02, 0.3, 0.6, 0.9)
@@ -45,7 +45,7 @@ def taught(views: Sequence[RunView], model: FrictionModel) -> tuple[list[Taught]
     for view in views:
         rows = _rows(view, plain)
         if len(rows):
-            sigma = NOISE_SHARE * view.rated_torque
+            sigma = FIT_NOISE * view.rated_torque
             information = information + rows.T @ rows * EFFECTIVE / len(rows) / sigma**2
     before, after = _relative(plain, _prior_information(plain)), _relative(plain, information)
     names = zip(plain.parameter_names, before, after, strict=True)
@@ -58,7 +58,7 @@ def log_next(crane: Crane, views: Sequence[RunView], model: FrictionModel, infor
     best = []
     for speed, load, displacement in _tests():
         rows = _test_rows(crane, plain, speed * RPM, load, displacement)
-        sigma = NOISE_SHARE * crane.motor_total(()) * crane.max_displacement * 300e5
+        sigma = FIT_NOISE * crane.motor_total(()) * crane.max_displacement * 300e5
         gained = information + rows.T @ rows * EFFECTIVE / 2.0 / sigma**2
         gain = float(np.linalg.slogdet(gained)[1] - np.linalg.slogdet(information)[1])
         best.append((gain, speed, load, displacement))
@@ -84,8 +84,7 @@ def _relative(model: FrictionModel, information: FloatArray) -> FloatArray:
 def _rows(view: RunView, model: FrictionModel) -> FloatArray:
     with np.errstate(all="ignore"):
         rows = np.asarray(model.jacobian(friction_point(view)))
-    rows = rows[view.moving & np.isfinite(rows).all(axis=1)]
-    return rows
+    return rows[view.moving & np.isfinite(rows).all(axis=1)]
 
 
 def _tests() -> Iterator[tuple[float, float, float]]:

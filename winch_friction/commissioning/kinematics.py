@@ -1,4 +1,4 @@
-"""Do the other channels agree with the speed? Shaft angle, commanded speed, wire length and heave each tell it again."""
+"""Do the other channels agree with the speed? Angle, reference, wire length and heave tell it again."""
 
 from dataclasses import dataclass
 

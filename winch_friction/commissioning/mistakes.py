@@ -34,7 +34,8 @@ PRESSURE_UNITS = (
 )  # fmt: skip
 THOUSANDS = ((1e3, "thousands under the plain unit"), (1e-3, "the plain unit under thousands"))
 SPEED_UNITS = (
-    (1.0 / RPM, "rad/s under [rpm]"), (RPM, "rpm under [rad/s]"), (60.0, "1/s under [rpm]"), (1.0 / 60.0, "rpm under [1/s]"),
+    (1.0 / RPM, "rad/s under [rpm]"), (RPM, "rpm under [rad/s]"), (60.0, "1/s under [rpm]"),
+    (1.0 / 60.0, "rpm under [1/s]"),
     (_TURN / 360.0, "deg/s under [rad/s]"), (1.0 / 6.0, "deg/s under [rpm]"),
 )  # fmt: skip
 DISPLACEMENT_UNITS = (
@@ -119,7 +120,9 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
     yield from each("motor_speed", SPEED_UNITS, speed_times)
     ratio = crane.gear_ratio
     if ratio > 1.5:
-        yield Mistake("unit", "motor_speed", "motor_speed holds the drum's speed", UNIT + 1.0, speed_times(ratio), ratio)
+        yield Mistake(
+            "unit", "motor_speed", "motor_speed holds the drum's speed", UNIT + 1.0, speed_times(ratio), ratio
+        )
         words = "drum_speed (or its gear ratio) holds the motor's speed"
         yield Mistake("unit", "motor_speed", words, UNIT + 1.0, speed_times(1.0 / ratio), 1.0 / ratio)
     if crane.drive.channels:
@@ -155,6 +158,9 @@ def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
 def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> Iterator[Mistake]:
     said = "the sign of motor_speed is flipped: positive must mean hoisting"
     yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
+    if any(_told_direction(view) is not None for view in views):
+        said = "motor_speed has no sign: lowering must be negative"
+        yield Mistake("sign", "motor_speed", said, SIGN, _signed)
     if any(view.heave is not None for view in views):
         said = "the sign of heave_velocity is flipped: positive must mean the crane tip rises"
         yield Mistake("sign", "heave_velocity", said, SIGN, _heave_times(-1.0), -1.0)
@@ -167,6 +173,22 @@ def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> I
     for name in groups if len(groups) > 1 else ():
         said = f"{name}.pressure_a and {name}.pressure_b are swapped"
         yield Mistake("ports", f"{name}.pressure", said, PORTS, drop_times(-1.0, name), -1.0)
+
+
+def _told_direction(view: RunView) -> FloatArray | None:
+    """The direction that another channel tells of a run whose speed is never negative."""
+    if not np.nanmin(view.speed, initial=0.0) >= 0.0:
+        return None
+    told = [np.sign(rate) for name, rate in view.rates.items() if name != "heave_velocity"]
+    return next((sign for sign in told if (sign < 0.0).any() and (sign > 0.0).any()), None)
+
+
+def _signed(view: RunView) -> RunView:
+    sign = _told_direction(view)
+    if sign is None:
+        return view
+    speed = np.abs(view.speed) * sign
+    return replace(view, speed=speed, acceleration=np.gradient(speed, view.time))
 
 
 def _heave_times(factor: float) -> Repair:
@@ -259,9 +281,13 @@ def _geared(factor: float) -> Repair:
 
 def delayed(seconds: float) -> Mistake:
     """The speed and its companions are logged late (positive) against pressures, by this many seconds."""
-    which = "motor_speed is late against the pressures" if seconds > 0.0 else "the pressures are late against motor_speed"
+    which = (
+        "motor_speed is late against the pressures" if seconds > 0.0 else "the pressures are late against motor_speed"
+    )
     words = f"{which} by about {abs(seconds):.2g} s"
-    return Mistake("delay", "motor_speed", words, DELAY * (1.0 + abs(seconds)), lambda view: _shifted(view, seconds), seconds)
+    return Mistake(
+        "delay", "motor_speed", words, DELAY * (1.0 + abs(seconds)), lambda view: _shifted(view, seconds), seconds
+    )
 
 
 def _shifted(view: RunView, seconds: float) -> RunView:

@@ -20,7 +20,7 @@ MOST = 400.0
 
 
 def excesses(view: RunView) -> dict[str, float]:
-    """By channel: its largest value (99th percentile) over its upper limit, or the lower limit over it, where above 1."""
+    """By channel: its 99th percentile over the upper limit, or the lower limit over it, where that is above 1."""
     found = {"heave_velocity": _top(view.heave) / ROUGHEST if view.heave is not None else 0.0}
     if view.groups:
         found["motor_speed"] = _top(view.speed) / FASTEST

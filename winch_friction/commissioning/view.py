@@ -238,10 +238,19 @@ def select(view: RunView, keep: slice | np.ndarray) -> RunView:
     def cut(values: FloatArray | None) -> FloatArray | None:
         return None if values is None else values[keep]
 
-    names = ("time", "speed", "acceleration", "load", "layer", "radius", "heave", "heave_acceleration", "motor_torque")
     return replace(
         view,
-        **{name: cut(getattr(view, name)) for name in (*names, "load_torque", "oil")},
+        time=view.time[keep],
+        speed=view.speed[keep],
+        acceleration=view.acceleration[keep],
+        load=view.load[keep],
+        layer=view.layer[keep],
+        radius=view.radius[keep],
+        heave=cut(view.heave),
+        heave_acceleration=view.heave_acceleration[keep],
+        motor_torque=cut(view.motor_torque),
+        load_torque=cut(view.load_torque),
+        oil=cut(view.oil),
         groups={
             name: replace(g, drop=g.drop[keep], pressure_sum=g.pressure_sum[keep], displacement=g.displacement[keep])
             for name, g in view.groups.items()

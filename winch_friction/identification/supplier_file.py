@@ -10,6 +10,7 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.records.table import Table, read_table
 
 _AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
+LEAST_BEST_EFFICIENCY = 0.1  # any piston motor reaches several times that somewhere in its table
 _LOSSES = ("efficiency", "torque", "torque_loss")
 
 
@@ -47,6 +48,11 @@ def _efficiency(table: Table) -> FloatArray:
     values = table.column("efficiency", "1")
     table.refuse("efficiency", values > 1.0, "is above 1 (100 %); a motor cannot give more torque than D dp")
     table.refuse("efficiency", values <= 0.0, "is not above 0; leave such rows out")
+    if values.max() < LEAST_BEST_EFFICIENCY:
+        raise InputError(
+            f"{table.path}: column 'efficiency': {100.0 * values.max():.3g} % at best is no motor's; a fraction under "
+            "[%]? Write 'efficiency' without a unit, or values in per cent"
+        )
     return values
 
 

@@ -21,6 +21,8 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
+DIFFERENT_LOAD = 1.2  # ratio of drum torques from which two tests tell the load's part of friction
+
 
 @dataclass(frozen=True)
 class Test:
@@ -98,6 +100,7 @@ def identify_system(
     as_given = crane
     crane = corrected_crane(as_given, motor.corrections)
     tests = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in runs)
+    _check_loads(tests)
     others = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in held_out)
     data = curve_data([test.curve for test in tests])
     loops = tuple(second_loop(data, motor))
@@ -117,6 +120,16 @@ def identify_system(
         unseen=tuple(unseen_directions(joint)),
         bootstrap=bootstrap(plateaus, crane, joint, spread, resamples=resamples, seed=seed) if resamples else None,
     )
+
+
+def _check_loads(tests: Sequence[Test]) -> None:
+    """Raise `InputError` where all tests hang one load: what goes with the load could not be told from the rest."""
+    torques = [float(np.median([plateau.drum_torque for plateau in test.plateaus])) for test in tests]
+    if max(torques) < DIFFERENT_LOAD * min(torques):
+        raise InputError(
+            f"identify system: {len(tests)} test(s) of one load ({min(torques) / 1e3:.4g} kN m at the drum): friction "
+            "that goes with the load cannot be told from the rest; give tests of at least two loads"
+        )
 
 
 def _fits(data: FitData, motor: FrictionModel, seed: int, options: dict[str, int]) -> dict[str, FitResult]:

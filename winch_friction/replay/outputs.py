@@ -33,7 +33,7 @@ def output_table(compensator: Run, estimator: Run) -> Run:
         f"estimator.{name}": values for name, values in estimator.columns.items() if name != "time"
     }
     aside = {"state": compensator.aside["state"], "estimator.state": estimator.aside["state"]}
-    return Run(name=compensator.name, columns=columns, aside=aside)
+    return Run(name=compensator.name, columns=columns, aside=aside, metadata=compensator.metadata)
 
 
 def _on_times(run: Run, other: Run) -> Run:

@@ -55,7 +55,9 @@ def _decision(result: CheckResult) -> str:
 def _findings(result: CheckResult) -> str:
     if not result.findings:
         return paragraph("Nothing was found.")
-    return table_html(("severity", "channel", "finding"), [(f.severity, f.channel, f.sentence) for f in result.findings])
+    return table_html(
+        ("severity", "channel", "finding"), [(f.severity, f.channel, f.sentence) for f in result.findings]
+    )
 
 
 def _ranking(result: CheckResult) -> str:

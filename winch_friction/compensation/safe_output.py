@@ -1,0 +1,171 @@
+"""The one authority over what is published: it owns the last published torque, and every path asks it for the next.
+
+Samples, silence, reset, a jump of time, another model, disabling and the end all come here. Whatever is asked for, the
+torque stays inside its limits, moves no faster than the slew limit, and goes to zero by a ramp when nothing carries it.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+from winch_friction.compensation.limits import TorqueLimits
+from winch_friction.compensation.transition import Bridge, Fade
+
+LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
+# stamps may gain this on the steady clock: a sender's clock, or a simulation, that runs faster than ours
+FASTEST_STAMPS = 1.5
+
+
+@dataclass
+class SafeOutput:
+    """The last published torque, N m, and the way from it to the next.
+
+    `absolute` N m and `slew` N m/s bound it; `ramp_time` s is how long it takes to fade in, out and over; a sample
+    older than `hold` s carries nothing any more. A sample goes `arrive` (how much time counts), then `follow` (what is
+    published). Between samples `decay` publishes the ramp to zero, which `remaining` foretells. `restart` forgets
+    the samples but not what is published; `end` makes the ramp begin at once.
+    """
+
+    absolute: float
+    slew: float
+    ramp_time: float
+    hold: float
+    torque: float = field(default=0.0, init=False)
+    time: float = field(default=math.nan, init=False)  # stamp of what was published last, s
+    sequence: int = field(default=0, init=False)
+    steps_back: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.limits = TorqueLimits(self.absolute, self.slew)
+        self.fade = Fade(self.ramp_time)
+        self._bridge = Bridge(self.ramp_time)
+        self._fed = math.nan  # stamp of the last sample that was followed, and what was published and faded by then
+        self._held, self._faded = 0.0, 0.0
+        self._reversal = math.inf
+        self._steady, self._credit = math.nan, self.hold
+        self._dt = 0.0
+        self._bump = self._usable = self._new_time = False
+
+    def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
+        """Other limits from the next step on, without a bump."""
+        self.absolute, self.slew, self.ramp_time, self.hold = absolute, slew, ramp_time, hold
+        self.limits.absolute, self.limits.slew = absolute, slew
+        self.fade.duration = self._bridge.duration = ramp_time
+        self._bump = True
+
+    def restrict(self, slew: float) -> None:
+        """Slew no faster than `slew` N m/s, nor than the limit that was set."""
+        self.limits.slew = min(self.slew, slew)
+
+    def bump(self) -> None:
+        """What is asked for is about to jump: carry the difference over."""
+        self._bump = True
+
+    # -- a sample
+    def arrive(self, time: float, now: float | None = None) -> float:
+        """Seconds that count for a sample stamped `time`, arriving at steady `now` s (None: the stamps are trusted).
+
+        After a silence the ramp that nobody may have published is taken as done. Stamps that run ahead of the steady
+        clock by more than `hold` gain nothing: a backlog that is worked off in a burst moves the output as little as
+        the moment that it takes.
+        """
+        self._dt = self._elapsed(time)
+        if now is not None:
+            self._dt = self._paced(self._dt, now)
+        self._fed = self.time = time
+        return self._dt
+
+    def _elapsed(self, time: float) -> float:
+        if math.isnan(self._fed) or self._new_time:
+            self._new_time, self._bump = False, True
+            return 0.0
+        ramping = self.time > self._fed
+        if time < self._fed or (ramping and time < self.time):
+            self.steps_back += time < self._fed
+            self._bump = True
+            return 0.0
+        if ramping or time - self._fed > self.hold:
+            torque = self.remaining(time)
+            self._let_go(torque)
+            self._bump = True
+            return 0.0
+        return min(time - self._fed, LONGEST_STEP)
+
+    def _paced(self, dt: float, now: float) -> float:
+        passed = now - self._steady if self._steady == self._steady else 0.0
+        self._steady = now
+        self._credit = min(self.hold, self._credit + FASTEST_STAMPS * max(0.0, passed))
+        counted = min(dt, self._credit)
+        self._credit -= counted
+        return counted
+
+    def follow(
+        self, target: float, envelope: float, usable: bool, enabled: bool, reversal: float = math.inf
+    ) -> float:
+        """What is published for the sample that arrived: the way to `target` N m.
+
+        A sample that is not `usable` leaves `target` to fade out. `reversal` s is when the motion may turn: a ramp
+        that nobody can steer is over by then.
+        """
+        if usable and not self._usable:
+            self._bump = True
+        self._usable = usable
+        faded = self.fade.step(usable and enabled, self._dt, self._hurry(reversal)) * target
+        if self._bump and usable:
+            self._bridge.start(self.torque - faded)
+            self._bump = False
+        wanted = faded + self._bridge.step(self._dt)
+        if wanted * target < 0.0:  # what is left of before would push against what is right now
+            wanted = 0.0
+        bound = min(self.limits.absolute, envelope)
+        wanted = min(max(wanted, -bound), bound)
+        self.torque = self.limits.slewed(wanted, self.torque, self._dt)
+        self.sequence += 1
+        self._held, self._faded, self._reversal = self.torque, self.fade.value, reversal
+        return self.torque
+
+    def _hurry(self, reversal: float) -> float:
+        return max(min(self.ramp_time, reversal), 1e-6)
+
+    # -- no sample
+    def remaining(self, time: float) -> float:
+        """What the ramp to zero leaves at stamp `time` when nothing was followed since; changes nothing."""
+        silent = time - self._fed - self.hold
+        if not silent > 0.0:
+            return self._held
+        return math.copysign(max(0.0, abs(self._held) - self._ramp_rate() * silent), self._held)
+
+    def _ramp_rate(self) -> float:
+        """N m/s: over within the ramp's time, and before the motion may have turned where the slew limit allows it."""
+        duration = min(self.ramp_time, max(self._reversal - self.hold, 0.0))
+        return min(self.limits.slew, abs(self._held) / duration if duration > 0.0 else math.inf)
+
+    def decay(self, time: float) -> float:
+        """Publish the ramp to zero at stamp `time`."""
+        if not time > self.time:
+            return self.torque
+        self._let_go(self.remaining(time))
+        self.time = time
+        self.sequence += 1
+        return self.torque
+
+    def _let_go(self, torque: float) -> None:
+        if torque == self.torque:
+            return
+        self.fade.value = self._faded * (torque / self._held if self._held else 0.0)
+        self.torque = torque
+
+    def restart(self) -> None:
+        """Forget the samples: the next one comes from another time. What is published goes on from where it is."""
+        self.fade.value = 0.0
+        self._bridge.start(self.torque)
+        self._new_time, self._usable, self._bump = True, False, True
+
+    def end(self, time: float) -> None:
+        """Let the ramp to zero begin at stamp `time`, and no sample stop it before the next `restart`."""
+        self._held, self._faded = self.torque, self.fade.value
+        self._fed, self.time = time - self.hold, time
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing is published any more."""
+        return self.torque == 0.0

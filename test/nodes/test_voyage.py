@@ -42,14 +42,13 @@ def test_a_dated_scenario_is_dated_by_the_clock(crane_150t, crane2_model) -> Non
 def test_answers_are_waited_for_but_not_for_ever() -> None:
     answers = Answers(("compensator", "estimator"))
     answers.expect(10.0, now=100.0)
-    answers.take("compensator", 10.0, 5.0)
+    answers.take("compensator", 10.0)
     assert not answers.complete
     assert not answers.overdue(100.5, patience=1.0)
-    answers.take("estimator", 9.98, None)
+    answers.take("estimator", 9.98)
     assert not answers.complete
-    answers.take("estimator", 10.0, None)
+    answers.take("estimator", 10.0)
     assert answers.complete
-    assert answers.torque == 5.0
     assert answers.overdue(101.5, patience=1.0)
     assert answers.unanswered == 1
 

@@ -1,25 +1,27 @@
 """The friction feedforward: the friction model at the coming speed, inside its limits, faded and bridged."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.compensation.friction_law import FrictionLaw, check_gains
 from winch_friction.compensation.inputs import missing_inputs, pressure_per_torque
-from winch_friction.compensation.limits import TorqueLimits
 from winch_friction.compensation.load import DrumTorque
-from winch_friction.compensation.speed_predictor import SpeedPredictor
-from winch_friction.compensation.transition import Bridge, Fade
+from winch_friction.compensation.safe_output import SafeOutput
+from winch_friction.compensation.speed_predictor import PredictedSpeed, SpeedPredictor
+from winch_friction.physics.corrections import SampleCorrector
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.direction import smooth_sign
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
 from winch_friction.physics.identity import refuse_other_crane
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point
+from winch_friction.physics.winch.ranges import ChannelRanges
 
-LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
+UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
 
 
 @dataclass(slots=True)
@@ -29,6 +31,9 @@ class _Target:
     torque: float = 0.0
     speed: float = 0.0
     drum_torque: float = 0.0
+    size: float = 0.0  # of the torque in full motion, N m
+    envelope: float = math.inf  # N m
+    reversal: float = math.inf  # s until the motion may turn
 
 
 class FeedforwardCompensator:
@@ -52,14 +57,14 @@ class FeedforwardCompensator:
         self.crane, self.seed, self.config = crane, seed_model, config
         self._seed_law = FrictionLaw(seed_model, config.gains)
         self._law = self._seed_law
+        self._correct = SampleCorrector(crane, seed_model)
+        self._ranges = ChannelRanges(crane)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
-        self._load = DrumTorque(crane, config.load, config.load_filter)
-        self._limits = TorqueLimits(min(config.absolute_limit, crane.absolute_torque_limit), config.slew_limit)
-        self._fade = Fade(config.ramp_time)
-        self._bridge = Bridge(config.ramp_time)
+        self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
+        self.output = SafeOutput(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
         self._enabled = True
-        self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0, "time_steps_back": 0}
-        self.reset()
+        self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
+        self._forget()
 
     @property
     def model(self) -> FrictionModel:
@@ -67,18 +72,21 @@ class FeedforwardCompensator:
         return self._law.model
 
     def reset(self) -> None:
-        """Back to the start with the model in use: no output, no memory of past samples."""
+        """Begin anew with the model in use: no memory of past samples. What is published goes on from where it is."""
+        self.output.restart()
+        self._forget()
+
+    def _forget(self) -> None:
         self._predictor.reset()
         self._load.reset()
         self._law.reset()
-        self._fade.value = 0.0
-        self._bridge.start(0.0)
         self._last: Feedforward | None = None
         self._target = _Target()
         self._pressure_per_torque = 0.0
         self._lost: tuple[str, ...] = ()
-        self._bump = False
-        self._usable = False
+
+    def _absolute(self, config: CompensatorConfig) -> float:
+        return min(config.absolute_limit, self.crane.absolute_torque_limit)
 
     def set_enabled(self, enabled: bool) -> None:
         """Fade in or out from the next step on."""
@@ -94,18 +102,16 @@ class FeedforwardCompensator:
         self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load.configure(config.load, config.load_filter)
-        self._limits.absolute = min(config.absolute_limit, self.crane.absolute_torque_limit)
-        self._limits.slew = config.slew_limit
-        self._fade.duration = self._bridge.duration = config.ramp_time
-        self._bump = True
+        self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
 
     def load_model(self, model: FrictionModel) -> None:
         """Use another model from the next step on, without a bump.
 
-        Raises `InputError`, and keeps the model in use, when a parameter is outside the range around the seed's or
-        the model reads a motor group's pressure on an electric drive.
+        Raises `InputError`, and keeps the model in use, when a parameter is outside the range around the seed's, the
+        model reads a motor group's pressure on an electric drive, or a correction cannot be taken out while running.
         """
         try:
+            correct = SampleCorrector(self.crane, model)
             law = FrictionLaw(model, self.config.gains)
             refuse_other_crane(model, self.crane)
             refuse_outside_seed(model, self.seed, self.config.seed_range)
@@ -113,39 +119,51 @@ class FeedforwardCompensator:
             self._counts["refused_models"] += 1
             raise
         self._counts["accepted_models"] += 1
-        self._law = law
-        self._bump = True
+        self._law, self._correct = law, correct
+        self._load.crane = correct.crane
+        self.output.bump()
 
     # -- one sample
-    def step(self, sample: Sample) -> Feedforward:
-        """The feedforward for one sample; a value that is NaN counts as lost (`physics.hold` holds between samples)."""
+    def step(self, sample: Sample, now: float | None = None, distrusted: tuple[str, ...] = ()) -> Feedforward:
+        """The feedforward for one sample; a value that is NaN counts as lost (`physics.hold` holds between samples).
+
+        `now` s is the steady time of its arrival; without it the stamps alone say how much time has passed.
+        `distrusted` says in words which inputs cannot be right together: like a lost input.
+        """
+        self._counts["steps"] += 1
         if not math.isfinite(sample.time):
             return self._without_time()
-        dt = self._elapsed(sample.time)
-        self._lost = self._missing(sample)
+        dt = self.output.arrive(sample.time, now)
+        if dt == 0.0:
+            self._predictor.reset()
+        sample = self._correct(sample)
+        self._lost = (*self._missing(sample), *distrusted)
         usable = not self._lost and self._aim(sample, dt)
         if not usable:
             self._predictor.reset()
-        self._counts["steps"] += 1
+            self._turn(sample)
         self._counts["stale"] += not usable
-        previous = self._last.friction_torque if self._last else 0.0
-        torque = self._blended(usable, previous, dt)
-        self._last = self._feedforward(sample.time, torque, usable)
+        target = self._target
+        self.output.follow(target.torque, target.envelope, usable, self._enabled, target.reversal)
+        self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
 
     def expire(self, time: float) -> Feedforward | None:
-        """What remains at `time` s when no sample came since: for a watchdog. Changes nothing; None before the first
-        sample."""
+        """What remains at `time` s when no sample came since; changes nothing. None before the first sample."""
         if self._last is None:
             return None
-        silent = time - self._last.time - self.config.max_age
-        if silent <= 0.0:
+        if time - self._last.time <= self.config.max_age:
             return self._last
-        factor = max(0.0, 1.0 - silent / self.config.ramp_time)
-        return Feedforward(
-            time, self._last.friction_torque * factor, self._last.pressure * factor, self._last.speed, "stale",
-            self._last.drum_torque, self._last.fade * factor,
+        torque = self.output.remaining(time)
+        return replace(
+            self._last, time=time, friction_torque=torque, pressure=torque * self._pressure_per_torque, state="stale",
+            valid=False,
         )  # fmt: skip
+
+    def decay(self, time: float, state: str = "stale") -> Feedforward:
+        """Publish what remains at `time` s: for a watchdog, and for the end."""
+        self.output.decay(time)
+        return self._feedforward(time, state, False)
 
     def status(self) -> dict[str, float | str]:
         """State, counts and the model's name: numbers as numbers, for diagnostics."""
@@ -155,88 +173,87 @@ class FeedforwardCompensator:
             "enabled": self._enabled,
             "model": self.model.name,
             "missing": ", ".join(self._lost),
-            "fade": self._fade.value,
-            "friction_torque": last.friction_torque if last else 0.0,
+            "fade": self.output.fade.value,
+            "friction_torque": self.output.torque,
             "drum_torque": self._target.drum_torque,
-            **{f"{name}_clamps": count for name, count in self._limits.counts.items()},
+            "slew_limit": self.output.limits.slew,
+            **{f"{name}_clamps": count for name, count in self.output.limits.counts.items()},
             **self._counts,
+            "time_steps_back": self.output.steps_back,
         }
 
     # -- parts of a step
-    def _elapsed(self, time: float) -> float:
-        """Seconds since the last sample, with what a silent spell in between did to the output taken over."""
-        if self._last is None:
-            return 0.0
-        dt = time - self._last.time
-        if not dt >= 0.0:
-            self._counts["time_steps_back"] += 1
-            self._predictor.reset()
-            self._bump = True
-            return 0.0
-        expired = self.expire(time)
-        if expired is not None and expired.state == "stale" and expired is not self._last:
-            self._last, self._fade.value, self._bump = expired, expired.fade, True
-            self._predictor.reset()
-            return 0.0
-        return min(dt, LONGEST_STEP)
-
     def _missing(self, sample: Sample) -> tuple[str, ...]:
         return missing_inputs(
-            sample, self.crane, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load)
+            sample, self._ranges, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load)
         )
+
+    def _speed(self, sample: Sample) -> float:
+        return sample.speed_reference if self.config.velocity_source == "reference" else sample.motor_speed
 
     def _aim(self, sample: Sample, dt: float) -> bool:
         """Set the target from a complete sample; False, and the old target kept, when the model does not give a
         number."""
-        reference = self.config.velocity_source == "reference"
-        ahead = self._predictor.step(sample.time, sample.speed_reference if reference else sample.motor_speed)
+        ahead = self._predictor.step(sample.time, self._speed(sample))
         drum_torque = self._load.value(sample) if "drum_torque" in self._law.reads else 0.0
         width = max(self.config.reversal_speed, abs(ahead.acceleration) * self.config.reversal_time)
         x = sample_operating_point(
-            sample, self.crane, drum_torque=drum_torque, speed=ahead.speed, width=width, acceleration=ahead.acceleration
-        )
+            sample, self._correct.crane, drum_torque=drum_torque, speed=ahead.speed, width=width,
+            acceleration=ahead.acceleration,
+        )  # fmt: skip
         groups = len(sample.groups)
         torque = self.config.scale * self._law.torque(x, groups)
         envelope = self.config.envelope * self._seed_law.magnitude(x, groups)
         if not (math.isfinite(torque) and math.isfinite(envelope)):
             self._lost = ("finite model",)
             return False
-        self._target = _Target(self._limits.bound(torque, envelope), ahead.speed, drum_torque)
+        bounded = self.output.limits.bound(torque, envelope)
+        size = abs(bounded) / max(abs(x[0]), UNSURE)
+        self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, _reversal(ahead))
+        self._steepest(x, groups)
         self._pressure_per_torque = pressure_per_torque(sample, self.crane, self.config)
         self._law.advance(x, groups, dt)
         self._load.learn(sample, torque / self.config.scale if self.config.scale else 0.0, ahead.acceleration, dt)
         return True
 
-    def _blended(self, usable: bool, previous: float, dt: float) -> float:
-        """The target, faded and bridged; a lost input leaves the old target to fade out."""
-        up = usable and self._enabled
-        if usable and not self._usable:
-            self._bump = True
-        self._usable = usable
-        faded = self._fade.step(up, dt) * self._target.torque
-        if self._bump and usable:
-            self._bridge.start(previous - faded)
-            self._bump = False
-        torque = faded + self._bridge.step(dt)
-        return self._limits.slewed(torque, previous, dt) if self._last else 0.0
+    def _steepest(self, x: tuple[float, ...], groups: int) -> None:
+        """Slew no faster than a reversal at this load needs: the sign is spread over `reversal_time`, so the bound of
+        the friction near standstill changes by itself over that time, and no friction changes faster."""
+        slow = (x[0], self.config.reversal_speed, self.config.reversal_speed, *x[3:])
+        size = max(self._seed_law.magnitude(slow, groups), self._seed_law.magnitude(x, groups))
+        if self.config.reversal_time > 0.0 and math.isfinite(size):
+            self.output.restrict(max(self.config.envelope, 1.0) * size / self.config.reversal_time)
+
+    def _turn(self, sample: Sample) -> None:
+        """A target without its inputs still turns with the motion, as long as the speed is there."""
+        speed = self._speed(sample)
+        if not self._ranges.plausible("motor_speed", speed):
+            return
+        target = self._target
+        target.torque = min(target.size, target.envelope) * smooth_sign(speed, self.config.reversal_speed)
+        target.reversal = math.inf
 
     def _without_time(self) -> Feedforward:
         """A sample that cannot be placed in time changes nothing but the counts."""
-        self._counts["steps"] += 1
         self._counts["stale"] += 1
         self._lost = ("time",)
         return self._last or Feedforward(0.0, 0.0, 0.0, 0.0, "waiting", 0.0, 0.0)
 
-    def _feedforward(self, time: float, torque: float, usable: bool) -> Feedforward:
-        pressure = torque * self._pressure_per_torque
-        target = self._target
+    def _feedforward(self, time: float, state: str, valid: bool) -> Feedforward:
+        target, torque = self._target, self.output.torque
         return Feedforward(
-            time, torque, pressure, target.speed, self._state(usable), target.drum_torque, self._fade.value
-        )
+            time, torque, torque * self._pressure_per_torque, target.speed, state, target.drum_torque,
+            self.output.fade.value, valid, self.output.sequence,
+        )  # fmt: skip
 
     def _state(self, usable: bool) -> str:
         if not self._enabled:
             return "disabled"
         if not usable:
             return "stale" if self._last is not None and self._last.state != "waiting" else "waiting"
-        return "active" if self._fade.value >= 1.0 else "fading"
+        return "active" if self.output.fade.value >= 1.0 else "fading"
+
+
+def _reversal(ahead: PredictedSpeed) -> float:
+    """Seconds until the motion turns if the acceleration stays."""
+    return -ahead.speed / ahead.acceleration if ahead.speed * ahead.acceleration < 0.0 else math.inf

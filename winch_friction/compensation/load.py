@@ -16,7 +16,7 @@ class DrumTorque:
     """
 
     def __init__(self, crane: Crane, load: float, time_constant: float) -> None:
-        self._crane = crane
+        self.crane = crane
         self._load = load
         self._time_constant = time_constant
         self.reset()
@@ -33,7 +33,7 @@ class DrumTorque:
         """T_d in N m; NaN while nothing is known."""
         load = sample.hook_load if math.isfinite(sample.hook_load) else self._load
         if math.isfinite(load):
-            return self._crane.drum_torque(load, sample.wire_layer)
+            return self.crane.drum_torque(load, sample.wire_layer)
         if not math.isfinite(self._estimate):
             return self._from_balance(sample, 0.0, 0.0)
         return self._estimate
@@ -49,6 +49,6 @@ class DrumTorque:
         self._estimate += (balance - self._estimate) * dt / (dt + self._time_constant)
 
     def _from_balance(self, sample: Sample, friction: float, acceleration: float) -> float:
-        crane = self._crane
+        crane = self.crane
         torque = sample_drive_torque(sample, crane) - crane.inertia * acceleration - friction
         return max(0.0, crane.gear_ratio * torque) if math.isfinite(torque) else math.nan

@@ -13,6 +13,7 @@ from winch_friction.compensation.transition import Bridge, Fade
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
 # stamps may gain this on the steady clock: a sender's clock, or a simulation, that runs faster than ours
 FASTEST_STAMPS = 1.5
+LONGEST_AGAINST = 0.3  # s; what is left of before and pushes against what is right now is let go within this
 
 
 @dataclass
@@ -42,7 +43,7 @@ class SafeOutput:
         self._held, self._faded = 0.0, 0.0
         self._reversal = math.inf
         self._steady, self._credit = math.nan, self.hold
-        self._dt = 0.0
+        self._dt = self._against = 0.0
         self._bump = self._usable = self._new_time = False
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
@@ -98,9 +99,7 @@ class SafeOutput:
         self._credit -= counted
         return counted
 
-    def follow(
-        self, target: float, envelope: float, usable: bool, enabled: bool, reversal: float = math.inf
-    ) -> float:
+    def follow(self, target: float, envelope: float, usable: bool, enabled: bool, reversal: float = math.inf) -> float:
         """What is published for the sample that arrived: the way to `target` N m.
 
         A sample that is not `usable` leaves `target` to fade out. `reversal` s is when the motion may turn: a ramp
@@ -114,14 +113,22 @@ class SafeOutput:
             self._bridge.start(self.torque - faded)
             self._bump = False
         wanted = faded + self._bridge.step(self._dt)
-        if wanted * target < 0.0:  # what is left of before would push against what is right now
-            wanted = 0.0
+        wanted = self._not_against(wanted, target)
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
         self.torque = self.limits.slewed(wanted, self.torque, self._dt)
         self.sequence += 1
         self._held, self._faded, self._reversal = self.torque, self.fade.value, reversal
         return self.torque
+
+    def _not_against(self, wanted: float, target: float) -> float:
+        """What is left of before does not push against what is right now for long."""
+        if wanted * target >= 0.0:
+            self._against = 0.0
+            return wanted
+        self._against = max(self._against, abs(self.torque))
+        most = max(0.0, abs(self.torque) - self._against * self._dt / min(LONGEST_AGAINST, self.ramp_time))
+        return math.copysign(min(abs(wanted), most), wanted)
 
     def _hurry(self, reversal: float) -> float:
         return max(min(self.ramp_time, reversal), 1e-6)
@@ -164,6 +171,10 @@ class SafeOutput:
         """Let the ramp to zero begin at stamp `time`, and no sample stop it before the next `restart`."""
         self._held, self._faded = self.torque, self.fade.value
         self._fed, self.time = time - self.hold, time
+
+    def hurry(self, duration: float) -> None:
+        """Let the ramp to zero be over within `duration` s, as far as the slew limit allows it."""
+        self._reversal = min(self._reversal, duration + self.hold)
 
     @property
     def at_rest(self) -> bool:

@@ -10,15 +10,13 @@ class Fade:
     duration: float  # s
     value: float = 0.0
 
-    def step(self, up: bool, dt: float) -> float:
-        """Move for `dt` s."""
-        change = dt / self.duration
-        self.value = min(1.0, self.value + change) if up else self.after(dt)
+    def step(self, up: bool, dt: float, down: float | None = None) -> float:
+        """Move for `dt` s; on the way down within `down` s where that is less than the duration."""
+        if up:
+            self.value = min(1.0, self.value + dt / self.duration)
+        else:
+            self.value = max(0.0, self.value - dt / min(self.duration, down or self.duration))
         return self.value
-
-    def after(self, dt: float) -> float:
-        """What fading out for `dt` s would leave."""
-        return max(0.0, self.value - dt / self.duration)
 
 
 @dataclass

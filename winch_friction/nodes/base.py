@@ -1,7 +1,6 @@
 """What the nodes have in common: parameters, lifecycle, time jumps, diagnostics, services."""
 
-import functools
-import traceback
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,12 +11,15 @@ from rclpy.clock import Clock, JumpThreshold
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
+from winch_friction.nodes.guard import Guarded, answered, said_aloud
 from winch_friction.nodes.messages import diagnostic_array, diagnostic_status
 from winch_friction.nodes.options import FIXED, NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.polling import Polled
+from winch_friction.nodes.qos import fresh
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
@@ -27,20 +29,7 @@ from winch_friction.records.model_file import load_model
 
 FORWARD_JUMP = 5.0  # s; a simulated clock that leaps further was restarted or skipped a piece of the recording
 OK, WARN, ERROR = 0, 1, 2
-
-
-def said_aloud(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., TransitionCallbackReturn]:
-    """Log what a transition raises: rclpy would only answer ERROR and keep the reason to itself."""
-
-    @functools.wraps(transition)
-    def wrapped(node: Any, state: LifecycleState) -> TransitionCallbackReturn:
-        try:
-            return transition(node, state)
-        except Exception:
-            node.get_logger().error(f"{transition.__name__} failed:\n{traceback.format_exc()}")
-            raise
-
-    return wrapped
+LAST_WORD = 0.05  # s that the last message gets before its publisher goes
 
 
 @dataclass(frozen=True)
@@ -53,7 +42,7 @@ class Health:
     values: Mapping[str, Any]
 
 
-class WinchNode(LifecycleNode):
+class WinchNode(Guarded, LifecycleNode):
     """A lifecycle node around one object that steps through samples.
 
     A node says what it is made of in `build` (after the files are read), what it does while active in `start` and
@@ -69,6 +58,7 @@ class WinchNode(LifecycleNode):
         self.options: NodeOptions = self._node_parameters.read(self)
         self.check_settings({})
         self.crane: Crane
+        self._activated = float("inf")
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
@@ -76,6 +66,7 @@ class WinchNode(LifecycleNode):
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.add_on_set_parameters_callback(self._on_set)
         self.add_post_set_parameters_callback(self._on_post_set)
+        self.answer_every_transition()
         self._jump_handle = self.get_clock().create_jump_callback(_threshold(), post_callback=self._on_clock_jump)
 
     # -- what a node fills in
@@ -111,7 +102,10 @@ class WinchNode(LifecycleNode):
         """Register the terms of `terms_file` and declare what can be set for them; `InputError` when it is no such
         file."""
         if self.options.terms_file:
-            load_file(self.options.terms_file)
+            try:
+                load_file(self.options.terms_file)
+            except SystemExit as error:
+                raise InputError(f"{self.options.terms_file}: it wants to end the program (sys.exit)") from error
             for each in self._settings:
                 each.declare(self)
 
@@ -125,8 +119,9 @@ class WinchNode(LifecycleNode):
             self._warn_of_unknown()
             self.crane = load_crane(self.options.crane)
             self.build(self.crane, load_model(self.options.model_file))
-        except InputError as error:
+        except (InputError, OSError) as error:
             self.get_logger().error(str(error))
+            self._take_down()
             return TransitionCallbackReturn.FAILURE
         self._diagnostics = self.publisher(DiagnosticArray, "/diagnostics", 10)
         return TransitionCallbackReturn.SUCCESS
@@ -135,6 +130,7 @@ class WinchNode(LifecycleNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Enable the publishers, then let the inputs in."""
         super().on_activate(state)
+        self._activated = self.service_now()
         self.forget()
         self.start()
         self.every(self.options.diagnostics_period, self._publish_health)
@@ -154,12 +150,28 @@ class WinchNode(LifecycleNode):
 
     @said_aloud
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """From any state: keep what was learned, then take down."""
+        """From any state: end what runs, keep what was learned, then take down."""
         if state.label == "active":
             self._halt()
             super().on_deactivate(state)
+            time.sleep(LAST_WORD)
         self._take_down()
         return TransitionCallbackReturn.SUCCESS
+
+    @said_aloud
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """A transition that raised leaves nothing running and the node unconfigured, to be configured anew."""
+        self._halt()
+        self._take_down()
+        return TransitionCallbackReturn.SUCCESS
+
+    def end(self) -> None:
+        """Shut down from whatever state: what is published ends at zero, what was learned is kept."""
+        try:
+            self.trigger_shutdown()
+        except Exception as error:  # finalized already, or a transition that cannot be left: save what can be saved
+            self.get_logger().warning(f"shut down without a transition: {error}")
+            self.save()
 
     def _halt(self) -> None:
         self.stop()
@@ -177,13 +189,14 @@ class WinchNode(LifecycleNode):
     # -- building blocks
     def publisher(self, message_type: Any, topic: str, qos: Any, **arguments: Any) -> Any:
         """A publisher that is silent unless the node is active, gone after cleanup."""
+        qos = fresh(qos) if isinstance(qos, QoSProfile) else qos
         made = self.create_lifecycle_publisher(message_type, topic, qos, callback_group=self._unwatched, **arguments)
         self._publishers_made.append(made)
         return made
 
     def every(self, period: float, action: Callable[[], None]) -> None:
         """Call `action` on the steady clock while active: timers on ROS time freeze when it steps back (rclpy#1490)."""
-        timer = self.create_timer(period, action, clock=self.steady_clock)
+        timer = self.create_timer(period, self.guarded(action), clock=self.steady_clock)
         self._active_entities.append(lambda: self.destroy_timer(timer))
 
     def while_active(self, subscription: Any) -> None:
@@ -192,19 +205,27 @@ class WinchNode(LifecycleNode):
 
     def trigger(self, name: str, action: Callable[[], str]) -> None:
         """A Trigger service; `action` says what it did, `InputError` is its refusal."""
-        self._switches.append(self.create_service(Trigger, f"~/{name}", lambda _, response: _answer(action, response)))
+        self._switches.append(self.create_service(Trigger, f"~/{name}", lambda _, response: answered(action, response)))
 
     def switch(self, name: str, action: Callable[[bool], str]) -> None:
         """A SetBool service."""
 
         def answer(request: Any, response: Any) -> Any:
-            return _answer(lambda: action(request.data), response)
+            return answered(lambda: action(request.data), response)
 
         self._switches.append(self.create_service(SetBool, f"~/{name}", answer))
 
     def ros_now(self) -> float:
         """The node's clock in s."""
         return float(self.get_clock().now().nanoseconds * 1e-9)
+
+    def steady_now(self) -> float:
+        """The steady clock in s."""
+        return float(self.steady_clock.now().nanoseconds * 1e-9)
+
+    def service_now(self) -> float:
+        """The clock that the service inside goes by, s."""
+        return self.ros_now() if self.options.watchdog_clock == "ros" else self.steady_now()
 
     # -- parameters
     def _warn_of_unknown(self) -> None:
@@ -219,16 +240,25 @@ class WinchNode(LifecycleNode):
             self.check_settings({each.name: each.value for each in changes})
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
+        except Exception as error:
+            self.report_defect("parameter check")
+            return SetParametersResult(successful=False, reason=f"{type(error).__name__}: {error}")
         return SetParametersResult(successful=True)
 
     def _on_post_set(self, changes: Sequence[Any]) -> None:
-        self.options = self._node_parameters.read(self)
-        self.apply_settings()
+        try:
+            self.options = self._node_parameters.read(self)
+            self.apply_settings()
+        except Exception:
+            self.report_defect("parameter change")
 
     # -- time and diagnostics
     def _on_clock_jump(self, jump: Any) -> None:
-        self.get_logger().info("time jumped: starting anew")
-        self.forget()
+        try:
+            self.get_logger().info("time jumped: starting anew")
+            self.forget()
+        except Exception:
+            self.report_defect("jump of the clock")
 
     def _publish_health(self) -> None:
         name = self.get_fully_qualified_name().lstrip("/")
@@ -242,11 +272,3 @@ class WinchNode(LifecycleNode):
 def _threshold() -> JumpThreshold:
     forward, backward = Duration(nanoseconds=int(FORWARD_JUMP * 1e9)), Duration(nanoseconds=-1)
     return JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
-
-
-def _answer(action: Callable[[], str], response: Any) -> Any:
-    try:
-        response.message, response.success = action(), True
-    except InputError as error:
-        response.message, response.success = str(error), False
-    return response

@@ -1,32 +1,35 @@
 """The compensator node: inputs in, friction feedforward out."""
 
+import math
 import sys
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import String
 
-from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
-from winch_friction.compensation.model_schedule import ModelSchedule
+from winch_friction.compensation import CompensatorConfig, Feedforward
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import Inputs
 from winch_friction.nodes.messages import ROS, pressure_message
 from winch_friction.nodes.parameters import OptionParameters
-from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
+from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
+from winch_friction.online.compensator import CompensatorService
+from winch_friction.online.consumer import mark
+from winch_friction.online.models import ModelIntake
+from winch_friction.online.options import ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, registered_terms
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.options import check, option
-from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.model_file import load_model, model_from_text
+from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import joint_state, stamp_header
 
-WATCHDOG_SHARE, LONGEST_WATCH = 0.2, 0.5  # of the timeout, s
+LONGEST_WATCH = 0.1  # s between two looks of the watchdog where the time-out is long
 
 
 @dataclass(frozen=True)
@@ -53,62 +56,75 @@ class CompensatorNode(WinchNode):
     def build(self, crane: Crane, model: FrictionModel) -> None:
         """The feedforward law on its seed, its outputs and its switches."""
         self.own, config = self._own.read(self), self._config.read(self)
-        model.compile(len(self.options.topics(crane).groups))  # now, not while the first sample waits
-        self.law = FeedforwardCompensator(crane, model, config)
-        self.schedule = ModelSchedule(self.own.model_delay)
-        hold = InputHold(self.options.topics(crane).groups, config.max_age, dict(config.max_ages))
-        self.inputs = Inputs(self, self.options.topics(crane), hold, self._on_sample, self.forget)
-        self._input_health = InputHealth(self.inputs, self.ros_now)
+        topics = self.options.topics(crane)
+        model.compile(len(topics.groups))  # now, not while the first sample waits
+        self.service = CompensatorService(crane, model, topics, config, self._service_options())
+        self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
+        self.inputs = Inputs(self, self.service, self._publish, self._latest(config))
+        patience = self.options.watchdog_timeout
+        self._input_health = InputHealth(self.service.inputs, self.inputs, self._needed, self.service_now, patience)
         self._torque = self.publisher(JointState, "~/friction_torque", OUTPUT, qos_overriding_options=overridable())
-        self._pressure = self.publisher(FluidPressure, "~/pressure_feedforward", OUTPUT)
+        self._pressure = self.publisher(
+            FluidPressure, "~/pressure_feedforward", OUTPUT, qos_overriding_options=overridable()
+        )
         self.switch("enable", self._enable)
         self.trigger("reset", self._reset)
         self.trigger("load_model", self._load_model)
+
+    def _service_options(self) -> ServiceOptions:
+        return ServiceOptions(self.options.watchdog_timeout, self.options.stamp_window, self.own.model_delay)
+
+    def _latest(self, config: CompensatorConfig) -> float:
+        return config.max_age if self._service_options().paced else math.inf
 
     def start(self) -> None:
         """Let the inputs and the models in, watch over both."""
         self.inputs.open()
         models = self.create_subscription(
-            String, "friction_model", self._on_model, LATCHED, qos_overriding_options=overridable()
+            String, "friction_model", self.guarded(self._on_model), fresh(LATCHED), qos_overriding_options=overridable()
         )
         self.while_active(models)
-        self.every(min(WATCHDOG_SHARE * self.options.watchdog_timeout, LONGEST_WATCH), self._watch)
+        share = 0.2 * self.options.watchdog_timeout
+        self.every(min(max(self.service.options.watch_period, share), LONGEST_WATCH), self._watch)
 
     def stop(self) -> None:
-        """Shut the inputs out."""
+        """Shut the inputs out and publish the ramp to zero."""
         self.inputs.close()
+        began = time.monotonic()
+        for after, feedforward in self.service.ending(self.service_now()):
+            time.sleep(max(0.0, began + after - time.monotonic()))
+            self._publish(feedforward)
 
     def forget(self) -> None:
         """Start anew: nothing held, nothing remembered, the model kept."""
-        if hasattr(self, "law"):
-            self.inputs.forget()
-            self.schedule.clear()
-            self.law.reset()
+        if hasattr(self, "service"):
+            self.service.reset()
 
     # -- callbacks
-    def _on_sample(self, sample: Sample) -> None:
-        self._take_over(self.schedule.due(sample.time))
-        self._publish(self.law.step(sample), sample.time)
-
     def _on_model(self, message: String) -> None:
-        if not self.own.follow_model_topic:
-            return
-        try:
-            self.schedule.offer(model_from_text(message.data, "friction_model"))
-        except InputError as error:
-            self._refused(error)
+        if self.own.follow_model_topic:
+            self.models.offer(message.data)
+            self._take_models()
 
     def _watch(self) -> None:
-        silence = self.inputs.silence() - self.options.watchdog_timeout
-        if silence > 0.0 and self.inputs.last_stamp > float("-inf"):
-            stamp = self.inputs.last_stamp
-            remaining = self.law.expire(stamp + self.law.config.max_age + silence)
-            if remaining is not None:
-                self._publish(remaining, stamp)
+        self._take_models()
+        said = self.service.tick(self.service_now())
+        if said is not None:
+            self.inputs.poll()
+            self._publish(said)
+
+    def _take_models(self) -> None:
+        for each in self.models.take():
+            if isinstance(each, InputError):
+                self._refused(str(each))
+            else:
+                self.service.offer(each)
+        while self.service.refused_models:
+            self._refused(self.service.refused_models.pop())
 
     # -- services
     def _enable(self, wanted: bool) -> str:
-        self.law.set_enabled(wanted)
+        self.service.set_enabled(wanted)
         return f"feedforward {'enabled' if wanted else 'disabled'}"
 
     def _reset(self) -> str:
@@ -118,48 +134,47 @@ class CompensatorNode(WinchNode):
     def _load_model(self) -> str:
         self.load_terms()
         model = load_model(self.options.model_file)
-        self.law.load_model(model)
+        self.service.load_model(model)
         return f"model '{model.name}' in use"
 
-    # -- models and outputs
-    def _take_over(self, model: FrictionModel | None) -> None:
-        if model is None:
-            return
-        try:
-            self.law.load_model(model)
-        except InputError as error:
-            self._refused(error)
+    # -- outputs
+    def _refused(self, reason: str) -> None:
+        self.get_logger().warning(f"model refused, '{self.service.law.model.name}' kept: {reason}")
 
-    def _refused(self, error: InputError) -> None:
-        self.get_logger().warning(f"model refused, '{self.law.model.name}' kept: {error}")
-
-    def _publish(self, feedforward: Feedforward, stamp: float) -> None:
-        """Stamped as the measurement that it was computed from."""
-        header = stamp_header(stamp, ROS)
+    def _publish(self, feedforward: Feedforward) -> None:
+        """Stamped as the measurement that it was computed from; validity and number in the frame's name."""
+        header = stamp_header(feedforward.time, ROS, mark(feedforward.valid, feedforward.sequence))
         torque, speed = feedforward.friction_torque, feedforward.speed
         self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=torque))
         if self.crane.drive.hydraulic and feedforward.pressure == feedforward.pressure:
-            self._pressure.publish(pressure_message(stamp, feedforward.pressure))
+            self._pressure.publish(pressure_message(feedforward.time, feedforward.pressure, header.frame_id))
 
     # -- settings and health
-    def check_settings(self, changes: Mapping[str, Any]) -> None:
-        """Also what only fits together, such as velocity source and drive."""
-        super().check_settings(changes)
-
     def apply_settings(self) -> None:
         """Take over changed settings without a bump."""
-        if hasattr(self, "law"):
-            self.own = self._own.read(self)
-            self.schedule.delay = self.own.model_delay
-            self.law.configure(self._config.read(self))
+        if hasattr(self, "service"):
+            self.own, config = self._own.read(self), self._config.read(self)
+            self.service.configure(config, self._service_options())
+            self.inputs.latest = self._latest(config)
+
+    def _needed(self) -> set[str]:
+        """The topics without which nothing is fed forward."""
+        topics, config = self.service.inputs.topics, self.service.law.config
+        channels = {"speed_reference"} if config.velocity_source == "reference" else set()
+        if self.crane.drive.hydraulic:
+            channels |= {f"{g}.{c}" for g in topics.groups for c in ("pressure_a", "pressure_b", "displacement")}
+        own = {topic for topic, source in topics.inputs.items() if channels & set(source.channels)}
+        return {topics.speed_topic, *own}
 
     def health(self) -> Sequence[Health]:
         """The feedforward's state and the inputs' rates and ages."""
-        status = dict(self.law.status())
-        state = "stale" if self.inputs.silence() > self.options.watchdog_timeout else str(status["state"])
-        status["state"] = state
-        level = {"waiting": WARN, "stale": ERROR}.get(state, OK)
-        return [Health("feedforward", level, state, status), self._input_health.report()]
+        now = self.service_now()
+        status = self.service.status(now)
+        state = str(status["state"])
+        never = state == "waiting" and now - self._activated > self.options.diagnostics_period
+        level = ERROR if state == "stale" or never else {"waiting": WARN}.get(state, OK)
+        why = status["contradictions"] or (status["missing"] if state in ("stale", "waiting") else "")
+        return [Health("feedforward", level, f"{state}: {why}" if why else state, status), self._input_health.report()]
 
 
 def _a_gain_for_every_term() -> dict[str, dict[str, float]]:

@@ -3,14 +3,13 @@
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from winch_friction.compensation.model_schedule import LEARNED_AT
-from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
+from winch_friction.estimation import Estimate, EstimatorConfig
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import Inputs
 from winch_friction.nodes.messages import ROS
@@ -18,12 +17,12 @@ from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
-from winch_friction.physics.channels import SLOW_INPUTS
+from winch_friction.online.consumer import mark
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.options import ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.options import check, option
-from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.checkpoint import read_checkpoint, write_checkpoint
 from winch_friction.records.model_file import model_to_text
@@ -60,18 +59,17 @@ class EstimatorNode(WinchNode):
         self.own = self._own.read(self)
         topics = self.options.topics(crane)
         model.compile(len(topics.groups))  # now, not while the first sample waits
-        self.seed = model
-        self.law = FrictionEstimator(crane, model, self._config.read(self))
+        options = ServiceOptions(self.options.watchdog_timeout, self.options.stamp_window)
+        periods = {"model_period": self.own.model_period, "max_age": self.own.max_age}
+        self.service = EstimatorService(crane, model, topics, self._config.read(self), options, **periods)
+        self.law = self.service.law
         self._restore()
-        self.inputs = Inputs(
-            self, topics, InputHold(topics.groups, self.own.max_age, dict(SLOW_INPUTS)), self._on_sample, self.forget
-        )
-        self._input_health = InputHealth(self.inputs, self.ros_now)
+        self.inputs = Inputs(self, self.service, self._answer)
+        patience = self.options.watchdog_timeout
+        self._input_health = InputHealth(self.service.inputs, self.inputs, self._needed, self.service_now, patience)
         self._model = self.publisher(String, "friction_model", LATCHED, qos_overriding_options=overridable())
         self._torque = self.publisher(JointState, "~/friction_torque", OUTPUT, qos_overriding_options=overridable())
-        self._last: Estimate | None = None
-        self._friction = 0.0
-        self._published_at = float("-inf")
+        self._answers = 0
         self.switch("enable", self._enable)
         self.trigger("reset", self._reset)
         self.trigger("save", self._save)
@@ -79,6 +77,7 @@ class EstimatorNode(WinchNode):
     def start(self) -> None:
         """Let the inputs in."""
         self.inputs.open()
+        self.every(self.options.diagnostics_period, self._poll)
         if self.own.checkpoint:
             self.every(self.own.checkpoint_period, self.save)
 
@@ -88,9 +87,8 @@ class EstimatorNode(WinchNode):
 
     def forget(self) -> None:
         """After a jump of time: nothing held; the filter restarts its speed by itself and keeps what it learned."""
-        if hasattr(self, "law"):
-            self.inputs.forget()
-            self._published_at = float("-inf")
+        if hasattr(self, "service"):
+            self.service.forget()
 
     def save(self) -> None:
         """Write the checkpoint; a full disk is said, not fatal."""
@@ -102,20 +100,24 @@ class EstimatorNode(WinchNode):
             self.get_logger().error(f"checkpoint not written: {error}")
 
     # -- callbacks
-    def _on_sample(self, sample: Sample) -> None:
-        self._last = self.law.step(sample)
-        self._publish(self._last)
-        if sample.time >= self._published_at + self.own.model_period:
-            self._publish_model(sample.time)
+    def _answer(self, estimate: Estimate) -> None:
+        self._publish(estimate)
+        learned = self.service.model_due(self.service_now())
+        if learned is not None:
+            self._model.publish(String(data=model_to_text(learned)))
+
+    def _poll(self) -> None:
+        """Count the inputs that come although no speed does."""
+        if self.service.inputs.silence(self.service_now()) > self.options.watchdog_timeout:
+            self.inputs.poll()
 
     # -- services
     def _enable(self, wanted: bool) -> str:
-        self.law.set_enabled(wanted)
+        self.service.set_enabled(wanted)
         return f"learning {'enabled' if wanted else 'disabled'}"
 
     def _reset(self) -> str:
-        self.law.reset()
-        self.forget()
+        self.service.reset()
         return "everything learned is forgotten: the seed again"
 
     def _save(self) -> str:
@@ -126,18 +128,13 @@ class EstimatorNode(WinchNode):
 
     # -- outputs
     def _publish(self, estimate: Estimate) -> None:
-        """One answer to each sample; a sample that taught nothing gets the torque before it."""
-        if math.isfinite(estimate.friction_torque):
-            self._friction = estimate.friction_torque
-        header = stamp_header(estimate.time, ROS)
+        """One answer to each sample; one that taught nothing repeats the torque before it, and says that it is not
+        valid."""
+        self._answers += 1
+        header = stamp_header(estimate.time, ROS, mark(math.isfinite(estimate.friction_torque), self._answers))
         speed = estimate.speed if math.isfinite(estimate.speed) else 0.0
-        self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=self._friction))
-
-    def _publish_model(self, time: float) -> None:
-        self._published_at = time
-        learned = self.law.model()
-        dated = replace(learned, provenance={**learned.provenance, LEARNED_AT: time})
-        self._model.publish(String(data=model_to_text(dated)))
+        torque = self.service.friction_torque
+        self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=torque))
 
     # -- what an earlier run left, health
     def _restore(self) -> None:
@@ -153,20 +150,27 @@ class EstimatorNode(WinchNode):
 
     def apply_settings(self) -> None:
         """Take over the periods."""
-        if hasattr(self, "law"):
+        if hasattr(self, "service"):
             self.own = self._own.read(self)
+            self.service.model_period, self.service.inputs.hold.max_age = self.own.model_period, self.own.max_age
 
     def health(self) -> Sequence[Health]:
         """The filter, every parameter with deviation and status, and the inputs."""
         return [self._filter_health(), self._parameter_health(), self._input_health.report()]
 
+    def _needed(self) -> set[str]:
+        """The topics without which nothing is learned."""
+        topics = self.service.inputs.topics
+        needed = {f"{g}.{c}" for g in topics.groups for c in ("pressure_a", "pressure_b", "displacement")}
+        return {topics.speed_topic} | {t for t, source in topics.inputs.items() if needed & set(source.channels)}
+
     def _filter_health(self) -> Health:
-        status = dict(self.law.status())
-        if self._last:
-            status |= {"innovation": self._last.innovation, "nis": self._last.nis, "speed": self._last.speed}
-        silent = self.inputs.silence() > self.options.watchdog_timeout
-        state = "waiting" if silent else str(status.get("state", "waiting"))
-        return Health("filter", WARN if state in ("waiting", "rejected") else OK, state, status)
+        status, last = self.service.status(self.service_now()), self.service.last
+        if last:
+            status |= {"innovation": last.innovation, "nis": last.nis, "speed": last.speed}
+        state = str(status["state"])
+        said = f"{state} for {status['missing']}" if state == "waiting" and status["missing"] else state
+        return Health("filter", WARN if state in ("waiting", "rejected") else OK, said, status)
 
     def _parameter_health(self) -> Health:
         values: dict[str, Any] = {}

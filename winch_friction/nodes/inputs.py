@@ -1,115 +1,94 @@
-"""The subscriptions of a node: every message goes into the stream, at each speed a sample comes out."""
+"""The subscriptions of a node: every message goes to its service, in the order that the stamps decide."""
 
-from collections import Counter
 from collections.abc import Callable
-from typing import Any
-
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
+from typing import Any, Protocol
 
 from winch_friction.nodes.messages import message_type
 from winch_friction.nodes.polling import Polled, drain
-from winch_friction.nodes.qos import SENSOR, overridable
-from winch_friction.physics.hold import InputHold
-from winch_friction.physics.signals import Sample
-from winch_friction.records.sample_stream import SampleStream
-from winch_friction.records.topics import Input, TopicMap
+from winch_friction.nodes.qos import SENSOR, fresh, overridable
+from winch_friction.online.inputs import InputGate
+from winch_friction.records.topics import Input, stamp_time
 
-NANOSECOND = 1e-9
+Answer = Callable[[Any], None]
+
+
+class Service(Protocol):
+    """What takes the messages: `online.CompensatorService` or `online.EstimatorService`."""
+
+    inputs: InputGate
+
+    def take(self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None) -> Any:
+        """One message; the answer, if it was a speed."""
 
 
 class Inputs:
-    """Subscribes while open; `on_sample` gets the sample at each speed, `on_jump` hears of stamps that fall back."""
+    """Subscribes while open; `answer` gets what the service says to each speed.
 
-    def __init__(
-        self,
-        node: Any,
-        topics: TopicMap,
-        hold: InputHold,
-        on_sample: Callable[[Sample], None],
-        on_jump: Callable[[], None],
-    ) -> None:
-        self._node, self._on_sample = node, on_sample
-        self._stream = SampleStream(topics, hold, on_jump)
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+    `latest` s: of speeds that waited together, those older than the newest by more are dropped: they come too late to
+    be obeyed. Infinity works all of them through.
+    """
+
+    def __init__(self, node: Any, service: Service, answer: Answer, latest: float = float("inf")) -> None:
+        self._node, self._service, self._answer, self.latest = node, service, answer, latest
         self._held: list[tuple[Input, Any]] = []
         self._speed: Any = None
-        self._last_seen = self.steady()
+        self.late = 0
 
     def open(self) -> None:
         """Subscribe to everything."""
-        self._last_seen = self.steady()
-        topics = self._stream.topics
-        held = Polled()
+        topics, held = self._service.inputs.topics, Polled()
         for source in topics.inputs.values():
             if source.topic != topics.speed_topic:
                 self._held.append((source, self._subscribe(source, None, held)))
-        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self._on_speed)
+        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self._node.guarded(self._on_speed))
 
     def close(self) -> None:
-        """Unsubscribe and forget what was held."""
-        for subscription in (self._speed, *(each for _, each in self._held)):
-            if subscription is not None:
-                self._node.destroy_subscription(subscription)
+        """Unsubscribe."""
+        for subscription in self.subscriptions().values():
+            self._node.destroy_subscription(subscription)
         self._speed, self._held = None, []
-        self.forget()
 
-    def forget(self) -> None:
-        """Drop what is held, after a jump of time."""
-        self._stream.forget()
-
-    @property
-    def last_stamp(self) -> float:
-        """Stamp of the last sample in s; -inf before the first."""
-        return self._stream.last_stamp
-
-    @property
-    def counts(self) -> Counter[str]:
-        """Messages by topic."""
-        return self._stream.counts
-
-    @property
-    def rejected(self) -> Counter[str]:
-        """Messages by topic that were not finite, late or of another joint."""
-        return self._stream.rejected
-
-    def steady(self) -> float:
-        """Steady time in s."""
-        return float(self._steady.now().nanoseconds * NANOSECOND)
-
-    def silence(self) -> float:
-        """Steady seconds since the last sample."""
-        return self.steady() - self._last_seen
-
-    def ages(self) -> dict[str, float]:
-        """Age of every input at the last speed, s."""
-        return self._stream.hold.ages(self.last_stamp)
+    def subscriptions(self) -> dict[str, Any]:
+        """The open subscriptions by contract topic."""
+        speed = {self._service.inputs.topics.speed_topic: self._speed} if self._speed is not None else {}
+        return {**speed, **{source.topic: subscription for source, subscription in self._held}}
 
     def _subscribe(self, source: Input, callback: Callable[..., None] | None, group: Any = None) -> Any:
         return self._node.create_subscription(
             message_type(source.type_name),
             source.topic,
             callback or _never,
-            SENSOR,
+            fresh(SENSOR),
             callback_group=group,
             qos_overriding_options=overridable(),
         )
 
+    def poll(self) -> None:
+        """Take in what waits while no speed comes, so that it is counted and does not pile up."""
+        receipt, now = self._node.ros_now(), self._node.service_now()
+        for source, subscription in self._held:
+            for message, info in drain(subscription):
+                self._service.take(source, message, receipt, now, info["source_timestamp"])
+
     def _on_speed(self, message: Any, info: Any) -> None:
         """The others first, all that have come: stamps decide what belongs to which speed."""
-        topics = self._stream.topics
-        source, sent = topics.inputs[topics.speed_topic], info["source_timestamp"]
-        receipt = self._receipt()
-        for held, subscription in self._held:
-            for other, other_info in drain(subscription):
-                self._stream.take(held, other, receipt, other_info["source_timestamp"])
-        sample = self._stream.take(source, message, receipt, sent)
-        if sample is not None:
-            self._last_seen = self.steady()
-            self._on_sample(sample)
+        topics = self._service.inputs.topics
+        source = topics.inputs[topics.speed_topic]
+        waiting = [(message, info), *drain(self._speed)]
+        self.poll()
+        receipt, now = self._node.ros_now(), self._node.service_now()
+        for each, sent in self._in_time(source, waiting):
+            answer = self._service.take(source, each, receipt, now, sent["source_timestamp"])
+            if answer is not None:
+                self._answer(answer)
 
-    def _receipt(self) -> float:
-        return float(self._node.get_clock().now().nanoseconds * NANOSECOND)
+    def _in_time(self, source: Input, waiting: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
+        if len(waiting) == 1 or not source.stamped:
+            return waiting
+        newest = max(stamp_time(message) for message, _ in waiting)
+        kept = [each for each in waiting if newest - stamp_time(each[0]) <= self.latest]
+        self.late += len(waiting) - len(kept)
+        return kept
 
 
 def _never(_: Any) -> None:

@@ -55,9 +55,10 @@ def clock_message(time: float) -> Clock:
     return Clock(clock=ros_time(time))
 
 
-def pressure_message(time: float, pressure: float) -> FluidPressure:
+def pressure_message(time: float, pressure: float, frame_id: str = "") -> FluidPressure:
     """A pressure difference in Pa at `time` s; the variance is not known."""
-    return FluidPressure(header=Header(stamp=ros_time(time)), fluid_pressure=float(pressure), variance=0.0)
+    header = Header(stamp=ros_time(time), frame_id=frame_id)
+    return FluidPressure(header=header, fluid_pressure=float(pressure), variance=0.0)
 
 
 def diagnostic_status(name: str, hardware: str, level: int, summary: str, values: Mapping[str, Any]) -> Any:

@@ -30,7 +30,13 @@ class NodeOptions:
     )
     diagnostics_period: float = option(1.0, lower=0.05, upper=60.0, unit="s", doc="time between diagnostics")
     watchdog_timeout: float = option(
-        0.1, lower=0.01, upper=600.0, unit="s", doc="steady time without a speed after which the inputs count as lost"
+        0.1, lower=0.01, upper=600.0, unit="s", doc="time without a speed after which the inputs count as lost"
+    )
+    watchdog_clock: str = option(
+        "steady", choices=("steady", "ros"), doc="clock of the watchdog; ros only where a recording is played"
+    )
+    stamp_window: float = option(
+        0.5, lower=0.05, upper=60.0, unit="s", doc="how far a stamp may run ahead of the clock before it is refused"
     )
 
     def __post_init__(self) -> None:

@@ -31,6 +31,16 @@ LATCHED = QoSProfile(
 )
 
 
+def fresh(profile: QoSProfile) -> QoSProfile:
+    """A profile of one topic's own: rclpy writes an override into the object that it is given."""
+    return QoSProfile(
+        history=profile.history,
+        depth=profile.depth,
+        reliability=profile.reliability,
+        durability=profile.durability,
+    )
+
+
 def overridable() -> QoSOverridingOptions:
     """Let a parameter file change history, depth, reliability and durability of a topic."""
     kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)

@@ -1,30 +1,80 @@
-"""How fast the inputs come, how old they are, how many were refused."""
+"""How fast the inputs come, how old they are, who sends them, and what was not believed."""
 
+import math
 from collections import Counter
 from collections.abc import Callable
+from typing import Any
 
-from winch_friction.nodes.base import OK, WARN, Health
+from winch_friction.nodes.base import ERROR, OK, WARN, Health
 from winch_friction.nodes.inputs import Inputs
+from winch_friction.online.inputs import Arrivals, InputGate
+
+SELDOM = 0.5  # s
 
 
 class InputHealth:
-    """Rates between two reports on the node's own clock; a report is due at every diagnostics tick."""
+    """Every expected input by name, between two reports on the steady clock.
 
-    def __init__(self, inputs: Inputs, now: Callable[[], float]) -> None:
-        self._inputs, self._now = inputs, now
-        self._counts: Counter[str] = Counter()
+    `needed` are topics without which the node does not work; silence of one of them is an error, of another one that
+    was heard before a warning.
+    """
+
+    def __init__(
+        self, gate: InputGate, inputs: Inputs, needed: Callable[[], set[str]], now: Callable[[], float], patience: float
+    ) -> None:
+        self._gate, self._inputs, self._needed, self._now, self._patience = gate, inputs, needed, now, patience
+        self._messages: Counter[str] = Counter()
+        self._refused: Counter[str] = Counter()
         self._time = now()
 
     def report(self) -> Health:
-        """Rate, age, number and refusals of every input that was ever seen."""
-        now, counts = self._now(), Counter(self._inputs.counts)
-        elapsed = now - self._time
-        values: dict[str, float] = {"silence": self._inputs.silence()}
-        for topic, count in counts.items():
-            values[f"{topic} rate"] = (count - self._counts[topic]) / elapsed if elapsed > 0.0 else float("nan")
-            values[f"{topic} messages"] = count
-            values[f"{topic} refused"] = self._inputs.rejected[topic]
-        values |= {f"{column} age": age for column, age in self._inputs.ages().items()}
-        self._counts, self._time = counts, now
-        heard = bool(counts)
-        return Health("inputs", OK if heard else WARN, "inputs arrive" if heard else "no input yet", values)
+        """Rate, age, number, refusals, publishers and match of every input that there should be."""
+        now, elapsed = self._now(), max(self._now() - self._time, 1e-9)
+        subscriptions, needed = self._inputs.subscriptions(), self._needed()
+        values: dict[str, Any] = {"silence": self._gate.silence(now), "late": self._inputs.late}
+        problems: list[tuple[int, str]] = []
+        for topic, arrivals in self._gate.arrivals.items():
+            publishers = _publishers(subscriptions.get(topic))
+            rate = (arrivals.messages - self._messages[topic]) / elapsed
+            refused = arrivals.refused - self._refused[topic]
+            values |= {
+                f"{topic} rate": rate, f"{topic} age": now - arrivals.arrived, f"{topic} publishers": publishers,
+                f"{topic} messages": arrivals.messages, f"{topic} refused": arrivals.refused,
+                f"{topic} plausible": not refused,
+            }  # fmt: skip
+            if arrivals.reason:
+                values[f"{topic} reason"] = arrivals.reason
+            problems += self._problems(topic, arrivals, topic in needed, publishers, refused, now)
+            self._messages[topic], self._refused[topic] = arrivals.messages, arrivals.refused
+        values |= {f"{column} age": age for column, age in self._gate.ages().items()}
+        self._time = now
+        level = max((each for each, _ in problems), default=OK)
+        said = "; ".join(text for each, text in sorted(problems, reverse=True))
+        return Health("inputs", level, said or "inputs arrive", values)
+
+    def _problems(
+        self, topic: str, arrivals: Arrivals, needed: bool, publishers: int, refused: int, now: float
+    ) -> list[tuple[int, str]]:
+        problems = []
+        if arrivals.messages == 0 and needed:
+            matched = "no publisher" if publishers == 0 else "nothing comes; does the quality of service match?"
+            problems.append((ERROR if self._gate_was_heard() else WARN, f"{topic}: never heard, {matched}"))
+        elif arrivals.messages and now - arrivals.arrived > self._limit(topic, needed):
+            problems.append((ERROR if needed else WARN, f"{topic}: silent for {now - arrivals.arrived:.1f} s"))
+        elif refused:
+            problems.append((ERROR if needed else WARN, f"{topic}: {refused} refused, {arrivals.reason}"))
+        if publishers > 1:
+            problems.append((ERROR if needed else WARN, f"{topic}: {publishers} publishers"))
+        return problems
+
+    def _gate_was_heard(self) -> bool:
+        return math.isfinite(self._gate.last_arrival)
+
+    def _limit(self, topic: str, needed: bool) -> float:
+        """s of silence that are said: the hold's age limit, the watchdog's, and more for what is not needed."""
+        hold, channels = self._gate.hold, self._gate.topics.inputs[topic].channels
+        return max(self._patience, 0.0 if needed else SELDOM, *(hold.limit(each) for each in channels))
+
+
+def _publishers(subscription: Any) -> int:
+    return 0 if subscription is None else int(subscription.get_publisher_count())

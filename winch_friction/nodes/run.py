@@ -1,22 +1,40 @@
 """Start a node, spin it in one thread, end it properly; bad input is one line and exit code 2."""
 
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
 
 from winch_friction.physics.errors import InputError
 
 BAD_INPUT = 2
+HEARTBEAT = 0.1  # s; the executor looks this often whether it was told to end
+MOST_DEFECTS = 1000  # of the executor itself in a row, with nothing done in between
+
+
+class Ending:
+    """Whether SIGINT or SIGTERM came. rclpy's own handlers would take the context down before the last ramp is
+    published."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        for each in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(each, self._ask)
+
+    def _ask(self, *_: Any) -> None:
+        self.asked = True
 
 
 def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
     """Make the node, start it as its `autostart` says, and spin until it is told to end."""
+    ending = Ending()
     try:
-        rclpy.init(args=None if arguments is None else list(arguments))
+        given = None if arguments is None else list(arguments)
+        rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
         node = make()
     except InputError as error:
         return _refuse(error)
@@ -27,34 +45,41 @@ def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
             return _refuse(error)
         raise
     try:
-        return _start(node) or _spin(node)
+        return _start(node, ending) or _spin(node, ending)
     finally:
-        node.save()
+        node.end()
         node.destroy_node()
         rclpy.try_shutdown()
 
 
-def _start(node: Any) -> int:
-    if node.options.autostart:
+def _start(node: Any, ending: Ending) -> int:
+    if node.options.autostart and not ending.asked:
         done = node.trigger_configure()
-        if done.name != "SUCCESS" or node.trigger_activate().name != "SUCCESS":
+        if done.name != "SUCCESS":
+            return BAD_INPUT
+        if not ending.asked and node.trigger_activate().name != "SUCCESS":
             return BAD_INPUT
     return 0
 
 
-def _spin(node: Any) -> int:
+def _spin(node: Any, ending: Ending) -> int:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
+    node.create_timer(HEARTBEAT, lambda: None, clock=node.steady_clock)
+    defects = 0
     try:
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except RCLError:
-        if rclpy.ok():  # otherwise the signal came between two waits
-            raise
+        while not ending.asked and rclpy.ok() and defects < MOST_DEFECTS:
+            try:
+                executor.spin_once()
+                defects = 0
+            except (KeyboardInterrupt, ExternalShutdownException):
+                break
+            except Exception:
+                defects += 1
+                node.report_defect("executor")
     finally:
         executor.remove_node(node)
-    return 0
+    return 0 if defects < MOST_DEFECTS else 1
 
 
 def _refuse(error: Exception) -> int:

@@ -13,9 +13,10 @@ from std_msgs.msg import Float64
 from winch_friction.nodes.base import OK, WARN, Health, WinchNode
 from winch_friction.nodes.messages import ROS, clock_message, message_type
 from winch_friction.nodes.parameters import OptionParameters
-from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
+from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.run import run
 from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
+from winch_friction.online.consumer import HOLD_TIME, HeldTorque
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.scaled import scaled_system
@@ -25,10 +26,12 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.topics import stamp_header, stamp_time, whole_nanoseconds
 from winch_friction.simulation.scenario import load_scenario
 
+FEEDFORWARD = "compensator/friction_torque"
 LONGEST_PAUSE = 0.05  # s; how often an answer that does not come is looked for
 # scans between two messages of what changes slowly, as a PLC does it
 SLOW_CHANNELS = {"hook_load": 5, "wire_out": 25, "wire_layer": 25, "oil_temperature": 50}
 MOST_AT_ONCE = 2  # samples in a tick, to catch up
+HELD_SCANS = 2.5  # scans that a torque is held at least: the answer to a scan comes during the next
 SETTLE = 0.3  # s between the last subscriber's discovery and the first sample: both ends must know each other
 
 
@@ -48,7 +51,7 @@ class SimulatorNodeOptions:
     publish_clock: bool = option(True, doc="make the time: publish /clock")
     time_origin: float = option(1000.0, lower=0.0, upper=1e10, unit="s", doc="what /clock says at the start")
     lockstep: bool = option(False, doc="wait for the answers to each sample before the next")
-    wait_for: tuple[str, ...] = option(("compensator/friction_torque",), doc="topics whose answers are waited for")
+    wait_for: tuple[str, ...] = option((FEEDFORWARD,), doc="topics whose answers are waited for")
     lockstep_timeout: float = option(1.0, lower=0.01, upper=60.0, unit="s", doc="longest wait for an answer")
     subscribers: int = option(0, lower=0, upper=100, doc="begin when every input has this many subscribers")
     repeat: bool = option(False, doc="begin the sea again when it is over")
@@ -78,6 +81,7 @@ class SimulatorNode(WinchNode):
         self.voyage = Voyage(scenario, crane, truth, own.seed, hidden_effects(own.hidden))
         self.topics = self.options.topics(crane)
         self.answers = Answers(own.wait_for if own.lockstep else ())
+        self.held = HeldTorque(max(HOLD_TIME, HELD_SCANS / scenario.sensors.rate))
         self._inputs = {
             topic: self.publisher(message_type(each.type_name), topic, OUTPUT, qos_overriding_options=overridable())
             for topic, each in self.topics.inputs.items()
@@ -89,8 +93,8 @@ class SimulatorNode(WinchNode):
 
     def start(self) -> None:
         """Listen to the answers and begin."""
-        for topic in {"compensator/friction_torque", *self.answers.topics}:
-            self.while_active(self.create_subscription(JointState, topic, self._answer_taker(topic), OUTPUT))
+        for topic in {FEEDFORWARD, *self.answers.topics}:
+            self.while_active(self.create_subscription(JointState, topic, self._answer_taker(topic), fresh(OUTPUT)))
         scans = self.own.rate * self.voyage.scenario.sensors.rate  # per second; 0: the answers set the pace
         self.every(min(LONGEST_PAUSE, 1.0 / scans) if scans else LONGEST_PAUSE, self._tick)
         self._begin()
@@ -102,6 +106,7 @@ class SimulatorNode(WinchNode):
         else:
             self.voyage.begin(self.ros_now(), gap=0.0)
         self.answers.clear()
+        self.held.clear()
         self._said = 0.0
         self._running, self._ready_since = True, float("inf")
         self._started: float | None = None
@@ -148,7 +153,7 @@ class SimulatorNode(WinchNode):
         if self.voyage.finished:
             self._end()
             return
-        if self.voyage.advance(self.answers.torque):
+        if self.voyage.advance(self.held.value(self._age_clock())):
             self._publish(self.voyage.sample)
 
     def _end(self) -> None:
@@ -160,12 +165,17 @@ class SimulatorNode(WinchNode):
     # -- messages
     def _answer_taker(self, topic: str) -> Any:
         def take(message: JointState) -> None:
-            torque = message.effort[0] if topic == "compensator/friction_torque" else None
-            self.answers.take(topic, stamp_time(message), torque)
+            if topic == FEEDFORWARD and len(message.effort):
+                self.held.take(float(message.effort[0]), self._age_clock(), message.header.frame_id)
+            self.answers.take(topic, stamp_time(message))
             if self.answers.topics and self.answers.complete:
                 self._go_on()
 
-        return take
+        return self.guarded(take)
+
+    def _age_clock(self) -> float:
+        """s by which the feedforward ages: in lockstep the sea waits for it, so the sea's own time counts."""
+        return self.voyage.elapsed if self.answers.topics else self._steady()
 
     def _publish(self, sample: Sample) -> None:
         """The clock first, the truth, then the inputs with the speed last."""

@@ -105,7 +105,6 @@ class Answers:
     """Which of the awaited topics have answered the latest sample."""
 
     topics: tuple[str, ...]
-    torque: float = 0.0
     unanswered: int = 0
     _stamps: dict[str, float] = field(default_factory=dict)
     _awaited: float = float("-inf")
@@ -115,11 +114,9 @@ class Answers:
         """A sample with this stamp went out at steady time `now`."""
         self._awaited, self._since = stamp, now
 
-    def take(self, topic: str, stamp: float, torque: float | None) -> None:
-        """An answer came; the compensator's carries a torque in N m."""
+    def take(self, topic: str, stamp: float) -> None:
+        """An answer came."""
         self._stamps[topic] = max(stamp, self._stamps.get(topic, float("-inf")))
-        if torque is not None:
-            self.torque = torque
 
     @property
     def complete(self) -> bool:
@@ -134,5 +131,5 @@ class Answers:
 
     def clear(self) -> None:
         """Before another voyage."""
-        self.torque, self._awaited = 0.0, float("-inf")
+        self._awaited = float("-inf")
         self._stamps.clear()

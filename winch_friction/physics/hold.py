@@ -99,9 +99,10 @@ class InputHold:
         if not place:
             return math.nan
         stamp, value = held[place - 1]
-        return value if time - stamp <= self._limit(column) else math.nan
+        return value if time - stamp <= self.limit(column) else math.nan
 
-    def _limit(self, column: str) -> float:
+    def limit(self, column: str) -> float:
+        """Age in s beyond which a value of this column is lost."""
         if column in self.max_ages:
             return self.max_ages[column]
         return self.max_ages.get(column.rpartition(".")[2], self.max_age)

@@ -11,6 +11,7 @@ from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
 
 SCHEMA = "winch_friction.crane/1"
+RATINGS = {"rated_pressure": "Pa", "rated_speed": "rad/s", "rated_load": "kg"}  # optional
 
 
 def load_crane(name: str | Path) -> Crane:
@@ -36,6 +37,7 @@ def crane_from_content(content: Any, where: str) -> Crane:
         wire_mass=top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
         wire_stiffness=_positive(top, "wire_stiffness", "N") if "wire_stiffness" in top else float("inf"),
         absolute_torque_limit=_positive(top, "absolute_torque_limit", "N*m"),
+        **{key: _positive(top, key, unit) for key, unit in RATINGS.items() if key in top},
     )
     top.get("description")
     top.close()

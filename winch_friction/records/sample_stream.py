@@ -11,17 +11,28 @@ from winch_friction.records.topics import Input, TopicMap, stamp_time
 BACKWARD_JUMP = 1.0  # s; stamps that fall behind by more are a new recording, not a late message
 
 
+def _any(column: str, stamp: float, value: float) -> bool:
+    return True
+
+
 class SampleStream:
     """Holds every message's readings and makes one sample at each speed.
 
     `on_jump` is called when the speed's stamps fall back by more than `BACKWARD_JUMP`, before the sample is made;
     what is held is dropped first. A message without a stamp counts as measured at the next speed sent after it:
-    clocks of different processes would place it differently, the order of sending does not.
+    clocks of different processes would place it differently, the order of sending does not. `admit` says of a column,
+    its stamp and its value whether it may be held.
     """
 
-    def __init__(self, topics: TopicMap, hold: InputHold, on_jump: Callable[[], None] = lambda: None) -> None:
+    def __init__(
+        self,
+        topics: TopicMap,
+        hold: InputHold,
+        on_jump: Callable[[], None] = lambda: None,
+        admit: Callable[[str, float, float], bool] = _any,
+    ) -> None:
         self.topics, self.hold = topics, hold
-        self._on_jump = on_jump
+        self._on_jump, self._admit = on_jump, admit
         self.counts: Counter[str] = Counter()
         self.rejected: Counter[str] = Counter()
         self.last_stamp = float("-inf")
@@ -65,7 +76,10 @@ class SampleStream:
 
     def _put(self, source: Input, stamp: float, message: Any) -> bool:
         readings = source.decode(message)
-        accepted = [self.hold.put(channel, stamp, value) for channel, value in readings.items()]
+        accepted = [
+            self._admit(channel, stamp, value) and self.hold.put(channel, stamp, value)
+            for channel, value in readings.items()
+        ]
         taken = bool(accepted) and accepted[0]
         self.counts[source.topic] += 1
         self.rejected[source.topic] += not taken

@@ -40,11 +40,12 @@ def compare_live(path: Path | str, replayed: dict[str, Run], **bag_options: obje
                 live: dict[float, float] = {}
                 for _, _, message in bag.messages(*topics):
                     live.setdefault(stamp_time(message), float(message.effort[0]))
-                found.append(_compared(node, live, replayed[node]))
+                found.append(_compared(node, live, replayed[node], replayed.get("watchdog")))
     return found
 
 
-def _compared(node: str, live: dict[float, float], replayed: Run) -> Comparison:
+def _compared(node: str, live: dict[float, float], replayed: Run, silences: Run | None = None) -> Comparison:
+    """A node's answers to samples, and for the compensator also what its watchdog said in silences."""
     torque = _held(replayed["friction_torque"]) if node == "estimator" else replayed["friction_torque"]
     # nanoseconds: live stamps went through a message, replayed times through a float
     stamps = np.array([round(time * 1e9) for time in live])
@@ -56,10 +57,14 @@ def _compared(node: str, live: dict[float, float], replayed: Run) -> Comparison:
     ]
     if not pairs:
         return Comparison(node, 0, len(replayed), float("nan"), float("nan"))
+    missing = len(replayed) - len(pairs)
+    if node == "compensator" and silences is not None:
+        said = zip(silences.time.tolist(), silences["friction_torque"].tolist(), strict=True)
+        pairs += [(time, order[key], value) for time, value in said if (key := round(time * 1e9)) in order]
     times, live_values, values = (np.array(each) for each in zip(*pairs, strict=True))
     difference = np.abs(live_values - values) / np.maximum(np.abs(live_values), SMALLEST)
     worst = int(np.argmax(difference))
-    return Comparison(node, len(pairs), len(replayed) - len(pairs), float(difference[worst]), float(times[worst]))
+    return Comparison(node, len(pairs), missing, float(difference[worst]), float(times[worst]))
 
 
 def _held(values: FloatArray) -> FloatArray:

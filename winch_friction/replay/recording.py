@@ -15,17 +15,21 @@ from winch_friction.records.bags import bag_metadata
 from winch_friction.records.model_file import model_from_text
 from winch_friction.records.runs import BAG_SUFFIXES, read_run
 from winch_friction.records.topics import TopicMap
+from winch_friction.replay.clock import ReplayClock
 from winch_friction.replay.compensator import feedforward_run
 from winch_friction.replay.live import Comparison, compare_live
-from winch_friction.replay.players import CompensatorPlayer, EstimatorPlayer, held_samples
 from winch_friction.replay.settings import ReplaySettings, settings_from_metadata
+from winch_friction.replay.voices import CompensatorVoice, EstimatorVoice
 
 MODEL_TOPIC = "/friction_model"
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """The outputs along a recording, as from `replay_compensator` and `replay_estimator`, and what was learned."""
+    """The outputs along a recording, as from `replay_compensator` and `replay_estimator`, and what was learned.
+
+    `compensator` has a row for each sample, `watchdog` one for each message that was published in a silence.
+    """
 
     compensator: Run
     estimator: Run
@@ -34,6 +38,7 @@ class Replayed:
     status: Mapping[str, Any]
     warnings: tuple[str, ...] = ()
     live: tuple[Comparison, ...] = field(default=())
+    watchdog: Run | None = None
 
 
 def replay_recording(
@@ -64,11 +69,11 @@ def replay_run(
 ) -> Replayed:
     """Replay a run; NaN entries are bridged up to the maximum ages, as in the nodes."""
     topics = TopicMap(groups=run.groups)
-    compensator = CompensatorPlayer(crane, seed, topics, settings)
-    estimator = EstimatorPlayer(crane, seed, topics, settings)
-    for given, learnt_from in held_samples(run, compensator, estimator):
-        compensator.step(given)
-        learned = estimator.step(learnt_from)
+    compensator = CompensatorVoice(crane, seed, topics, settings)
+    estimator = EstimatorVoice(crane, seed, topics, settings)
+    for given, learnt_from in zip(run.samples(), run.samples(), strict=True):
+        compensator.take_row(given)
+        learned = estimator.take_row(learnt_from)
         if learned is not None and learn:
             compensator.offer(learned)
     return _replayed(run.name, compensator, estimator, run.warnings, ())
@@ -79,29 +84,31 @@ def _replay_bag(
 ) -> Replayed:
     settings = settings or settings_from_metadata(bag_metadata(path), str(path)) or ReplaySettings()
     with open_bag(path, crane, **options) as bag:
-        compensator = CompensatorPlayer(crane, seed, bag.topics, settings)
-        estimator = EstimatorPlayer(crane, seed, bag.topics, settings)
+        compensator = CompensatorVoice(crane, seed, bag.topics, settings)
+        estimator, clock = EstimatorVoice(crane, seed, bag.topics, settings), ReplayClock()
         recorded = bag.topics_ending(MODEL_TOPIC)
         for each in bag.events(*recorded):
             if isinstance(each, Other):
                 compensator.offer(model_from_text(each.message.data, each.topic))
                 continue
-            compensator.take(each)
-            learned = estimator.take(each)
+            now = clock.read(each.stamp, each.receipt)
+            compensator.take(each, now)
+            learned = estimator.take(each, now)
             if learned is not None and learn and not recorded:
                 compensator.offer(learned)
         warnings = tuple(bag.warnings)
     if not compensator.steps:
         raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
     runs = {"compensator": feedforward_run("", compensator.steps), "estimator": estimator.record.run("")}
+    runs["watchdog"] = feedforward_run("", compensator.watchdog)
     live = compare_live(path, runs, crane=crane, **options)
     return _replayed(path.name, compensator, estimator, warnings, tuple(live))
 
 
 def _replayed(
     name: str,
-    compensator: CompensatorPlayer,
-    estimator: EstimatorPlayer,
+    compensator: CompensatorVoice,
+    estimator: EstimatorVoice,
     warnings: tuple[str, ...],
     live: tuple[Comparison, ...],
 ) -> Replayed:
@@ -109,9 +116,10 @@ def _replayed(
     return Replayed(
         compensator=feedforward_run(name, compensator.steps),
         estimator=estimator.record.run(name),
-        model=estimator.law.model(),
-        parameters=tuple(estimator.law.parameters()),
-        status=estimator.law.status(),
+        model=estimator.service.law.model(),
+        parameters=tuple(estimator.service.law.parameters()),
+        status=estimator.service.law.status(),
         warnings=(*warnings, *refused),
         live=live,
+        watchdog=feedforward_run(name, compensator.watchdog),
     )

@@ -14,6 +14,8 @@ from winch_friction.physics.options import from_mapping
 from winch_friction.records.model_file import load_model
 from winch_friction.records.strict_yaml import read_yaml
 
+OF_THE_COMPENSATOR = ("model_delay", "watchdog_timeout", "stamp_window")
+
 
 @dataclass(frozen=True)
 class Phase:
@@ -33,13 +35,15 @@ class Phase:
 
 @dataclass(frozen=True)
 class ReplaySettings:
-    """The settings of both objects; `model_delay`, `model_period` and `estimator_max_age` s are the nodes' own."""
+    """The settings of both services; what is in s are the nodes' own."""
 
     phases: tuple[Phase, ...] = (Phase(),)
     estimator: EstimatorConfig = field(default_factory=EstimatorConfig)
     model_delay: float = 0.5
     model_period: float = 5.0
     estimator_max_age: float = 0.1
+    watchdog_timeout: float = 0.1
+    stamp_window: float = 0.5
 
 
 def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySettings | None:
@@ -82,7 +86,7 @@ def settings_from_file(path: Path) -> ReplaySettings:
         if terms_file := each.get("terms_file"):
             load_file(terms_file)
     own = {key: float(value) for key, value in estimator.items() if key == "model_period"}
-    own |= {key: float(value) for key, value in compensator.items() if key == "model_delay"}
+    own |= {key: float(compensator[key]) for key in OF_THE_COMPENSATOR if key in compensator}
     if "max_age" in estimator:
         own["estimator_max_age"] = float(estimator["max_age"])
     config = from_mapping(CompensatorConfig, _of(CompensatorConfig, compensator), f"{path}: compensator")

@@ -35,7 +35,8 @@ class Crane:
     `groups` maps a motor group's name to its number of motors for every group that may appear (normal mode: `main`;
     AHC: `active`, `passive`); `inertia` is the whole inertia at the motor shaft without the load, kg m^2; `wire_mass`
     kg/m and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `drive`: how the torque of
-    the motors is known.
+    the motors is known; `rated_pressure` Pa, `rated_speed` rad/s of the motor shaft and `rated_load` kg bound what its
+    sensors can show (`ranges`), 0: not said.
     """
 
     name: str
@@ -48,6 +49,9 @@ class Crane:
     wire_mass: float = 0.0
     wire_stiffness: float = float("inf")
     absolute_torque_limit: float = float("inf")
+    rated_pressure: float = 0.0
+    rated_speed: float = 0.0
+    rated_load: float = 0.0
 
     def _repr_html_(self) -> str:
         from winch_friction.physics.frames import html_table

@@ -1,0 +1,1 @@
+"""What runs beside a machine, without ROS: the services that the nodes and the replay share."""

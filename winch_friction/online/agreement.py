@@ -1,0 +1,86 @@
+"""Whether the inputs fit each other: the command and the speed, the load and the drive's torque."""
+
+import math
+from dataclasses import dataclass, field
+
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.torque_balance import sample_drive_torque
+
+# the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
+SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed
+SPEED_TIME = 0.5  # s
+# the load and the drive: inertia, friction and waves are a third of it at most
+TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
+SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
+# to and fro: jumps of this share of the largest speed, so many, within this time
+CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
+CALM = 0.5  # s of agreement before a doubt ends
+
+
+@dataclass
+class Doubt:
+    """A contradiction that counts after `patience` s and is over after `CALM` s without it."""
+
+    patience: float
+    _wrong: float = field(default=0.0, init=False)
+    _right: float = field(default=CALM, init=False)
+    stands: bool = field(default=False, init=False)
+
+    def step(self, wrong: bool, dt: float) -> bool:
+        """Whether it counts, after `dt` s more."""
+        self._wrong = self._wrong + dt if wrong else 0.0
+        self._right = 0.0 if wrong else self._right + dt
+        self.stands = self._wrong >= self.patience or (self.stands and self._right < CALM)
+        return self.stands
+
+
+class Agreement:
+    """Cross-checks one sample after the other; says which inputs contradict each other."""
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
+        self._crane, self._ranges = crane, ranges
+        self._speeds, self._torques = Doubt(SPEED_TIME), Doubt(TORQUE_TIME)
+        self.forget()
+
+    def forget(self) -> None:
+        """Another time begins."""
+        self._time = math.nan
+        self._command = self._step = math.nan
+        self._jumps: list[float] = []
+        for doubt in (self._speeds, self._torques):
+            doubt.step(False, CALM)
+
+    def contradictions(self, sample: Sample) -> tuple[str, ...]:
+        """What does not fit, in a few words each."""
+        dt = min(max(sample.time - self._time, 0.0), 0.1) if self._time == self._time else 0.0
+        self._time = sample.time
+        found = {
+            "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
+            "hook_load contradicts the drive torque": self._torques.step(self._torques_differ(sample), dt),
+            "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
+        }
+        return tuple(name for name, stands in found.items() if stands)
+
+    def _speeds_differ(self, sample: Sample) -> bool:
+        command, speed = sample.speed_reference, sample.motor_speed
+        largest = SPEED_SHARE * max(abs(command), abs(speed)) + SPEED_APART * self._ranges.speed
+        return abs(command - speed) > largest  # false for NaN
+
+    def _torques_differ(self, sample: Sample) -> bool:
+        if self._crane.electric or not self._crane.drum.has(sample.wire_layer):
+            return False
+        load = self._crane.drum_torque(sample.hook_load, sample.wire_layer) / self._crane.gear_ratio
+        drive = sample_drive_torque(sample, self._crane)
+        large = max(abs(load), abs(drive))
+        rated = self._crane.drum_torque(0.5 * self._ranges.load, sample.wire_layer) / self._crane.gear_ratio
+        return large > SMALLEST_TORQUE * rated and abs(drive - load) > TORQUE_SHARE * large  # false for NaN
+
+    def _chatters(self, sample: Sample) -> bool:
+        step = sample.speed_reference - self._command
+        if step * self._step < 0.0 and min(abs(step), abs(self._step)) > CHATTER_STEP * self._ranges.speed:
+            self._jumps.append(sample.time)
+        self._command, self._step = sample.speed_reference, step
+        self._jumps = [each for each in self._jumps if 0.0 <= sample.time - each < CHATTER_TIME]
+        return len(self._jumps) >= CHATTER_COUNT

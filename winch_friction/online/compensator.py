@@ -1,0 +1,164 @@
+"""The compensator as a service: what the node and the replay share. It knows no ROS; it is told what time it is."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
+from winch_friction.compensation.model_schedule import ModelSchedule
+from winch_friction.online.agreement import Agreement
+from winch_friction.online.inputs import InputGate
+from winch_friction.online.options import ServiceOptions
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.hold import InputHold
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.topics import Input, TopicMap
+
+HEARTBEAT = 25  # steps of the watchdog between two zeros, once the ramp is over
+LONGEST_END = 2.0  # s that the last ramp may take: whoever ends the process waits five
+
+
+@dataclass
+class _Silence:
+    """The watchdog's ramp: when the speed fell silent and how many steps were published since."""
+
+    began: float = math.nan  # steady s
+    steps: int = 0
+
+
+class CompensatorService:
+    """Messages, or rows of a run, in; what is to be published out.
+
+    Every method that may publish returns a `Feedforward` or None. `now` is a clock in s that only goes forward: the
+    steady one live, that of the recording in a replay.
+    """
+
+    def __init__(
+        self, crane: Crane, seed: FrictionModel, topics: TopicMap, config: CompensatorConfig | None = None,
+        options: ServiceOptions | None = None,
+    ) -> None:  # fmt: skip
+        self.options = options or ServiceOptions()
+        self.law = FeedforwardCompensator(crane, seed, config)
+        self.schedule = ModelSchedule(self.options.model_delay)
+        hold = InputHold(topics.groups, self.law.config.max_age, dict(self.law.config.max_ages))
+        self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
+        self._agreement = Agreement(crane, self.inputs.ranges)
+        self._silence = _Silence()
+        self._last_stamp = math.nan
+        self.contradictions: tuple[str, ...] = ()
+        self.refused_models: list[str] = []
+
+    # -- what comes in
+    def take(
+        self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
+    ) -> Feedforward | None:
+        """One message; an answer to each speed that may be believed."""
+        sample = self.inputs.take(source, message, receipt, now, sent)
+        return None if sample is None else self._answer(sample, now)
+
+    def take_row(self, sample: Sample, now: float | None = None) -> Feedforward:
+        """One row of a run, as if all its values had come at once."""
+        now = sample.time if now is None else now
+        return self._answer(self.inputs.fill(sample, now), now)
+
+    def _answer(self, sample: Sample, now: float) -> Feedforward:
+        self._take_over(self.schedule.due(sample.time))
+        self.contradictions = self._agreement.contradictions(sample)
+        self._silence = _Silence()
+        self._last_stamp = sample.time
+        return self.law.step(sample, now if self.options.paced else None, self.contradictions)
+
+    # -- silence
+    def tick(self, now: float) -> Feedforward | None:
+        """What the watchdog publishes at `now`: the ramp to zero, on a grid of stamps that a replay finds again."""
+        steps = self._due_steps(now)
+        return self._watch(steps) if steps > self._silence.steps else None
+
+    def catch_up(self, now: float) -> Iterator[Feedforward]:
+        """Everything that a watchdog that never slept would have published until `now`."""
+        due = self._due_steps(now)
+        while self._silence.steps < due and not (self.law.output.at_rest and self._silence.steps > 0):
+            published = self._watch(self._silence.steps + 1)
+            if published is not None:
+                yield published
+
+    def _due_steps(self, now: float) -> int:
+        if not math.isfinite(self._last_stamp):
+            return 0
+        over = self.inputs.silence(now) - self.options.watchdog_timeout
+        return math.floor(over / self.options.watch_period) if over > 0.0 else 0
+
+    def _watch(self, steps: int) -> Feedforward | None:
+        rested = self.law.output.at_rest and self._silence.steps > 0
+        if rested and steps // HEARTBEAT == self._silence.steps // HEARTBEAT:
+            return None
+        self._silence.steps = steps
+        return self.law.decay(
+            self._last_stamp + self.law.config.max_age + (steps - 0.5) * self.options.watch_period, "stale"
+        )
+
+    # -- models and settings
+    def offer(self, model: FrictionModel) -> None:
+        """A learned model, to be taken over at its time."""
+        self.schedule.offer(model)
+
+    def load_model(self, model: FrictionModel) -> None:
+        """Use a model from the next sample on, without a bump; `InputError` keeps the one in use."""
+        self.law.load_model(model)
+
+    def _take_over(self, model: FrictionModel | None) -> None:
+        if model is None:
+            return
+        try:
+            self.law.load_model(model)
+        except InputError as error:
+            self.refused_models.append(str(error))
+
+    def set_enabled(self, enabled: bool) -> None:
+        """Fade in or out from the next sample on."""
+        self.law.set_enabled(enabled)
+
+    def configure(self, config: CompensatorConfig, options: ServiceOptions | None = None) -> None:
+        """Other settings from the next sample on, without a bump. Raises `InputError`, and changes nothing, for gains
+        for unknown terms."""
+        self.law.configure(config)
+        self.options = options or self.options
+        self.schedule.delay = self.options.model_delay
+        hold = self.inputs.hold
+        hold.max_age, hold.max_ages = config.max_age, dict(config.max_ages)
+
+    # -- beginnings and ends
+    def reset(self) -> None:
+        """Begin anew: nothing held, nothing remembered, the model kept; what is published goes on from where it is."""
+        self.inputs.forget()
+        self._jumped()
+
+    def _jumped(self) -> None:
+        self.schedule.clear()
+        self._agreement.forget()
+        self.law.reset()
+
+    def ending(self, now: float) -> Iterator[tuple[float, Feedforward]]:
+        """The last ramp as (seconds after `now`, what is to be published then); empty when nothing is published."""
+        output, period = self.law.output, self.options.watch_period
+        if output.at_rest or not math.isfinite(output.time):
+            return
+        begin = max(output.time, self._last_stamp + min(self.inputs.silence(now), self.law.config.max_age))
+        output.end(begin)
+        duration, steps = min(self.law.config.ramp_time, LONGEST_END), 0
+        output.hurry(duration)
+        while not output.at_rest:
+            steps += 1
+            yield steps * period, self.law.decay(begin + steps * period, "ending")
+
+    # -- health
+    def status(self, now: float) -> dict[str, Any]:
+        """The law's state and counts, told true: a silence is stale, whatever the law last said."""
+        status = dict(self.law.status())
+        if self.inputs.silence(now) > self.options.watchdog_timeout and math.isfinite(self._last_stamp):
+            status["state"] = "stale"
+        status["contradictions"] = "; ".join(self.contradictions)
+        return status

@@ -1,0 +1,73 @@
+"""What whoever uses the torque must do: hold it no longer than said, and then let it go (docs/safety.md).
+
+The validity and the number of a torque travel in `header.frame_id`, `valid 1234` or `invalid 1235`: fields of the
+standard message that carry no measurement.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+HOLD_TIME = 0.1  # s that a torque may be held without another one
+FADE_TIME = 0.5  # s in which it is then let go
+RETURN_TIME = 0.2  # s in which it comes back after a silence
+VALID, INVALID = "valid", "invalid"
+
+
+def mark(valid: bool, sequence: int) -> str:
+    """Validity and number as text."""
+    return f"{VALID if valid else INVALID} {sequence}"
+
+
+def read_mark(text: str) -> tuple[bool, int]:
+    """Validity and number from `header.frame_id`; text of another origin is valid, without a number (-1)."""
+    word, _, number = text.partition(" ")
+    if word not in (VALID, INVALID) or not number.isdigit():
+        return True, -1
+    return word == VALID, int(number)
+
+
+@dataclass
+class HeldTorque:
+    """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step.
+
+    An `invalid` torque is a ramp to zero: it is followed, but not held beyond the next that is due. A torque that is
+    not a number, or that came before (by its number), is no message at all.
+    """
+
+    hold_time: float = HOLD_TIME
+    fade_time: float = FADE_TIME
+    torque: float = field(default=0.0, init=False)  # the last one that came
+    _came: float = field(default=-math.inf, init=False)  # s
+    _number: int = field(default=-1, init=False)
+    _gain: float = field(default=1.0, init=False)
+    _gained: float = field(default=-math.inf, init=False)
+
+    def take(self, torque: float, now: float, text: str = "") -> bool:
+        """A torque that came at `now` s with the text of its header; False when it is ignored."""
+        valid, number = read_mark(text)
+        silent = now - self._came > self.hold_time
+        if not math.isfinite(torque) or (0 <= number <= self._number and not silent):
+            return False
+        self._update(now)
+        self.torque, self._came, self._number = torque, now, number
+        return True
+
+    def value(self, now: float) -> float:
+        """What is applied at `now` s."""
+        self._update(now)
+        return self.torque * self._gain
+
+    def _update(self, now: float) -> None:
+        """The share of the last torque that is applied: less with its age, more while torques come."""
+        passed = max(0.0, now - self._gained) if math.isfinite(self._gained) else 0.0
+        age = now - self._came
+        self._gained = now
+        if age > self.hold_time:
+            self._gain = max(0.0, self._gain - min(passed, age - self.hold_time) / self.fade_time)
+        else:
+            self._gain = min(1.0, self._gain + passed / RETURN_TIME)
+
+    def clear(self) -> None:
+        """Nothing came yet."""
+        self.torque, self._came, self._number = 0.0, -math.inf, -1
+        self._gain, self._gained = 1.0, -math.inf

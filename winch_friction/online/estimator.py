@@ -1,0 +1,96 @@
+"""The estimator as a service: what the node and the replay share. It knows no ROS; it is told what time it is."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from winch_friction.compensation.model_schedule import LEARNED_AT
+from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
+from winch_friction.online.inputs import InputGate
+from winch_friction.online.options import ServiceOptions
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.hold import SLOW_INPUTS, InputHold
+from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.topics import Input, TopicMap
+
+FASTEST_MODELS = 1.0  # s of the service's clock between two models, whatever the stamps say
+
+
+class EstimatorService:
+    """Messages, or rows of a run, in; estimates and, now and then, a learned model out."""
+
+    def __init__(
+        self, crane: Crane, seed: FrictionModel, topics: TopicMap, config: EstimatorConfig | None = None,
+        options: ServiceOptions | None = None, *, model_period: float = 5.0, max_age: float = 0.1,
+    ) -> None:  # fmt: skip
+        self.options, self.model_period = options or ServiceOptions(), model_period
+        self.law = FrictionEstimator(crane, seed, config)
+        hold = InputHold(topics.groups, max_age, dict(SLOW_INPUTS))
+        self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
+        self.last: Estimate | None = None
+        self.missing: tuple[str, ...] = ()
+        self.friction_torque = 0.0  # N m, the last one that was learned from
+        self._published, self._published_at = -math.inf, -math.inf
+
+    def take(
+        self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
+    ) -> Estimate | None:
+        """One message; an estimate to each speed that may be believed."""
+        sample = self.inputs.take(source, message, receipt, now, sent)
+        return None if sample is None else self._learn(sample)
+
+    def take_row(self, sample: Sample, now: float | None = None) -> Estimate:
+        """One row of a run, as if all its values had come at once."""
+        return self._learn(self.inputs.fill(sample, now))
+
+    def _learn(self, sample: Sample) -> Estimate:
+        self.missing = self._not_there(sample)
+        self.last = self.law.step(sample)
+        if math.isfinite(self.last.friction_torque):
+            self.friction_torque = self.last.friction_torque
+        return self.last
+
+    def _not_there(self, sample: Sample) -> tuple[str, ...]:
+        if self.law.crane.electric:
+            return () if math.isfinite(sample.motor_torque) else ("motor_torque",)
+        values = {f"{g}.{c}": getattr(member, c) for g, member in sample.groups.items() for c in GROUP_CHANNELS}
+        return tuple(column for column, value in values.items() if not math.isfinite(value))
+
+    def model_due(self, now: float) -> FrictionModel | None:
+        """The learned model when it is time to publish it: every `model_period` s of the samples, and no faster than
+        every `FASTEST_MODELS` s of `now`."""
+        if self.last is None or self.last.time < self._published + self.model_period:
+            return None
+        if self.options.paced and now < self._published_at + FASTEST_MODELS:
+            return None
+        self._published, self._published_at = self.last.time, now
+        learned = self.law.model()
+        return replace(learned, provenance={**learned.provenance, LEARNED_AT: self.last.time})
+
+    def set_enabled(self, enabled: bool) -> None:
+        """Learn or rest."""
+        self.law.set_enabled(enabled)
+
+    def reset(self) -> None:
+        """Back to the seed: everything learned is forgotten."""
+        self.law.reset()
+        self.forget()
+
+    def forget(self) -> None:
+        """After a jump of time: nothing held; the filter restarts its speed by itself and keeps what it learned."""
+        self.inputs.forget()
+        self._jumped()
+
+    def _jumped(self) -> None:
+        self._published = -math.inf
+
+    def status(self, now: float) -> dict[str, Any]:
+        """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""
+        status = dict(self.law.status())
+        if self.inputs.silence(now) > self.options.watchdog_timeout or self.missing:
+            status["state"] = "waiting"
+        elif self.last is not None and not self.last.accepted:
+            status["state"] = "rejected"
+        status["missing"] = ", ".join(self.missing)
+        return status

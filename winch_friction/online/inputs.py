@@ -1,0 +1,148 @@
+"""The inputs of a service: messages or rows of a run in, believed samples out, and what became of every message."""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from winch_friction.online.options import ServiceOptions
+from winch_friction.online.plausibility import Plausibility
+from winch_friction.online.stamps import Stamp, StampWatch
+from winch_friction.physics.hold import InputHold
+from winch_friction.physics.signals import GROUP_CHANNELS, NAN, SAMPLE_SCALARS, Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.records.sample_stream import SampleStream
+from winch_friction.records.topics import Input, TopicMap, stamp_time
+
+UNREADABLE = "late, or without the joint that it should show"
+
+
+@dataclass
+class Arrivals:
+    """What became of one topic's messages: how many came, when the last one, how many were refused and why last."""
+
+    messages: int = 0
+    refused: int = 0
+    arrived: float = -math.inf  # steady s, the last message
+    believed: float = -math.inf  # steady s, the last message that was not refused
+    reason: str = ""
+    reasons: Counter[str] = field(default_factory=Counter)
+
+
+class InputGate:
+    """Holds what may be believed and makes a sample at each speed.
+
+    `on_jump` hears when the senders' clock was set (after what was held is dropped). `now` is the service's clock in s.
+    """
+
+    def __init__(
+        self, crane: Crane, topics: TopicMap, hold: InputHold, options: ServiceOptions, on_jump: Callable[[], None]
+    ) -> None:
+        self.topics, self.hold, self.options = topics, hold, options
+        self.ranges = ChannelRanges(crane, topics.groups)
+        self.arrivals = {topic: Arrivals() for topic in topics.inputs}
+        self.last_stamp, self.last_arrival = -math.inf, math.inf
+        self._plausible = Plausibility(self.ranges)
+        self._on_jump = on_jump
+        self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
+        self._stream = SampleStream(topics, hold, admit=self._admit)
+        self._refusal = ""
+
+    # -- messages
+    def take(self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None) -> Sample | None:
+        """Hold what a message says; the sample, if it was a speed that may be believed.
+
+        `receipt` s stamps a message without a header; `sent` orders messages of all topics.
+        """
+        arrivals = self.arrivals[source.topic]
+        arrivals.messages += 1
+        arrivals.arrived = now
+        self._refusal = ""
+        if source.topic == self.topics.speed_topic:
+            return self._speed(source, message, receipt, now, sent)
+        if source.stamped and not self._near(stamp_time(message), now):
+            self._refuse(arrivals, Stamp.AHEAD.value)
+        else:
+            before = self._stream.rejected[source.topic]
+            self._stream.take(source, message, receipt, sent)
+            rejected = self._stream.rejected[source.topic] > before
+            self._judged(arrivals, now, (self._refusal or UNREADABLE) if rejected else "")
+        return None
+
+    def _near(self, stamp: float, now: float) -> bool:
+        """Whether a held input's stamp is not ahead of the speed's clock: it would lock the input out until then."""
+        if math.isinf(self.last_stamp):
+            return math.isfinite(stamp)
+        window = max(self.options.stamp_window, self.options.watchdog_timeout)
+        return stamp <= self.last_stamp + max(now - self.last_arrival, 0.0) + window
+
+    def _speed(self, source: Input, message: Any, receipt: float, now: float, sent: float | None) -> Sample | None:
+        arrivals = self.arrivals[source.topic]
+        stamp = stamp_time(message) if source.stamped else receipt
+        worth = self._watch.judge(stamp, now) if math.isfinite(stamp) else Stamp.BACK
+        if worth is Stamp.JUMP:
+            self._start_over()
+            self._on_jump()
+        elif worth is not Stamp.GOOD:
+            self._refuse(arrivals, worth.value)
+            return None
+        sample = self._stream.take(source, message, receipt, sent)
+        self._judged(arrivals, now, (self._refusal or UNREADABLE) if sample is None else "")
+        if sample is not None:
+            self.last_stamp, self.last_arrival = stamp, now
+        return sample
+
+    def _admit(self, column: str, stamp: float, value: float) -> bool:
+        refusal = self._plausible.refusal(column, stamp, value)
+        if refusal and (value == value or not self._refusal):
+            self._refusal = f"{column}: {refusal}"
+        return not refusal
+
+    def _judged(self, arrivals: Arrivals, now: float, refusal: str) -> None:
+        if refusal:
+            self._refuse(arrivals, refusal)
+        else:
+            arrivals.believed = now
+
+    def _refuse(self, arrivals: Arrivals, reason: str) -> None:
+        arrivals.refused += 1
+        arrivals.reason = reason
+        arrivals.reasons[reason.split(": ")[0]] += 1
+
+    # -- rows of a run
+    def fill(self, sample: Sample, now: float | None = None) -> Sample:
+        """A run's row as the messages of one instant: implausible values out, holes filled by what is held."""
+        for name in SAMPLE_SCALARS:
+            if not self._admit_quietly(name, sample.time, getattr(sample, name)):
+                setattr(sample, name, NAN)
+        for group, member in sample.groups.items():
+            for channel in GROUP_CHANNELS:
+                if not self._admit_quietly(f"{group}.{channel}", sample.time, getattr(member, channel)):
+                    setattr(member, channel, NAN)
+        self.last_stamp, self.last_arrival = sample.time, sample.time if now is None else now
+        return self.hold.fill(sample)
+
+    def _admit_quietly(self, column: str, stamp: float, value: float) -> bool:
+        return value != value or not self._plausible.refusal(column, stamp, value)
+
+    # -- time
+    def silence(self, now: float) -> float:
+        """Seconds since the last believed speed; 0 before the first."""
+        return max(0.0, now - self.last_arrival)
+
+    def forget(self) -> None:
+        """Drop what is held and believe the next stamp, after a jump of the clock or on request."""
+        self._watch.forget()
+        self._start_over()
+
+    def _start_over(self) -> None:
+        self._stream.forget()
+        self._plausible.forget()
+        self.last_stamp = -math.inf
+
+    # -- what is known of the inputs
+    def ages(self) -> dict[str, float]:
+        """Age of every held input at the last speed, s."""
+        return self.hold.ages(self.last_stamp)

@@ -1,0 +1,100 @@
+"""The two services along a recording: what they say, sample by sample and in the silences."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+
+from winch_friction.compensation import Feedforward
+from winch_friction.online.compensator import CompensatorService
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.options import ServiceOptions
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bag_file import Message
+from winch_friction.records.topics import TopicMap
+from winch_friction.replay.estimator import EstimateRecord
+from winch_friction.replay.settings import Phase, ReplaySettings
+
+PAUSE = 1.0  # s without a sample between one phase of a recording and the next
+
+
+@dataclass
+class CompensatorVoice:
+    """The compensator of each phase; `steps` are its answers to samples, `watchdog` what it said in silences."""
+
+    crane: Crane
+    seed: FrictionModel
+    topics: TopicMap
+    settings: ReplaySettings
+    steps: list[Feedforward] = field(default_factory=list)
+    watchdog: list[Feedforward] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._waiting = list(self.settings.phases)
+        self._last_model: FrictionModel | None = None
+        self._begin(self._waiting.pop(0))
+
+    def _begin(self, phase: Phase) -> None:
+        """A node configured anew: seed, settings, nothing held."""
+        self._phase = phase
+        options = ServiceOptions(self.settings.watchdog_timeout, self.settings.stamp_window, self.settings.model_delay)
+        self.service = CompensatorService(self.crane, phase.seed or self.seed, self.topics, phase.config, options)
+        self.service.refused_models = self.refused
+        self.service.set_enabled(phase.enabled)
+        if self._last_model is not None:  # latched: a node that begins afresh still gets it
+            self.offer(self._last_model)
+
+    def offer(self, model: FrictionModel) -> None:
+        """A learned model has come."""
+        self._last_model = model
+        if self._phase.follow_models:
+            self.service.offer(model)
+
+    def take(self, each: Message, now: float) -> None:
+        """One input message, at `now` s on the replay's clock."""
+        self.watchdog.extend(self.service.catch_up(now))
+        if self._waiting and self._begins(self._waiting[0], each.stamp):
+            self._begin(self._waiting.pop(0))
+        answer = self.service.take(each.source, each.message, each.receipt, now)
+        if answer is not None:
+            self.steps.append(answer)
+
+    def _begins(self, phase: Phase, stamp: float) -> bool:
+        if phase.start == phase.start:
+            return stamp >= phase.start
+        last = self.service.inputs.last_stamp
+        return isfinite(last) and stamp - last > PAUSE
+
+    def take_row(self, sample: Sample) -> None:
+        """One row of a run."""
+        self.steps.append(self.service.take_row(sample))
+
+
+@dataclass
+class EstimatorVoice:
+    """The estimator; its `record`, and the models that it would publish."""
+
+    crane: Crane
+    seed: FrictionModel
+    topics: TopicMap
+    settings: ReplaySettings
+
+    def __post_init__(self) -> None:
+        options = ServiceOptions(self.settings.watchdog_timeout, self.settings.stamp_window)
+        periods = {"model_period": self.settings.model_period, "max_age": self.settings.estimator_max_age}
+        self.service = EstimatorService(self.crane, self.seed, self.topics, self.settings.estimator, options, **periods)
+        self.record = EstimateRecord(self.service.law)
+
+    def take(self, each: Message, now: float) -> FrictionModel | None:
+        """One input message; the model that the node would have published after it."""
+        estimate = self.service.take(each.source, each.message, each.receipt, now)
+        if estimate is None:
+            return None
+        self.record.take(estimate)
+        return self.service.model_due(now)
+
+    def take_row(self, sample: Sample) -> FrictionModel | None:
+        """One row of a run; the model that the node would have published after it."""
+        self.record.take(self.service.take_row(sample))
+        return self.service.model_due(sample.time)

@@ -25,6 +25,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.identity import with_stated_std
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
 
 NAN = math.nan
@@ -50,6 +51,7 @@ class FrictionEstimator:
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
         self._parameters = ScaledParameters(self.seed, self.config)
+        self._ranges = ChannelRanges(self.crane)
         self._enabled = True
         self.reset()
 
@@ -76,7 +78,7 @@ class FrictionEstimator:
     def step(self, sample: Sample) -> Estimate:
         """Take one sample as it was measured; what the seed knows to be wrong with it is taken out first."""
         sample = self._correct(sample)
-        if not usable(sample, self.crane):
+        if not usable(sample, self._ranges):
             return self._rejected(sample, NAN, NAN)
         if self._last is None:
             return self._restart(sample) if self._begun else self._begin(sample)

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.physics.plausible import plausible
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
 
 
@@ -33,13 +33,15 @@ def heave_velocity(sample: Sample) -> float:
     return sample.heave_velocity if math.isfinite(sample.heave_velocity) else 0.0
 
 
-def usable(sample: Sample, crane: Crane) -> bool:
-    """Whether the sample has a time, plausible speed and drive, and a wire layer that the drum has (or none)."""
-    if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
+def usable(sample: Sample, ranges: ChannelRanges) -> bool:
+    """Whether the sample has a time, and a speed, drive, wire layer (or none) and load (or none) of this crane's."""
+    if not (math.isfinite(sample.time) and ranges.plausible("motor_speed", sample.motor_speed)):
         return False
-    if not crane.drum.has(sample.wire_layer):
+    if not ranges.crane.drum.has(sample.wire_layer):
         return False
-    return not crane.drive.lacking(sample)
+    if sample.hook_load == sample.hook_load and not ranges.plausible("hook_load", sample.hook_load):
+        return False
+    return not ranges.crane.drive.lacking(sample, ranges.plausible)
 
 
 def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:

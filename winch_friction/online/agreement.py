@@ -69,7 +69,7 @@ class Agreement:
         return abs(command - speed) > largest  # false for NaN
 
     def _torques_differ(self, sample: Sample) -> bool:
-        if self._crane.electric or not self._crane.drum.has(sample.wire_layer):
+        if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
             return False
         load = self._crane.drum_torque(sample.hook_load, sample.wire_layer) / self._crane.gear_ratio
         drive = sample_drive_torque(sample, self._crane)

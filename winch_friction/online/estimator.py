@@ -8,9 +8,10 @@ from winch_friction.compensation.model_schedule import LEARNED_AT
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.online.inputs import InputGate
 from winch_friction.online.options import ServiceOptions
+from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import SLOW_INPUTS, InputHold
-from winch_friction.physics.signals import GROUP_CHANNELS, Sample
+from winch_friction.physics.hold import InputHold
+from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.topics import Input, TopicMap
 
@@ -45,17 +46,11 @@ class EstimatorService:
         return self._learn(self.inputs.fill(sample, now))
 
     def _learn(self, sample: Sample) -> Estimate:
-        self.missing = self._not_there(sample)
+        self.missing = self.law.crane.drive.lacking(sample)
         self.last = self.law.step(sample)
         if math.isfinite(self.last.friction_torque):
             self.friction_torque = self.last.friction_torque
         return self.last
-
-    def _not_there(self, sample: Sample) -> tuple[str, ...]:
-        if self.law.crane.electric:
-            return () if math.isfinite(sample.motor_torque) else ("motor_torque",)
-        values = {f"{g}.{c}": getattr(member, c) for g, member in sample.groups.items() for c in GROUP_CHANNELS}
-        return tuple(column for column, value in values.items() if not math.isfinite(value))
 
     def model_due(self, now: float) -> FrictionModel | None:
         """The learned model when it is time to publish it: every `model_period` s of the samples, and no faster than

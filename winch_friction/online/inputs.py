@@ -9,8 +9,9 @@ from typing import Any
 from winch_friction.online.options import ServiceOptions
 from winch_friction.online.plausibility import Plausibility
 from winch_friction.online.stamps import Stamp, StampWatch
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.hold import InputHold
-from winch_friction.physics.signals import GROUP_CHANNELS, NAN, SAMPLE_SCALARS, Sample
+from winch_friction.physics.signals import NAN, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.records.sample_stream import SampleStream

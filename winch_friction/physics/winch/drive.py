@@ -91,9 +91,7 @@ class Drive:
             speed = np.where(np.abs(speed) >= self.slowest_speed, speed, np.nan)
         return self._torque(run.__getitem__, crane, speed)
 
-    def lacking(
-        self, sample: Sample, plausible: Callable[[str, float], bool] = plausible
-    ) -> tuple[str, ...]:
+    def lacking(self, sample: Sample, plausible: Callable[[str, float], bool] = plausible) -> tuple[str, ...]:
         """Channels that the torque of a sample needs and that it does not have, or has implausible (by default: for any
         winch)."""
         if self.kind == POWER and abs(sample.motor_speed) < self.slowest_speed:

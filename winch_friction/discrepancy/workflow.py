@@ -10,6 +10,7 @@ from winch_friction.discrepancy.assembly import assemble
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.holdout import lock_holdout
 from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.preparation.own_simulation import against_simulations
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import NOTHING, UNEXPLAINED, Verdict
@@ -27,6 +28,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     """
     options = options or GapOptions()
     _check(runs, options)
+    runs = against_simulations(runs, model)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
     search = search_runs(split, crane, model, options, rng)

@@ -13,6 +13,7 @@ import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, dilated, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
+from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, simulated_error
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
 from winch_friction.physics.errors import InputError
@@ -127,6 +128,16 @@ class Balancing:
 
     def of(self, load: SuspendedLoad) -> Balance:
         """The balance with this load; raises `InputError` where the run lacks what closes it."""
+        balance = self._modelled(load)
+        reference = self.run.metadata.get(REFERENCE)
+        if reference is None:
+            return balance
+        # a user's simulation stands where the reference model stood: what it is off by is the gap
+        stood = balance if reference is self.model else replace(self, model=reference)._modelled(load)
+        error = simulated_error(self.grid.columns, self.run, balance.groups, self.crane, load.radius)
+        return replace(balance, measured=stood.predicted + self._smoothed(error))
+
+    def _modelled(self, load: SuspendedLoad) -> Balance:
         inertial = self.crane.inertia * self.motion.acceleration + load.inertial_torque
         frictionless = load.drum_torque / self.crane.gear_ratio + inertial
         if not self.crane.drive.hydraulic:

@@ -1,0 +1,105 @@
+"""`gap` against a user's own simulation: by its column, and by its FMU."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from own_winch import FMU_SOURCE, cycle
+
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.preparation.own_simulation import simulated_column
+from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.errors import InputError
+from winch_friction.simulation.fmu import load_fmu_map, simulate_fmu
+
+MAP = """schema: winch_friction.fmu/1
+inputs:
+  omega: {column: motor_speed, unit: rpm}
+  mass: {column: hook_load, unit: t}
+  swept: {column: main.displacement, unit: cm^3/rev}
+outputs:
+  dp: {column: main.pressure_drop_simulated, unit: bar}
+"""
+
+
+def without_column(run):
+    return replace(run, columns={k: v for k, v in run.columns.items() if not k.endswith("_simulated")})
+
+
+def names(found):
+    return {each["name"] for each in found["effects"]} | {
+        rival for each in found["effects"] for rival in each["indistinguishable_from"]
+    }
+
+
+def test_what_the_simulation_lacks_is_named_whatever_its_own_friction(crane_150t, crane2_model):
+    runs = [cycle(k, f"run_{k}") for k in range(10)]
+    found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).content()
+    assert found["verdict"] in ("missing_effect", "ambiguous")
+    assert "churning" in names(found)
+    gap = found["gap"]["holdout"]
+    assert gap["after"] < 0.3 * gap["before"]
+
+
+def test_a_simulation_that_lacks_nothing_is_left_alone(crane_150t, crane2_model):
+    runs = [cycle(20 + k, f"run_{k}", missing=False) for k in range(10)]
+    assert find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).verdict == "nothing_missing"
+    # the same logs without the column: the built-in model is another winch's and must not be content
+    plain = [without_column(run) for run in runs]
+    assert find_gap(plain, crane_150t, crane2_model, GapOptions(plan=False)).verdict != "nothing_missing"
+
+
+def test_runs_with_and_without_a_simulation_do_not_mix(crane_150t, crane2_model):
+    runs = [cycle(0, "with"), without_column(cycle(1, "without"))]
+    with pytest.raises(InputError, match="without has no simulated column"):
+        find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False))
+
+
+@pytest.fixture(scope="module")
+def fmu(tmp_path_factory):
+    pytest.importorskip("fmpy")
+    pytest.importorskip("pythonfmu")
+    folder = tmp_path_factory.mktemp("fmu")
+    (folder / "fmu_winch.py").write_text(FMU_SOURCE)
+    build = [sys.executable, "-m", "pythonfmu", "build", "-f", "fmu_winch.py"]
+    subprocess.run(build, cwd=folder, check=True, capture_output=True, timeout=60)
+    (folder / "map.yaml").write_text(MAP)
+    return folder / "OwnWinch.fmu", folder / "map.yaml"
+
+
+def test_an_fmu_gives_the_column_that_its_formulas_give(fmu):
+    run = cycle(3, "run")
+    bare = without_column(run)
+    simulated = simulate_fmu(fmu[0], load_fmu_map(fmu[1]), bare)
+    assert simulated_column(simulated) == "main.pressure_drop_simulated"
+    inside = slice(100, -100)
+    error = simulated["main.pressure_drop_simulated"] - run["main.pressure_drop_simulated"]
+    # it knows the noisy speed alone, and differentiates it; its friction step at a reversal is smeared by that
+    assert float(np.sqrt(np.mean(error[inside] ** 2))) < 2e5
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("winch_friction.fmu/9", "is not"),
+        ("no_such_variable: {column: motor_speed}", "no variable no_such_variable"),
+    ],
+)
+def test_a_wrong_map_is_said(fmu, tmp_path, change, said):
+    text = (
+        MAP.replace("winch_friction.fmu/1", change)
+        if "/9" in change
+        else MAP.replace("inputs:", f"inputs:\n  {change}")
+    )
+    path = tmp_path / "map.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=said):
+        simulate_fmu(fmu[0], load_fmu_map(path), without_column(cycle(3, "run")))
+
+
+def test_a_file_that_is_no_fmu_is_said(fmu, tmp_path):
+    (tmp_path / "x.fmu").write_text("not an archive")
+    with pytest.raises(InputError, match="not an FMU"):
+        simulate_fmu(tmp_path / "x.fmu", load_fmu_map(fmu[1]), cycle(3, "run"))

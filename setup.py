@@ -55,12 +55,14 @@ EXTRAS = {
         "typer>=0.9",
         "rich>=13",
     ],
+    "fmu": ["fmpy>=0.3.20"],
     "test": [
         "pytest>=7.4",
         "pytest-timeout>=2.2",
         "hypothesis>=6.98",
         "pytest-benchmark>=4",
         "moto[s3]>=5",
+        "pythonfmu>=0.6",
         "flask>=3",
         "flask-cors>=5",
         "import-linter>=2",
@@ -72,7 +74,9 @@ EXTRAS = {
     ],
 }
 EXTRAS["all"] = [
-    requirement for extra in ("desk", "import", "xarray", "ros", "fleet", "test") for requirement in EXTRAS[extra]
+    requirement
+    for extra in ("desk", "import", "fmu", "xarray", "ros", "fleet", "test")
+    for requirement in EXTRAS[extra]
 ]
 
 setup(

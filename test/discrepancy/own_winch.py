@@ -22,7 +22,7 @@ def churning(speed):
 def cycle(k, name, missing=True):
     """A joystick cycle in normal mode with what was logged and what the simulation says."""
     rng = np.random.default_rng(k)
-    time = np.arange(0.0, 150.0, STEP)
+    time = np.arange(0.0, 110.0, STEP)
     knots = np.arange(0.0, 160.0, 12.0)
     levels = rng.uniform(-190.0, 190.0, len(knots))
     speed = np.interp(time, knots, levels)

@@ -1,17 +1,20 @@
 """`gap` against a user's own simulation: by its column, and by its FMU."""
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from own_winch import FMU_SOURCE, cycle
+from own_winch import FMU_SOURCE, churning, cycle
 
+from winch_friction.cli import main
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.own_simulation import simulated_column
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
+from winch_friction.records.runs import write_run
 from winch_friction.simulation.fmu import load_fmu_map, simulate_fmu
 
 MAP = """schema: winch_friction.fmu/1
@@ -35,7 +38,7 @@ def names(found):
 
 
 def test_what_the_simulation_lacks_is_named_whatever_its_own_friction(crane_150t, crane2_model):
-    runs = [cycle(k, f"run_{k}") for k in range(10)]
+    runs = [cycle(k, f"run_{k}") for k in range(8)]
     found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).content()
     assert found["verdict"] in ("missing_effect", "ambiguous")
     assert "churning" in names(found)
@@ -78,6 +81,23 @@ def test_an_fmu_gives_the_column_that_its_formulas_give(fmu):
     error = simulated["main.pressure_drop_simulated"] - run["main.pressure_drop_simulated"]
     # it knows the noisy speed alone, and differentiates it; its friction step at a reversal is smeared by that
     assert float(np.sqrt(np.mean(error[inside] ** 2))) < 2e5
+
+
+def test_the_verb_takes_an_fmu_and_writes_what_to_add(fmu, tmp_path, capsys):
+    """From files to files: logs without a simulated column, the FMU, the table for the simulation's owner."""
+    for k in range(6):
+        write_run(without_column(cycle(40 + k, f"run_{k}")), tmp_path / "runs" / f"run_{k}.csv")
+    out = tmp_path / "out"
+    call = ["gap", str(tmp_path / "runs"), "--crane", "crane_150t", "--model", "a6vm215_crane2", "--out", str(out)]
+    assert main.run([*call, "--fmu", str(fmu[0])]) == 2
+    assert "belong together" in capsys.readouterr().err
+    assert main.run([*call, "--fmu", str(fmu[0]), "--fmu-map", str(fmu[1]), "--no-report", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "churning" in names(found)
+    table = np.genfromtxt(out / "addition.csv", delimiter=",", names=True, deletechars="")
+    speed, torque = table["motor_speed_[rpm]"] * np.pi / 30.0, table["torque_to_add_[N*m]"]
+    fast = np.abs(speed) > 60.0
+    assert np.sqrt(np.mean((torque - churning(speed))[fast] ** 2)) < 0.5 * np.sqrt(np.mean(churning(speed)[fast] ** 2))
 
 
 @pytest.mark.parametrize(

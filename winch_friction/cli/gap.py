@@ -39,6 +39,8 @@ def command(
     effects: Annotated[
         OptionalPath, typer.Option(help="Python file that registers candidate terms of your own.")
     ] = None,
+    fmu: Annotated[OptionalPath, typer.Option(help="FMU of your own simulation, to compare with.")] = None,
+    fmu_map: Annotated[OptionalPath, typer.Option(help="Which run columns are which variables of the FMU.")] = None,
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; gap.json says so.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
@@ -51,7 +53,7 @@ def command(
 
         blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json)
         return
-    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force)
+    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, fmu, fmu_map)
     if as_json:
         show_json(content)
     else:
@@ -68,6 +70,8 @@ def run_gap(
     effects: Path | None,
     report: bool,
     force: bool = False,
+    fmu: Path | None = None,
+    fmu_map: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
     from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
@@ -91,11 +95,13 @@ def run_gap(
     read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
     for run in read:
         show_warnings(run.warnings)
+    read = _simulated(read, fmu, fmu_map)
     forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
     steps = progress(["searching"], "comparing with the model")
     for _ in steps:
         result = find_gap(read, loaded_crane, seed_model, options)
     content = result.content()
+    _write_addition(out, result, read)
     if forced:
         content["provenance"] = {**content.get("provenance", {}), **forced}
     save_model(replace(result.model, provenance={**result.model.provenance, **forced}), out / "model.yaml")
@@ -107,6 +113,28 @@ def run_gap(
 
         write_gap_report(out / "report.html", result)
     return content
+
+
+def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[Any]:
+    """The runs with the columns that a user's FMU simulates for them."""
+    if (fmu is None) != (fmu_map is None):
+        raise InputError("--fmu and --fmu-map belong together: an FMU, and what of it is which column")
+    if fmu is None or fmu_map is None:
+        return runs
+    from winch_friction.simulation.fmu import load_fmu_map, simulate_fmu
+
+    links = load_fmu_map(fmu_map)
+    return [simulate_fmu(fmu, links, run) for run in progress(runs, "simulating by the FMU")]
+
+
+def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
+    """For a user's own simulation: what it has to add, as a table."""
+    from winch_friction.discrepancy.addition import write_addition
+    from winch_friction.discrepancy.preparation.own_simulation import simulated_column
+
+    if runs and simulated_column(runs[0]):
+        sides = [*result.train.runs, *result.holdout.runs]
+        write_addition(out / "addition.csv", sides, result.seed_model, result.model)
 
 
 def show_result(content: dict[str, Any], out: Path) -> None:

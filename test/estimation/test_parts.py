@@ -7,22 +7,36 @@ import pytest
 from filterpy.kalman import ExtendedKalmanFilter
 from scipy.linalg import expm
 
-from winch_friction.estimation import EstimatorConfig, dynamics
+from winch_friction.estimation import EstimatorConfig
 from winch_friction.estimation.answers import ParameterStatus
-from winch_friction.estimation.dynamics import Friction, wire_step
-from winch_friction.estimation.filter import SpeedFilter
+from winch_friction.estimation.dynamics import (
+    ENCODER_CHANGE,
+    FIRST_PARAMETER,
+    SPEED,
+    Propagation,
+    Step,
+    noise_variances,
+    wire_step,
+)
+from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import mean_direction
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
 from winch_friction.physics.friction.seed_range import seed_range
 
+SENSORS = (0.01, 1e5)
 
-def some_filter(size=9, seed=1):
+
+def some_filter(model, config=None, seed=1):
+    """A filter in some state, and a step from there."""
+    config = config or EstimatorConfig()
     rng = np.random.default_rng(seed)
-    each = SpeedFilter(dynamics.measurement(size))
-    root = rng.normal(size=(size, size))
-    each.P, each.x = root @ root.T, rng.normal(size=(size, 1))
-    return each
+    each = StateFilter(config, ScaledParameters(model, config), SENSORS)
+    root = rng.normal(size=(each.size, each.size)) * 0.1
+    each.state = 0.1 * rng.normal(size=(each.size, 1)), root @ root.T
+    gradient = (rng.normal(size=len(model.values)) / model.std).tolist()
+    wire = rng.normal(size=(3, 5)) * 0.1 + np.eye(3, 5)
+    return each, Step(100.0, 4.0, 0.0, 30.0, gradient, (-600.0, -1e-3), wire, 0.5, 0.02, False)
 
 
 def test_the_wire_steps_as_the_exact_solution_does(crane):
@@ -37,89 +51,209 @@ def test_the_wire_steps_as_the_exact_solution_does(crane):
         ]
     )
     step = wire_step(crane, mass, 6, length, damping, dt)
-    assert step.transition == pytest.approx(expm(rates * dt), abs=0.02 * np.abs(expm(rates * dt)).max())
-    still = np.array([0.0, 0.0, 0.0])
-    assert step.transition @ still + step.by_heave * 0.0 == pytest.approx(still)
+    assert step[:, :3] == pytest.approx(expm(rates * dt), abs=0.02 * np.abs(expm(rates * dt)).max())
+    tustin = np.linalg.inv(np.eye(3) - 0.5 * dt * rates)
+    assert step[:, :3] == pytest.approx(tustin @ (np.eye(3) + 0.5 * dt * rates), rel=1e-9, abs=1e-12)
+    assert step[:, 3] == pytest.approx(dt * tustin @ [1.0 / crane.inertia, 0.0, 0.0], rel=1e-9)
+    assert step[:, 4] == pytest.approx(dt * tustin @ [-damping * shaft, 1.0, damping / mass], rel=1e-9)
     moving = np.array([-1.0 / r, 0.0, 0.0])  # heave compensated: the load hangs still
-    assert step.transition @ moving + step.by_heave == pytest.approx(moving, abs=1e-9 / r)
+    assert step[:, :3] @ moving + step[:, 4] == pytest.approx(moving, abs=1e-9 / r)
 
 
 def test_without_a_load_the_shaft_is_alone(crane):
     step = wire_step(crane, 0.0, 6, 50.0, 1e5, 0.02)
-    assert step.by_torque[0] == pytest.approx(0.02 / crane.inertia)
-    assert np.array_equal(step.transition, np.eye(3))
+    assert step[0, 3] == pytest.approx(0.02 / crane.inertia)
+    assert np.array_equal(step[:, :3], np.eye(3))
+    assert not step[:, 4].any()
 
 
-def test_the_jacobian_is_that_of_the_propagation(crane, seed):
+def test_the_matrix_is_the_jacobian_of_the_propagation(seed):
     config = EstimatorConfig()
     parameters = ScaledParameters(seed, config)
-    gradient = np.random.default_rng(3).normal(size=len(seed.values)) / parameters.scale
-    wire = wire_step(crane, 55e3, 6, 50.0, 1.5e5, 0.02)
-    size = dynamics.FIRST_PARAMETER + parameters.size
+    motion = Propagation(config, parameters.free, parameters.scale)
+    _, step = some_filter(seed)
+    gradient = np.array(step.by_parameters)
 
     def moved(x):
-        theta = parameters.values(x[dynamics.FIRST_PARAMETER :, 0])
-        torque = float(gradient @ (theta - np.array(seed.values)))
-        step = dynamics.Step(100.0, 1.0, 0.5, 0.02, wire, Friction(torque, gradient, 500.0), False)
-        return dynamics.propagate(x, step, config), step
+        theta = np.array(seed.values) + parameters.scale * x[FIRST_PARAMETER:]
+        friction = float(gradient @ (theta - np.array(seed.values)))
+        out = np.zeros(motion.size)
+        motion.move(x, step._replace(friction=friction), out)
+        return out
 
-    x = np.random.default_rng(2).normal(size=(size, 1)) * 0.1
-    base, step = moved(x)
-    matrix = dynamics.jacobian(size, step, config, parameters)
-    for column in range(size):
+    x = 0.1 * np.random.default_rng(2).normal(size=motion.size)
+    base = moved(x)
+    motion.take(step)
+    for column in range(motion.size):
         shifted = x.copy()
-        shifted[column, 0] += 1e-4
-        assert (moved(shifted)[0] - base)[:, 0] / 1e-4 == pytest.approx(matrix[:, column], rel=1e-6, abs=1e-9)
+        shifted[column] += 1e-4
+        assert (moved(shifted) - base) / 1e-4 == pytest.approx(motion.matrix[:, column], rel=1e-6, abs=1e-7)
 
 
-def test_an_ordinary_correction_is_filterpys():
-    each, plain = some_filter(), ExtendedKalmanFilter(9, 1)
-    row = dynamics.measurement(9)
-    plain.x, plain.P = each.x.copy(), each.P.copy()
-    plain.update(np.array([[0.7]]), lambda _: row, lambda x: row @ x, R=0.3)
-    each.correct(0.7, 0.3, considered=0)
-    assert np.allclose(each.x, plain.x, rtol=1e-12)
-    assert np.allclose(each.P, plain.P, rtol=1e-12)
+def test_a_step_is_filterpys_predict_and_update(seed):
+    """filterpy's extended Kalman filter with the same F, Q, H and R, over a hundred steps."""
+    config = EstimatorConfig(forgetting_time=1e12)  # the fading of the parameters' covariance has a test of its own
+    each, step = some_filter(seed, config)
+    size = each.size
+    plain, row = ExtendedKalmanFilter(size, 1), np.zeros((1, size))
+    row[0, [SPEED, ENCODER_CHANGE]] = 1.0
+    plain.x, plain.P = each.state
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        step = step._replace(torque=float(rng.normal(scale=100.0)), heave=float(rng.normal()))
+        measured = float(plain.x[SPEED, 0] + rng.normal())
+        each._propagation.take(step)
+        matrix = each._propagation.matrix
+        noise = np.diag(noise_variances(step, config, 1.0, False))
+        plain.F, plain.Q = matrix[:, :size].copy(), matrix[:, size:] @ noise @ matrix[:, size:].T
+        following = np.zeros(size)
+        each._propagation.move(plain.x[:, 0].copy(), step, following)
+        plain.predict_x = lambda u=0, ahead=following: setattr(plain, "x", ahead[:, None].copy())
+        plain.predict()
+        plain.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=each.speed_variance)
+        each.predict_step(step, True, False)
+        innovation, variance = each.innovation(measured)
+        each._parameters.contains = lambda phi: True  # the range has a test of its own
+        each.correct(innovation, variance, True)
+        scale = np.sqrt(np.outer(np.diag(plain.P), np.diag(plain.P))) + 1e-12
+        assert np.abs((each.P - plain.P) / scale).max() < 1e-9
+        assert each.x == pytest.approx(plain.x, rel=1e-9, abs=1e-9)
 
 
-def test_considered_states_keep_value_and_variance_and_the_rest_is_no_surer_than_optimal():
-    considered, optimal = some_filter(), some_filter()
-    x, covariance = considered.x.copy(), considered.P.copy()
-    considered.correct(0.7, 0.3, considered=2)
-    optimal.correct(0.7, 0.3, considered=0)
-    assert np.array_equal(considered.x[-2:], x[-2:])
-    assert np.array_equal(considered.P[-2:, -2:], covariance[-2:, -2:])
-    assert not np.array_equal(considered.P[:2, -2:], covariance[:2, -2:])
-    assert np.all(np.diag(considered.P) >= np.diag(optimal.P) - 1e-12)
-    assert np.linalg.eigvalsh(considered.P).min() > -1e-9
+@pytest.mark.parametrize("learning", [True, False])
+def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(seed, learning):
+    each, step = some_filter(seed)
+    each.predict_step(step, learning, False)
+    ahead, x = each._ahead.copy(), each._ahead_x.copy()
+    innovation, variance = each.innovation(0.7)
+    row = np.zeros(each.size)
+    row[[SPEED, ENCODER_CHANGE]] = 1.0
+    first = each.size if learning else FIRST_PARAMETER
+    gain = ahead @ row / variance
+    gain[first:] = 0.0
+    left = np.eye(each.size) - np.outer(gain, row)
+    joseph = left @ ahead @ left.T + each.speed_variance * np.outer(gain, gain)
+    each._parameters.contains = lambda phi: True
+    each.correct(innovation, variance, learning)
+    assert np.allclose(each.P, joseph, rtol=1e-9, atol=1e-12 * np.abs(joseph).max())
+    assert np.array_equal(each.x[first:, 0], x[first:])
+    assert np.array_equal(each.P[first:, first:], ahead[first:, first:])
+    assert np.linalg.eigvalsh(each.P).min() > -1e-9
+
+
+def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(seed):
+    config = EstimatorConfig(forgetting_time=1e12)
+    wrong, right = some_filter(seed, config)[0], some_filter(seed, config)[0]
+    error = np.array([0.004, 3e4])
+    rng = np.random.default_rng(4)
+    for each in (wrong, right):
+        each._parameters.contains = lambda phi: True
+    _, step = some_filter(seed)
+    for k in range(200):
+        by_sensors = (-600.0 * rng.normal(), -1e-3)
+        step = step._replace(torque=float(rng.normal(scale=50.0)), by_sensors=by_sensors)
+        true = step._replace(torque=step.torque + float(np.dot(by_sensors, error)))
+        for each, acting in ((wrong, step), (right, true)):
+            friction = float(np.dot(step.by_parameters, seed.std * each.phi))
+            each.predict_step(acting._replace(friction=friction), k % 3 > 0, False)
+            innovation, variance = each.innovation(0.1 * k)
+            each.correct(innovation, variance, k % 3 > 0)
+    assert (right.x - wrong.x)[:, 0] == pytest.approx(error @ wrong.sensitivity, rel=1e-6, abs=1e-9)
+    root = wrong.sensitivity[:, FIRST_PARAMETER:] * np.array(SENSORS)[:, None]
+    assert wrong.considered_covariance - wrong.phi_covariance == pytest.approx(root.T @ root, rel=1e-6, abs=1e-12)
+
+
+def test_another_prior_is_as_if_it_had_been_there_from_the_start(seed):
+    """Two filters on the same data: one begins with the wide prior, the other takes it later."""
+    config = EstimatorConfig(forgetting_time=1e12)
+    early, late = some_filter(seed, config)[0], some_filter(seed, config)[0]
+    _, step = some_filter(seed)
+    rng = np.random.default_rng(6)
+    start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
+    for each in (early, late):
+        each._parameters.contains = lambda phi: True
+        covariance = start.copy()
+        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each._parameters.prior
+        each.state = np.zeros((each.size, 1)), covariance
+    early.change_prior(lambda: early._parameters.widen([1, 2, 8]))
+    assert early.phi_covariance == pytest.approx(early._parameters.prior, rel=1e-9, abs=1e-12)
+    for k in range(300):
+        gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
+        step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
+        for each in (early, late):
+            each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
+            innovation, variance = each.innovation(0.01 * k)
+            each.correct(innovation, variance, True)
+    late.change_prior(lambda: late._parameters.widen([1, 2, 8]))
+    assert late._parameters.widened_names == tuple(seed.parameter_names[k] for k in (1, 2, 8))
+    assert late.phi == pytest.approx(early.phi, rel=1e-6, abs=1e-8)
+    assert late.phi_covariance == pytest.approx(early.phi_covariance, rel=1e-6, abs=1e-10)
+    assert late.sensitivity == pytest.approx(early.sensitivity, rel=1e-6, abs=1e-8)
+
+
+def test_a_prediction_that_is_not_taken_in_changes_nothing(seed):
+    each, step = some_filter(seed)
+    before = [part.tobytes() for part in each.state]
+    each.predict_step(step, True, False)
+    each.innovation(3.0)
+    assert [part.tobytes() for part in each.state] == before
+
+
+def test_noise_of_a_step(seed):
+    config = EstimatorConfig()
+    step = some_filter(seed)[1]._replace(unknown=7.0)
+    torque, heave, load_speed, load, disturbance, rounding = noise_variances(step, config, 2.0, False)
+    assert torque == pytest.approx(2.0 * step.variance + 7.0)  # what stick leaves unknown is no noise to be scaled
+    assert heave == pytest.approx(2.0 * config.heave_noise**2)
+    assert load_speed == pytest.approx(2.0 * config.payload_noise**2 * 0.02)
+    assert load == pytest.approx(2.0 * config.load_noise**2 * 0.02)
+    assert rounding == pytest.approx(2.0 * config.speed_step**2 / 12.0)
+    assert noise_variances(step, config, 2.0, True)[3] == 0.0
+    # over many steps the disturbance keeps its own variance, whatever their length
+    for duration in (0.005, 0.02, 0.5):
+        kept = math.exp(-2.0 * duration / config.disturbance_time)
+        added = noise_variances(step._replace(duration=duration), config, 1.0, False)[4]
+        assert added / (1.0 - kept) == pytest.approx(config.disturbance_std**2)
 
 
 def test_forgetting_goes_to_the_seed_and_never_beyond(seed):
-    config = EstimatorConfig(forgetting_time=10.0)
-    parameters = ScaledParameters(seed, config)
-    size = dynamics.FIRST_PARAMETER + parameters.size
-    covariance = np.eye(size)
+    parameters = ScaledParameters(seed.with_covariance(None), EstimatorConfig(forgetting_time=10.0))
+    covariance = np.eye(parameters.size)
     covariance[-1, -1] = 0.01  # learned; the others are as in the seed
-    noise = dynamics.forgotten(covariance, 1.0, config, np.eye(parameters.size))
+    noise = parameters.faded(covariance, 1.0)
     assert noise[-1, -1] == pytest.approx(0.1 * 0.99)
     noise[-1, -1] = 0.0
     assert not noise.any()
 
 
+def test_forgetting_acts_while_learning_and_only_then(seed):
+    each, step = some_filter(seed, EstimatorConfig(forgetting_time=100.0))
+    each.state = np.zeros((each.size, 1)), np.eye(each.size) * 1e-12
+    seen = step._replace(by_parameters=[0.0] * len(seed.values), by_sensors=(0.0, 0.0))
+    for learning, expected in ((False, 0.0), (True, 1.0 - math.exp(-0.1))):
+        for _ in range(500):
+            each.predict_step(seen, learning, True)
+            _, variance = each.innovation(0.0)
+            each.correct(0.0, variance, learning)
+        assert np.diag(each.phi_covariance) == pytest.approx(expected, rel=0.02, abs=1e-9)
+
+
 def test_projection_moves_correlated_parameters_along(seed):
-    config = EstimatorConfig(seed_range=0.5)
-    parameters = ScaledParameters(seed, config)
-    size = dynamics.FIRST_PARAMETER + parameters.size
+    parameters = ScaledParameters(seed, EstimatorConfig(seed_range=0.5))
+    size = FIRST_PARAMETER + parameters.size
     covariance = np.eye(size)
     covariance[-1, -2] = covariance[-2, -1] = 0.8
-    x = np.zeros((size, 1))
-    x[-1, 0] = parameters.upper[-1] + 1.0
-    out = parameters.projected(x, covariance)
-    assert out[-1, 0] == pytest.approx(parameters.upper[-1])
-    assert out[-2, 0] == pytest.approx(-0.8)
+    x = np.zeros(size)
+    x[-1] = parameters.upper[-1] + 1.0
+    assert not parameters.contains(x[FIRST_PARAMETER:])
+    out = parameters.projected(x, covariance, FIRST_PARAMETER)
+    assert parameters.contains(out[FIRST_PARAMETER:])
+    assert out[-1] == pytest.approx(parameters.upper[-1])
+    assert out[-2] == pytest.approx(-0.8)
     limits = seed_range(seed, 0.5)
-    for name, value in zip(seed.parameter_names, parameters.values(out[dynamics.FIRST_PARAMETER :, 0]), strict=True):
+    for name, value in zip(seed.parameter_names, parameters.values(out[FIRST_PARAMETER:]), strict=True):
         assert limits[name][0] <= value <= limits[name][1]
+    assert parameters.theta(out[FIRST_PARAMETER:]) == pytest.approx(parameters.values(out[FIRST_PARAMETER:]))
 
 
 @pytest.mark.parametrize(

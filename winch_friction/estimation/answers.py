@@ -1,7 +1,9 @@
 """What an estimator says: at one instant, about one parameter, and how far a parameter may be believed."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +12,10 @@ from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 
+STATUS_PERIOD = 0.1  # s between two looks at the statuses, which move over seconds
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
+
+class Estimate(NamedTuple):
     """Outcome of one step.
 
     `accepted`: the sample changed the filter; `innovation` rad/s, its variance and `nis`, the squared ratio (NaN when
@@ -34,7 +37,10 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class ParameterEstimate:
-    """One parameter: SI value, standard deviation, and status seed / learning / learned / frozen / invalid."""
+    """One parameter: SI value, standard deviation, and status seed / learning / learned / frozen / invalid.
+
+    `prior_std` is the seed's sigma, or the wider one that took its place when the data refuted it.
+    """
 
     name: str
     unit: str
@@ -43,6 +49,7 @@ class ParameterEstimate:
     seed_value: float
     seed_std: float
     status: str
+    prior_std: float = math.nan
 
 
 def learned_model(parameters: ScaledParameters, phi: FloatArray, scaled: FloatArray, **origin: object) -> FrictionModel:
@@ -59,10 +66,12 @@ def parameter_estimates(
 ) -> list[ParameterEstimate]:
     """Value, standard deviation and status of every parameter of the learned model."""
     seed = parameters.seed
-    seed_std = np.sqrt(np.diag(parameters.covariance(parameters.prior)))
+    seed_std, prior_std = (
+        np.sqrt(np.diag(parameters.covariance(each))).tolist() for each in (parameters.seed_prior, parameters.prior)
+    )
     return [
         ParameterEstimate(
-            p.name, p.unit, model.values[k], float(model.std[k]), seed.values[k], float(seed_std[k]), text
+            p.name, p.unit, model.values[k], float(model.std[k]), seed.values[k], seed_std[k], text, prior_std[k]
         )
         for k, (p, text) in enumerate(zip(seed.parameters, statuses, strict=True))
     ]
@@ -114,15 +123,20 @@ class ParameterStatuses:
 
     def __init__(self, config: EstimatorConfig, parameters: ScaledParameters) -> None:
         self._parameters = parameters
-        self._prior = np.diag(parameters.prior)
         self._each = [ParameterStatus(config) for _ in parameters.seed.values]
+        self._since, self._frozen = 0.0, True
 
     def step(self, phi: FloatArray, covariance: FloatArray, frozen: bool, dt: float) -> None:
         """Take the filter's parameters (n,) and their covariance (n, n), and whether learning rested for `dt` s."""
-        shares = np.sqrt(np.diag(covariance) / self._prior)
-        limits = self._parameters.at_limit(phi)
-        for index, share, limit in zip(self._parameters.free, shares, limits, strict=True):
-            self._each[index].step(float(share), frozen, bool(limit), dt)
+        self._since += dt
+        self._frozen = self._frozen and frozen
+        if self._since < STATUS_PERIOD:
+            return
+        shares = np.sqrt(np.diag(covariance) / np.diag(self._parameters.prior)).tolist()
+        limits = self._parameters.at_limit(phi).tolist()
+        for index, share, limit in zip(self._parameters.free.tolist(), shares, limits, strict=True):
+            self._each[index].step(share, self._frozen, limit, self._since)
+        self._since, self._frozen = 0.0, True
 
     @property
     def texts(self) -> list[str]:

@@ -1,6 +1,7 @@
 """An estimator's state as plain types: what a checkpoint file carries, and its check when it comes back."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,27 +11,38 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
-VERSION = 1
+VERSION = 2
 
 
-def filter_state(
-    crane: Crane, seed: FrictionModel, x: FloatArray, covariance: FloatArray, mass: float, levels: list[str]
-) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Kept:
+    """What is kept: state (n, 1), covariance (n, n), sensitivity to the considered sensor errors (errors, n), mass in
+    kg (NaN: none), the parameters' status levels, and the names of those whose sigma was taken back."""
+
+    x: FloatArray
+    covariance: FloatArray
+    sensitivity: FloatArray
+    mass: float
+    levels: Sequence[str]
+    widened: Sequence[str]
+
+
+def filter_state(crane: Crane, seed: FrictionModel, kept: Kept) -> dict[str, Any]:
     """The state as lists, floats and strings, with the crane and the seed that it belongs to."""
     return {
         "version": VERSION,
         **_key(crane, seed),
-        "state": [float(value) for value in x[:, 0]],
-        "covariance": [[float(value) for value in row] for row in covariance],
-        "mass": float(mass) if np.isfinite(mass) else None,
-        "levels": list(levels),
+        "state": kept.x[:, 0].tolist(),
+        "covariance": kept.covariance.tolist(),
+        "sensitivity": kept.sensitivity.tolist(),
+        "mass": float(kept.mass) if np.isfinite(kept.mass) else None,
+        "levels": list(kept.levels),
+        "widened": list(kept.widened),
     }
 
 
-def restored_state(
-    content: Mapping[str, Any], crane: Crane, seed: FrictionModel, size: int
-) -> tuple[FloatArray, FloatArray, float, list[str]]:
-    """State (n, 1), covariance (n, n), mass in kg (NaN: none) and status levels.
+def restored_state(content: Mapping[str, Any], crane: Crane, seed: FrictionModel, size: int, sensors: int) -> Kept:
+    """What was kept, for a filter of `size` states that considers `sensors` errors.
 
     Raises `InputError` for another version, crane or seed, and for numbers that are not a state and its covariance.
     """
@@ -43,13 +55,15 @@ def restored_state(
     try:
         x = np.array(content["state"], float).reshape(size, 1)
         covariance = np.array(content["covariance"], float).reshape(size, size)
+        sensitivity = np.array(content["sensitivity"], float).reshape(sensors, size)
         mass = float("nan") if content["mass"] is None else float(content["mass"])
-        levels = [str(level) for level in content["levels"]]
+        levels, widened = ([str(each) for each in content[key]] for key in ("levels", "widened"))
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"checkpoint: damaged ({error}); delete it to start over") from error
-    if not _sound(x, covariance) or len(levels) != len(seed.values):
+    sound = _sound(x, covariance) and bool(np.isfinite(sensitivity).all())
+    if not sound or len(levels) != len(seed.values) or not set(widened) <= set(seed.parameter_names):
         raise InputError("checkpoint: state and covariance are not those of a filter; delete it to start over")
-    return x, 0.5 * (covariance + covariance.T), mass, levels
+    return Kept(x, 0.5 * (covariance + covariance.T), sensitivity, mass, levels, widened)
 
 
 def _key(crane: Crane, seed: FrictionModel) -> dict[str, Any]:

@@ -19,6 +19,12 @@ class EstimatorConfig:
     torque_noise: float = option(0.0, lower=0.0, upper=1e5, unit="N*m", doc="noise of a measured motor torque")
     heave_noise: float = option(0.003, lower=0.0, upper=1.0, unit="m/s", doc="noise of the heave velocity")
     payload_noise: float = option(0.02, lower=0.0, upper=10.0, unit="m/s^1.5", doc="random walk of the load's speed")
+    # constant errors that are considered and never estimated, where the seed's corrections do not say
+    displacement_scale_std: float = option(0.01, lower=0.0, upper=0.2, doc="relative error of the displacements")
+    pressure_scale_std: float = option(0.0, lower=0.0, upper=0.2, doc="relative error of the pressures")
+    pressure_offset_std: float = option(
+        0.0, lower=0.0, upper=50 * BAR, unit="Pa", doc="offset between the two lines of the driving group"
+    )
     # what the model does not know
     disturbance_std: float = option(10.0, lower=0.0, upper=1e5, unit="N*m", doc="torque that no term explains")
     disturbance_time: float = option(0.3, lower=0.001, upper=100.0, unit="s", doc="how long such a torque lasts")
@@ -38,6 +44,9 @@ class EstimatorConfig:
     gate: float = option(5.0, lower=1.0, upper=100.0, doc="innovations beyond this many sigma are rejected")
     max_gap: float = option(0.5, lower=0.001, upper=60.0, unit="s", doc="a longer gap restarts the speed")
     seed_range: float = option(0.5, lower=0.0, upper=0.5, doc="how far a parameter may move from its seed")
+    conflict_level: float = option(
+        0.01, lower=0.0, upper=0.5, doc="seeds less probable than this after learning lose their sigma; 0: never"
+    )
     # when learning rests
     stick_speed: float = option(3.0, lower=0.0, upper=100.0, unit="rad/s", doc="below it nothing is learned")
     excitation_speed: float = option(

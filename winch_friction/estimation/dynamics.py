@@ -12,17 +12,22 @@ shaft would leave the wire's mode (1.5 to 3 Hz), which every reversal excites, t
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import heave_velocity
 from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
 
+# the states; behind them stand the scaled parameters
 SPEED, STRETCH, LOAD_SPEED, LOAD, DISTURBANCE, ENCODER, ENCODER_CHANGE, FIRST_PARAMETER = range(8)
+# what drives shaft and wire over a step: their own three states, the torque at the shaft, the heave velocity
+TORQUE, HEAVE, ACTING = 3, 4, 5
+# the noises of a step, behind the states
+TORQUE_NOISE, HEAVE_NOISE, LOAD_SPEED_NOISE, LOAD_NOISE, DISTURBANCE_NOISE, ROUNDING_NOISE, NOISES = range(7)
 
 STICK_IGNORANCE = 30.0  # times the friction level
 UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
@@ -32,95 +37,102 @@ STIFFEST = 40.0  # rad/s; a wire of unknown stiffness is taken as this stiff aga
 FreshState = tuple[int, float, float]  # which state, its value, its variance
 
 
-@dataclass(frozen=True, slots=True)
-class WireStep:
-    """One step of [omega, stretch, v_load]: transition (3, 3), and what torque (N m) and heave velocity (m/s) add
-    (3,)."""
+class Step(NamedTuple):
+    """What acts between two samples.
 
-    transition: FloatArray
-    by_torque: FloatArray
-    by_heave: FloatArray
-
-
-def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> WireStep:
-    """The step for a hanging mass in kg on `length` m of wire, damped by `damping` N s/m; without a mass the shaft is
-    alone."""
-    if mass <= 0.0:
-        return WireStep(np.eye(3), np.array([dt / crane.inertia, 0.0, 0.0]), np.zeros(3))
-    r = crane.drum.radius(layer) / crane.gear_ratio
-    k = min(crane.wire_stiffness / length, mass * STIFFEST**2)
-    shaft = r / crane.inertia
-    rates = np.array(
-        [
-            [-damping * r * shaft, -k * shaft, damping * shaft],
-            [r, 0.0, -1.0],
-            [damping * r / mass, k / mass, -damping / mass],
-        ]
-    )
-    solved = np.linalg.inv(np.eye(3) - 0.5 * dt * rates)
-    by_torque = np.asarray(dt / crane.inertia * solved[:, 0], float)
-    by_heave = np.asarray(dt * (solved @ np.array([-damping * shaft, 1.0, damping / mass])), float)
-    return WireStep(solved @ (np.eye(3) + 0.5 * dt * rates), by_torque, by_heave)
-
-
-@dataclass(frozen=True, slots=True)
-class Friction:
-    """Friction at one operating point, N m: torque, its derivatives by the parameters, and what a full direction
-    would make of it."""
-
-    torque: float
-    by_parameters: Sequence[float]
-    magnitude: float
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """What acts between two samples: `torque` drive minus measured load, N m, and its variance; heave velocity m/s;
-    duration s."""
+    `torque`: drive minus measured load, N m, its noise `variance` and what stick leaves unknown of it, (N m)^2;
+    `friction`: N m, with its derivatives by all parameters; `by_sensors`: derivatives of the torque by the considered
+    sensor errors; `wire`: (3, 5) as from `wire_step`; heave velocity m/s; duration s.
+    """
 
     torque: float
     variance: float
+    unknown: float
+    friction: float
+    by_parameters: Sequence[float]
+    by_sensors: Sequence[float]
+    wire: FloatArray
     heave: float
     duration: float
-    wire: WireStep
-    friction: Friction
     stick: bool
 
 
-def propagate(x: FloatArray, step: Step, config: EstimatorConfig) -> FloatArray:
-    """The states (n, 1) one step on: load torque and parameters stay, the disturbance fades."""
-    following = x.copy()
-    torque = step.torque - x[LOAD, 0] - x[DISTURBANCE, 0] - step.friction.torque
-    wire = step.wire
-    following[:LOAD, 0] = wire.transition @ x[:LOAD, 0] + wire.by_torque * torque + wire.by_heave * step.heave
-    following[DISTURBANCE, 0] *= fading(step.duration, config)
-    following[ENCODER, 0], following[ENCODER_CHANGE, 0] = 0.0, -x[ENCODER, 0]
-    return following
+def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> FloatArray:
+    """What [omega, stretch, v_load, torque, heave velocity] make of the first three after `dt` s, (3, 5).
 
-
-def measurement(size: int) -> FloatArray:
-    """What the measured speed shows of the states, (1, n).
-
-    A speed that is the difference of two encoder angles carries the difference of their roundings: what one speed
-    shows too much, the
-    next one shows too little. Taken as white it would hide most of what the speed says about a torque.
+    For a hanging mass in kg on `length` m of wire, damped by `damping` N s/m; without a mass the shaft is alone. The
+    trapezoidal rule is the mid-point rule here: the force in the wire at mid-step follows from the states at its
+    start, and everything else from that force.
     """
-    matrix = np.zeros((1, size))
-    matrix[0, SPEED] = matrix[0, ENCODER_CHANGE] = 1.0
-    return matrix
+    inertia = crane.inertia
+    if mass <= 0.0:
+        return np.array([[1.0, 0, 0, dt / inertia, 0], [0, 1.0, 0, 0, 0], [0, 0, 1.0, 0, 0]])
+    r = crane.drum.radius(layer) / crane.gear_ratio
+    k = min(crane.wire_stiffness / length, mass * STIFFEST**2)
+    half = 0.5 * dt
+    # force = k stretch + stiff rate, rate = (v_heave + r omega - v_load + r half torque / J) - soft force, at mid-step
+    stiff, soft = damping + k * half, half * (r * r / inertia + 1.0 / mass)
+    whole = 1.0 / (1.0 + soft * stiff)
+    rate = dt * whole  # of the stretch per m/s of what opens the wire
+    pull = rate * stiff  # N s of force per m/s
+    push = r * half / inertia  # m/s per N m
+    at_shaft, at_load, spring = r / inertia, 1.0 / mass, dt * whole * k
+    return np.array(
+        [
+            [1.0 - at_shaft * pull * r, -at_shaft * spring, at_shaft * pull,
+             dt / inertia - at_shaft * pull * push, -at_shaft * pull],
+            [rate * r, 1.0 - spring * soft, -rate, rate * push, rate],
+            [at_load * pull * r, at_load * spring, 1.0 - at_load * pull, at_load * pull * push, at_load * pull],
+        ]
+    )  # fmt: skip
 
 
-def jacobian(size: int, step: Step, config: EstimatorConfig, parameters: ScaledParameters) -> FloatArray:
-    """Derivatives of `propagate` by the states, (n, n)."""
-    matrix = np.eye(size)
-    matrix[:LOAD, :LOAD] = step.wire.transition
-    matrix[:LOAD, LOAD] = matrix[:LOAD, DISTURBANCE] = -step.wire.by_torque
-    gradient = np.asarray(step.friction.by_parameters, float)[parameters.free] * parameters.scale
-    matrix[:LOAD, FIRST_PARAMETER:] = -np.outer(step.wire.by_torque, gradient)
-    matrix[DISTURBANCE, DISTURBANCE] = fading(step.duration, config)
-    matrix[ENCODER, ENCODER] = matrix[ENCODER_CHANGE, ENCODER_CHANGE] = 0.0
-    matrix[ENCODER_CHANGE, ENCODER] = -1.0
-    return matrix
+class Propagation:
+    """The motion between two samples, with scaled parameters: their `scale` in SI, and which of all are `free`.
+
+    `matrix` is [F | G], (n, n + NOISES): derivatives of the next states by the states and by the noises. Only the rows
+    of shaft and wire change from step to step: they are `wire` times what each state and noise does to the five
+    quantities that act.
+    """
+
+    def __init__(self, config: EstimatorConfig, free: NDArray[np.intp], scale: FloatArray) -> None:
+        self._config, self._scale = config, -scale
+        self._free = free
+        self.size = size = FIRST_PARAMETER + len(scale)
+        self.matrix = np.zeros((size, size + NOISES))
+        np.fill_diagonal(self.matrix, 1.0)
+        self.matrix[ENCODER, ENCODER] = self.matrix[ENCODER_CHANGE, ENCODER_CHANGE] = 0.0
+        self.matrix[ENCODER_CHANGE, ENCODER] = -1.0
+        for state, noise in ((LOAD, LOAD_NOISE), (DISTURBANCE, DISTURBANCE_NOISE), (ENCODER, ROUNDING_NOISE)):
+            self.matrix[state, size + noise] = 1.0
+        self.matrix[ENCODER_CHANGE, size + ROUNDING_NOISE] = 1.0
+        self._acting = np.zeros((ACTING, size + NOISES))
+        self._acting[:TORQUE, :TORQUE] = np.eye(TORQUE)
+        self._acting[TORQUE, [LOAD, DISTURBANCE]] = -1.0
+        self._acting[TORQUE, size + TORQUE_NOISE] = 1.0
+        self._acting[HEAVE, size + HEAVE_NOISE] = 1.0
+        self._rows = self.matrix[:LOAD]
+        self._by_parameters = self._acting[TORQUE, FIRST_PARAMETER:size]
+        self._everything_free = len(free) and bool((np.arange(len(free)) == free).all())
+
+    def take(self, step: Step) -> None:
+        """Make `matrix` that of this step."""
+        gradient = step.by_parameters
+        if not self._everything_free or len(gradient) != len(self._free):
+            gradient = [gradient[k] for k in self._free]
+        np.multiply(gradient, self._scale, out=self._by_parameters)
+        np.dot(step.wire, self._acting, out=self._rows)
+        self._rows[LOAD_SPEED, self.size + LOAD_SPEED_NOISE] = 1.0
+        self.matrix[DISTURBANCE, DISTURBANCE] = fading(step.duration, self._config)
+
+    def move(self, x: FloatArray, step: Step, out: FloatArray) -> None:
+        """The states (n,) one step on: load torque and parameters stay, the disturbance fades."""
+        out[:] = x
+        speed, stretch, load_speed, load, disturbance, encoder = x[:ENCODER_CHANGE].tolist()
+        torque = step.torque - load - disturbance - step.friction
+        out[:LOAD] = step.wire.dot((speed, stretch, load_speed, torque, step.heave))
+        out[DISTURBANCE] = disturbance * fading(step.duration, self._config)
+        out[ENCODER], out[ENCODER_CHANGE] = 0.0, -encoder
 
 
 def fading(duration: float, config: EstimatorConfig) -> float:
@@ -128,38 +140,27 @@ def fading(duration: float, config: EstimatorConfig) -> float:
     return math.exp(-duration / config.disturbance_time)
 
 
-def process_noise(size: int, step: Step, config: EstimatorConfig, factor: float, load_known: bool) -> FloatArray:
-    """Process noise of all but the parameters, (n, n), its variances times `factor`; the parameters' is `forgotten`.
+def noise_variances(step: Step, config: EstimatorConfig, factor: float, load_known: bool) -> tuple[float, ...]:
+    """Variances of the noises of one step, (NOISES,), all but what stick leaves unknown times `factor`.
 
     In stick the friction is anywhere within its level and stays there as long as the winch does: taken as white noise
-    of
-    its own size it would average out over many steps and pull at the load, so that such steps count for next to
+    of its own size it would average out over many steps and pull at the load, so that such steps count for next to
     nothing.
     """
-    noise = np.zeros((size, size))
-    unknown = (STICK_IGNORANCE * step.friction.magnitude) ** 2 if step.stick else 0.0
-    wire = step.wire
-    noise[:LOAD, :LOAD] = (step.variance + unknown / factor) * np.outer(wire.by_torque, wire.by_torque)
-    noise[:LOAD, :LOAD] += config.heave_noise**2 * np.outer(wire.by_heave, wire.by_heave)
-    noise[LOAD_SPEED, LOAD_SPEED] += config.payload_noise**2 * step.duration
-    noise[LOAD, LOAD] = 0.0 if load_known else config.load_noise**2 * step.duration
-    noise[DISTURBANCE, DISTURBANCE] = config.disturbance_std**2 * (1.0 - fading(step.duration, config) ** 2)
-    noise[ENCODER : ENCODER_CHANGE + 1, ENCODER : ENCODER_CHANGE + 1] = rounding_variance(config)
-    return factor * noise
+    gone = 1.0 - fading(step.duration, config) ** 2
+    return (
+        factor * step.variance + step.unknown,
+        factor * config.heave_noise**2,
+        factor * config.payload_noise**2 * step.duration,
+        0.0 if load_known else factor * config.load_noise**2 * step.duration,
+        factor * config.disturbance_std**2 * gone,
+        factor * rounding_variance(config),
+    )
 
 
 def rounding_variance(config: EstimatorConfig) -> float:
     """Variance of one encoder angle's rounding, as a speed over one sample, (rad/s)^2."""
     return config.speed_step**2 / 12.0
-
-
-def forgotten(covariance: FloatArray, duration: float, config: EstimatorConfig, prior: FloatArray) -> FloatArray:
-    """Process noise of the parameters: what takes their covariance towards the seed's, and never beyond it.
-
-    (1 - share) P + share P_seed: a direction that was not learned has P = P_seed and gets no noise.
-    """
-    share = min(1.0, duration / config.forgetting_time)
-    return share * (prior - covariance[FIRST_PARAMETER:, FIRST_PARAMETER:])
 
 
 def fresh_motion(sample: Sample, crane: Crane, config: EstimatorConfig, speed_variance: float) -> list[FreshState]:
@@ -175,13 +176,3 @@ def fresh_motion(sample: Sample, crane: Crane, config: EstimatorConfig, speed_va
         (ENCODER, 0.0, rounding_variance(config)),
         (ENCODER_CHANGE, 0.0, 0.0),
     ]
-
-
-def replaced(x: FloatArray, covariance: FloatArray, fresh: list[FreshState]) -> tuple[FloatArray, FloatArray]:
-    """State (n, 1) and covariance (n, n) with these states taken anew, correlated with nothing; the rest is kept."""
-    x, covariance = x.copy(), covariance.copy()
-    for state, value, variance in fresh:
-        covariance[state, :] = covariance[:, state] = 0.0
-        covariance[state, state] = variance
-        x[state, 0] = value
-    return x, covariance

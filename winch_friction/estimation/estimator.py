@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from winch_friction.estimation.answers import (
@@ -12,13 +11,14 @@ from winch_friction.estimation.answers import (
     learned_model,
     parameter_estimates,
 )
-from winch_friction.estimation.checkpoint import filter_state, restored_state
+from winch_friction.estimation.checkpoint import Kept, filter_state, restored_state
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.dynamics import Step, fresh_motion
+from winch_friction.estimation.conflict import SeedConflict
+from winch_friction.estimation.dynamics import FIRST_PARAMETER, fresh_motion
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import FrictionFunctions, Intervals
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.sample import Accepted, HangingLoad, accepted, saturated, usable
+from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.corrections import SampleCorrector
 from winch_friction.physics.friction import FrictionModel
@@ -40,6 +40,8 @@ class FrictionEstimator:
     disturbance is a first-order Gauss-Markov torque: what no term explains is correlated in time (wire, sensor skew),
     and taken as white it would make the filter far too sure.
 
+    The seed's sigmas are a claim: when what is learned refutes them they are taken back (`estimation.conflict`).
+
     Learning rests in stick, in saturation and without excitation; the parameters are then considered, not updated
     (Schmidt).
     A sample that is not finite, late, or beyond the innovation gate leaves the estimator exactly as it was.
@@ -50,20 +52,22 @@ class FrictionEstimator:
         self.config = config or EstimatorConfig()
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
-        self._parameters = ScaledParameters(self.seed, self.config)
         self._ranges = ChannelRanges(self.crane)
         self._enabled = True
         self.reset()
 
     def reset(self) -> None:
         """Back to the seed."""
-        self._filter = StateFilter(self.config, self._parameters)
+        self._parameters = ScaledParameters(self.seed, self.config)
+        errors = SensorErrors(self.crane, self.seed, self.config)
+        self._filter = StateFilter(self.config, self._parameters, errors.std)
         self._friction = FrictionFunctions(self.seed)
         self._load = HangingLoad(self.crane, self.config.load_filter)
-        self._intervals = Intervals(self.crane, self.config, self._load, self._friction)
+        self._intervals = Intervals(self.crane, self.config, self._load, self._friction, errors)
         self._excitation = Excitation(self.config.excitation_time)
         self.consistency = Consistency(self.config.nis_window)
         self._statuses = ParameterStatuses(self.config, self._parameters)
+        self._conflict = SeedConflict(self.config, self._parameters)
         self._gate = InnovationGate(self.config)
         self._last: Accepted | None = None
         self._begun = False
@@ -90,49 +94,52 @@ class FrictionEstimator:
         return self._advance(self._last, sample, dt)
 
     def _advance(self, last: Accepted, sample: Sample, dt: float) -> Estimate:
-        kept = self._filter.state, self._load.mass
-        self._load.mass = self._load.following(sample, dt)
-        step, point = self._intervals.between(last, sample, self._filter.theta, self._filter.load_torque)
-        reason = self._resting(sample, step)
-        self._filter.predict(step, not reason, self._load_is_known)
+        """Look one step ahead; the sample is taken in only if the gate admits what it says."""
+        mass, self._load.mass = self._load.mass, self._load.following(sample, dt)
+        theta, now = self._parameters.theta(self._filter.phi), accepted(sample, self.crane)
+        step, point = self._intervals.between(last, now, sample, theta, self._filter.load_torque)
+        reason = self._resting(sample, step.stick)
+        self._filter.predict_step(step, not reason, self._load_is_known)
         innovation, variance = self._filter.innovation(sample.motor_speed)
         if not self._gate.admits(sample.time, innovation, variance):
-            self._filter.state, self._load.mass = kept
+            self._load.mass = mass
             return self._rejected(sample, innovation, variance)
-        self._filter.correct(sample.motor_speed, not reason)
-        self._friction.memory = self._friction.advanced(point, self._filter.theta, len(sample.groups), dt)
-        self._accept(sample, dt, reason)
+        self._filter.correct(innovation, variance, not reason)
+        self._friction.advance(point, theta, len(sample.groups), dt)
+        if not reason:
+            self._conflict.step(self._filter, dt)
+        self._accept(now, dt, reason)
         if not step.stick:
             self._judge(innovation * innovation / variance, dt)
-        return self._estimate(sample, True, innovation, variance, step.friction.torque)
+        return self._estimate(sample, True, innovation, variance, step.friction)
 
     def _judge(self, nis: float, dt: float) -> None:
         self.consistency.step(nis)
         self._filter.adapt(nis, dt)
 
-    def _resting(self, sample: Sample, step: Step) -> str:
+    def _resting(self, sample: Sample, stick: bool) -> str:
         """Why learning rests at this step; empty when it does not."""
         if not self._enabled:
             return "disabled"
         if saturated(sample, self.crane, self.config):
             return "saturation"
-        if step.stick:
+        if stick:
             return "stick"
         return "no excitation" if self._excitation.range < self.config.excitation_speed else ""
 
-    def _accept(self, sample: Sample, dt: float, reason: str) -> None:
-        self._last = accepted(sample, self.crane)
-        self._excitation.step(sample.motor_speed, dt)
+    def _accept(self, now: Accepted, dt: float, reason: str) -> None:
+        self._last = now
+        self._excitation.step(now.speed, dt)
         self._gate.accepted()
         self.counts["accepted"] += 1
         self.counts["learned_from"] += not reason
         self._state = reason or "learning"
-        self._statuses.step(self._filter.phi, self._filter.phi_covariance, bool(reason), dt)
+        self._statuses.step(self._filter.phi, self._filter.considered_covariance, bool(reason), dt)
 
     def _rejected(self, sample: Sample, innovation: float, variance: float) -> Estimate:
         self._gate.rejected(innovation)
         self.counts["rejected"] += 1
-        return replace(self._estimate(sample, False, innovation, variance, NAN), state="rejected")
+        return self._estimate(sample, False, innovation, variance, NAN)._replace(state="rejected")
 
     # -- beginning and gaps
     def _begin(self, sample: Sample) -> Estimate:
@@ -140,12 +147,14 @@ class FrictionEstimator:
         self._begun = True
         self._load.mass = self._load.following(sample, 0.0)
         drive, speed = sample_drive_torque(sample, self.crane), sample.motor_speed
-        _, friction = self._intervals.at(sample, speed, speed, self._filter.theta, self._filter.load_torque)
+        measured = self._load.shaft_torque(sample.wire_layer)
         if self._load.measured:
-            self._filter.begin_load((self.config.load_std * self._load.shaft_torque(sample.wire_layer)) ** 2)
+            self._filter.begin_load((self.config.load_std * measured) ** 2)
         elif not self._load_is_known:
-            variance = (self.config.load_std * drive) ** 2 + friction.magnitude**2
-            self._filter.begin_load(variance, drive - friction.torque)
+            point = self._intervals.point(sample, speed, speed, measured, self._filter.load_torque)
+            friction = point, self._parameters.theta(self._filter.phi), len(sample.groups)
+            torque, magnitude = self._friction.at(*friction)[0], self._friction.magnitude(*friction)
+            self._filter.begin_load((self.config.load_std * drive) ** 2 + magnitude**2, drive - torque)
         return self._restart(sample)
 
     def _restart(self, sample: Sample) -> Estimate:
@@ -194,7 +203,7 @@ class FrictionEstimator:
     def model(self) -> FrictionModel:
         """The seed's terms with the learned values and covariance."""
         origin = {"crane": self.crane.name, "samples": self.counts["learned_from"]}
-        return learned_model(self._parameters, self._filter.phi, self._filter.phi_covariance, **origin)
+        return learned_model(self._parameters, self._filter.phi, self._filter.considered_covariance, **origin)
 
     def parameters(self) -> list[ParameterEstimate]:
         """Value, standard deviation and status of every parameter."""
@@ -211,22 +220,29 @@ class FrictionEstimator:
             "nis_mean": self.consistency.last_mean,
             "nis_windows": self.consistency.windows,
             "nis_share_inside": self.consistency.share_inside,
+            **self._conflict.status(),
             **self.counts,
         }
 
     def snapshot(self) -> dict[str, Any]:
         """What a checkpoint needs, in plain types; keyed by crane and seed."""
         x, covariance = self._filter.state
-        return filter_state(self.crane, self.seed, x, covariance, self._load.mass, self._statuses.levels)
+        widened = self._parameters.widened_names
+        kept = Kept(x, covariance, self._filter.sensitivity, self._load.mass, self._statuses.levels, widened)
+        return filter_state(self.crane, self.seed, kept)
 
     def restore(self, content: Mapping[str, Any]) -> None:
         """Go on from a `snapshot` of the same crane and seed; raises `InputError`, and changes nothing, for any
         other."""
-        x, covariance, mass, levels = restored_state(content, self.crane, self.seed, self._filter.size)
+        kept = restored_state(content, self.crane, self.seed, self._filter.size, len(self._filter.sensitivity))
         counts = self.counts
         self.reset()
         self.counts = counts
-        self._filter.state = self._parameters.projected(x, covariance), covariance
-        self._load.mass = mass
-        self._statuses.levels = levels
+        self._parameters.widen_named(kept.widened)
+        self._filter.state = (
+            self._parameters.projected(kept.x[:, 0], kept.covariance, FIRST_PARAMETER)[:, None], kept.covariance,
+        )  # fmt: skip
+        self._filter.sensitivity[:] = kept.sensitivity
+        self._load.mass = kept.mass
+        self._statuses.levels = kept.levels
         self._begun = True

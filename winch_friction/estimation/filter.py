@@ -1,120 +1,114 @@
-"""The filter: filterpy's, over shaft, wire, load, disturbance, encoder and scaled parameters as one state."""
+"""The filter: filterpy's, over shaft, wire, load, disturbance, encoder and scaled parameters as one state.
 
-from typing import Any
+filterpy's own predict and update take four products of whole matrices, an inverse and a dozen small arrays. Here the
+noises stand beside the states in one covariance, so that a prediction is one congruence, and the single speed that is
+measured makes the correction a change of rank one. A test holds both against filterpy's.
+"""
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
+from scipy.linalg.blas import dger
 
-from winch_friction.estimation import dynamics
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.dynamics import FIRST_PARAMETER, LOAD, SPEED, FreshState, Step, replaced
+from winch_friction.estimation.dynamics import (
+    ENCODER_CHANGE,
+    FIRST_PARAMETER,
+    LOAD,
+    NOISES,
+    SPEED,
+    TORQUE,
+    FreshState,
+    Propagation,
+    Step,
+    noise_variances,
+)
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.trust import VarianceFactor
 from winch_friction.physics.signals import FloatArray
 
+FADE_PERIOD = 1.0  # s between two steps of forgetting, which goes over hours
+EVEN_EVERY = 50  # steps; the rounding of one step is 1e-16 of the covariance
 
-class SpeedFilter(ExtendedKalmanFilter):
-    """An extended Kalman filter with one measurement that is linear in the states.
 
-    `predict_with` takes the propagated state and its Jacobian; filterpy multiplies x by F, which would linearise the
-    motion.
+class StateFilter(ExtendedKalmanFilter):
+    """Predicts by steps, takes speeds in; a prediction that is not taken in changes nothing.
+
+    `x` (n, 1) and `P` (n, n) are filterpy's. When not learning the parameters are considered: their gain is zero, while
+    their uncertainty and their correlation with the others stay in the account (Schmidt 1966; Simon, Optimal State
+    Estimation, section 10.1). Constant sensor errors (standard deviations `sensors`) are considered always, and by the
+    gain of a filter that does not know them: `sensitivity` (errors, n) is what one of each does to the state's error
+    (Tapley, Schutz and Born, Statistical Orbit Determination, chapter 6), so that the covariance of the error is
+    P + sensitivity' diag(sensors^2) sensitivity. Their own states would share the innovation's variance with the
+    noises, and its check would no longer tell. All noise variances share one factor, which `adapt` lets follow the
+    innovations. SI throughout.
     """
 
-    x: FloatArray
-    P: FloatArray
-
-    def __init__(self, measurement: FloatArray) -> None:
-        super().__init__(dim_x=measurement.shape[1], dim_z=1)
-        self._next: FloatArray = np.zeros((self.dim_x, 1))
-        self._measurement = measurement
-
-    def predict_x(self, u: Any = 0) -> None:
-        """The state that `predict_with` was given."""
-        self.x = self._next
-
-    def predict_with(self, x: FloatArray, jacobian: FloatArray, noise: FloatArray) -> None:
-        """Propagate to `x` (n, 1) with Jacobian and process noise (n, n)."""
-        self._next, self.F, self.Q = x, jacobian, noise
-        self.predict()
-
-    def innovation(self, measured: float, variance: float) -> tuple[float, float]:
-        """Difference between a measured speed and the predicted one, rad/s, and its variance."""
-        row = self._measurement
-        return measured - float((row @ self.x)[0, 0]), float((row @ self.P @ row.T)[0, 0]) + variance
-
-    def correct(self, measured: float, variance: float, considered: int) -> None:
-        """Take a measured speed; the last `considered` states keep their values and variances.
-
-        Schmidt's consider filter: their gain is zero, while their uncertainty and their correlation with the others
-        stay in the
-        account (Schmidt 1966; Simon, Optimal State Estimation, section 10.1).
-        """
-        row = self._measurement
-        if not considered:
-            self.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=variance)
-            return
-        innovation, total = self.innovation(measured, variance)
-        gain = self.P @ row.T / total
-        gain[-considered:] = 0.0
-        self.x = self.x + gain * innovation
-        left = np.eye(self.dim_x) - gain @ row
-        frozen = self.P[-considered:, -considered:].copy()
-        self.P = left @ self.P @ left.T + variance * gain @ gain.T
-        self.P[-considered:, -considered:] = frozen
-
-
-class StateFilter:
-    """Predicts by steps, takes speeds in; with `learning` off the parameters are considered, not updated (Schmidt).
-
-    All noise variances share one factor, which `adapt` lets follow the innovations. SI throughout.
-    """
-
-    def __init__(self, config: EstimatorConfig, parameters: ScaledParameters) -> None:
+    def __init__(self, config: EstimatorConfig, parameters: ScaledParameters, sensors: Sequence[float] = ()) -> None:
         self._config, self._parameters = config, parameters
-        self._filter = SpeedFilter(dynamics.measurement(FIRST_PARAMETER + parameters.size))
-        self._filter.P = np.zeros_like(self._filter.P)
-        self._filter.P[FIRST_PARAMETER:, FIRST_PARAMETER:] = parameters.prior
+        self._propagation = Propagation(config, parameters.free, parameters.scale)
+        size = self._propagation.size
+        super().__init__(dim_x=size, dim_z=1)
         self._factor = VarianceFactor(config.adaptation_time)
+        self._phi = slice(FIRST_PARAMETER, size)
+        self._sensors = np.array(sensors, float)
+        self.sensitivity = np.zeros((len(sensors), size))
+        # states and, on the diagonal behind them, the noises of a step
+        self._joint = np.zeros((size + NOISES, size + NOISES))
+        self._noises = np.einsum("ii->i", self._joint)[size:]
+        self.x, self.P = np.zeros((size, 1)), self._joint[:size, :size]
+        self.P[self._phi, self._phi] = parameters.prior
+        self._flat = self.x[:, 0]
+        # the prediction, until it is taken in, and room to calculate in
+        self._ahead, self._ahead_x, self._seen = np.zeros((size, size)), np.zeros(size), np.zeros(size)
+        self._ahead_sensitivity = self.sensitivity.copy()
+        self._half = np.zeros((size, size + NOISES))
+        self._since_even = 0
+        self._learned_for = self._unfaded = 0.0  # s of learning since the parameters' covariance last faded
 
     # -- what is estimated
     @property
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """State (n, 1) and covariance (n, n); never changed in place by a step."""
-        return self._filter.x, self._filter.P
+        """State (n, 1) and covariance (n, n), copied."""
+        return self.x.copy(), self.P.copy()
 
     @state.setter
     def state(self, state: tuple[FloatArray, FloatArray]) -> None:
-        self._filter.x, self._filter.P = state
+        self.x[:], self.P[:] = state
 
     @property
     def size(self) -> int:
         """Number n of the states."""
-        return int(self._filter.dim_x)
+        return int(self.dim_x)
 
     @property
     def speed(self) -> float:
         """Shaft speed, rad/s."""
-        return float(self._filter.x[SPEED, 0])
+        return float(self._flat[SPEED])
 
     @property
     def load_torque(self) -> float:
         """Load torque at the shaft beyond the measured load's, N m."""
-        return float(self._filter.x[LOAD, 0])
+        return float(self._flat[LOAD])
 
     @property
     def phi(self) -> FloatArray:
         """The scaled parameters (m,)."""
-        return self._filter.x[FIRST_PARAMETER:, 0]
+        return self._flat[self._phi]
 
     @property
     def phi_covariance(self) -> FloatArray:
         """Their covariance (m, m)."""
-        return self._filter.P[FIRST_PARAMETER:, FIRST_PARAMETER:]
+        return self.P[self._phi, self._phi]
 
     @property
-    def theta(self) -> list[float]:
-        """All parameter values in the seed's order."""
-        return self._parameters.values(self.phi).tolist()
+    def considered_covariance(self) -> FloatArray:
+        """The same with what the considered sensor errors add (m, m)."""
+        if not len(self._sensors):
+            return self.phi_covariance
+        root = self.sensitivity[:, self._phi] * self._sensors[:, None]
+        return self.phi_covariance + root.T @ root
 
     @property
     def noise_factor(self) -> float:
@@ -127,38 +121,94 @@ class StateFilter:
         return self._factor.value * self._config.speed_noise**2
 
     # -- one step
-    def predict(self, step: Step, learning: bool, load_known: bool) -> None:
-        """Go one step on."""
-        x, covariance = self._filter.x, self._filter.P
-        noise = dynamics.process_noise(len(x), step, self._config, self._factor.value, load_known)
-        if learning:
-            forgotten = dynamics.forgotten(covariance, step.duration, self._config, self._parameters.prior)
-            noise[FIRST_PARAMETER:, FIRST_PARAMETER:] = forgotten
-        transition = dynamics.jacobian(len(x), step, self._config, self._parameters)
-        self._filter.predict_with(dynamics.propagate(x, step, self._config), transition, noise)
+    def predict_step(self, step: Step, learning: bool, load_known: bool) -> None:
+        """Look one step ahead: P = F P F' + G W G' with the noises' variances W; parameters also fade to the prior."""
+        motion, joint, ahead = self._propagation, self._joint, self._ahead
+        motion.take(step)
+        motion.move(self._flat, step, self._ahead_x)
+        self._noises[:] = noise_variances(step, self._config, self._factor.value, load_known)
+        np.dot(motion.matrix, joint, out=self._half)
+        np.dot(self._half, motion.matrix.T, out=ahead)
+        if len(self._sensors):
+            np.dot(self.sensitivity, motion.matrix[:, : self.dim_x].T, out=self._ahead_sensitivity)
+            self._ahead_sensitivity[:, :LOAD] += np.outer(step.by_sensors, step.wire[:, TORQUE])
+        self._unfaded = self._learned_for + step.duration if learning else self._learned_for
+        if self._unfaded >= FADE_PERIOD:
+            ahead[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
+            self._unfaded = 0.0
 
     def innovation(self, measured: float) -> tuple[float, float]:
-        """Difference between a measured speed and the predicted one, rad/s, and its variance."""
-        return self._filter.innovation(measured, self.speed_variance)
+        """Difference between a measured speed and the predicted one, rad/s, and its variance.
 
-    def correct(self, measured: float, learning: bool) -> None:
-        """Take a measured speed in; learned parameters stay inside their range."""
-        considered = 0 if learning else self._parameters.size
-        self._filter.correct(measured, self.speed_variance, considered)
-        self._filter.P = 0.5 * (self._filter.P + self._filter.P.T)
+        A speed that is the difference of two encoder angles carries the difference of their roundings: what one speed
+        shows too much, the next one shows too little. Taken as white it would hide most of what the speed says about a
+        torque, so the measured speed is the sum of two states.
+        """
+        seen = np.add(self._ahead[SPEED], self._ahead[ENCODER_CHANGE], out=self._seen)
+        expected = self._ahead_x[SPEED] + self._ahead_x[ENCODER_CHANGE]
+        return measured - float(expected), float(seen[SPEED] + seen[ENCODER_CHANGE]) + self.speed_variance
+
+    def correct(self, innovation: float, variance: float, learning: bool) -> None:
+        """Take the prediction and its measured speed in; learned parameters stay inside their range."""
+        ahead, gain = self._ahead, self._seen * (1.0 / variance)
+        if not learning:
+            gain[self._phi] = 0.0
+        self._learned_for = self._unfaded
+        np.multiply(gain, innovation, out=self._flat)
+        self._flat += self._ahead_x
+        # with the optimal gain of the free states Joseph's form is P - gain seen' there, and P among the considered
+        dger(-1.0, self._seen, gain, a=ahead.T, overwrite_x=0, overwrite_y=0, overwrite_a=1)
+        if not learning:
+            ahead[FIRST_PARAMETER:, :FIRST_PARAMETER] = ahead[:FIRST_PARAMETER, FIRST_PARAMETER:].T
+        self.P[:] = ahead
+        if len(self._sensors):
+            shown = self._ahead_sensitivity[:, SPEED] + self._ahead_sensitivity[:, ENCODER_CHANGE]
+            np.subtract(self._ahead_sensitivity, np.outer(shown, gain), out=self.sensitivity)
         if learning:
-            self._filter.x = self._parameters.projected(self._filter.x, self._filter.P)
+            self._keep_sound()
+
+    def _keep_sound(self) -> None:
+        """Parameters inside their range; now and then without what rounding left unequal between the halves of P."""
+        self._since_even += 1
+        if self._since_even >= EVEN_EVERY:
+            np.add(self.P, self.P.T, out=self._ahead)
+            np.multiply(self._ahead, 0.5, out=self.P)
+            self._since_even = 0
+        if not self._parameters.contains(self.phi):
+            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
 
     def adapt(self, nis: float, dt: float) -> None:
         """Let the noise factor follow one normalised innovation squared, `dt` s after the last."""
         self._factor.step(nis, dt)
 
+    def change_prior(self, change: Callable[[], None]) -> None:
+        """Judge the same data by another prior of the parameters, which `change` makes.
+
+        With the prior's mean at the seed (phi = 0) and dJ the change of its precision:
+        P' = (P^-1 + dJ)^-1, x' = x - P' dJ phi, here without the inverse of P.
+        """
+        before = np.linalg.inv(self._parameters.prior)
+        change()
+        change_of_precision = np.linalg.inv(self._parameters.prior) - before
+        across = self.P[:, self._phi].copy()
+        factor = change_of_precision @ np.linalg.inv(np.eye(len(before)) + self.phi_covariance @ change_of_precision)
+        self._flat -= across @ (factor @ self.phi)
+        self.sensitivity -= self.sensitivity[:, self._phi] @ factor.T @ across.T
+        covariance = self.P - across @ factor @ across.T
+        self.P[:] = 0.5 * (covariance + covariance.T)
+        if not self._parameters.contains(self.phi):
+            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+
     # -- beginning anew
     def begin_load(self, variance: float, torque: float = 0.0) -> None:
         """The load torque beyond the measured load's at the start, N m, and its variance."""
-        self._filter.x[LOAD, 0] = torque
-        self._filter.P[LOAD, LOAD] = variance
+        self._flat[LOAD] = torque
+        self.P[LOAD, LOAD] = variance
 
-    def take_anew(self, fresh: list[FreshState]) -> None:
-        """Replace these states; everything else is kept."""
-        self.state = replaced(self._filter.x, self._filter.P, fresh)
+    def take_anew(self, fresh: Sequence[FreshState]) -> None:
+        """Take these states as given, correlated with nothing; the rest is kept."""
+        for state, value, variance in fresh:
+            self.P[state, :] = self.P[:, state] = 0.0
+            self.P[state, state] = variance
+            self.sensitivity[:, state] = 0.0
+            self._flat[state] = value

@@ -1,5 +1,8 @@
 """The friction parameters in the filter: scaled by the seed's sigma, around the seed, inside their range."""
 
+import math
+from collections.abc import Iterable
+
 import numpy as np
 
 from winch_friction.estimation.config import EstimatorConfig
@@ -20,12 +23,19 @@ class ScaledParameters:
         std = seed.std if seed.covariance is not None else config.default_std * np.abs(self.center)
         self.free = np.flatnonzero(std > 0.0)
         self.scale = std[self.free]
-        self.prior = self._prior(seed)
+        self._centers, self._free, self._scales = self.center.tolist(), self.free.tolist(), self.scale.tolist()
+        self._forgetting_time = config.forgetting_time
+        self.seed_prior = self._prior(seed)
+        self.prior = self.seed_prior
+        self.widened: tuple[int, ...] = ()
         limits = seed_range(seed, config.seed_range)
         span = np.array([limits[name] for name in seed.parameter_names]).reshape(-1, 2)
         self._limits = span
         self.lower = (span[self.free, 0] - self.center[self.free]) / self.scale
         self.upper = (span[self.free, 1] - self.center[self.free]) / self.scale
+        # the sigma of equal belief within the range, in sigmas of the seed and no less than one
+        self.range_factor = np.maximum(1.0, (self.upper - self.lower) / math.sqrt(12.0))
+        self._lows, self._highs = self.lower.tolist(), self.upper.tolist()
 
     @property
     def size(self) -> int:
@@ -38,11 +48,39 @@ class ScaledParameters:
         scaled = seed.covariance[np.ix_(self.free, self.free)] / np.outer(self.scale, self.scale)
         return 0.5 * (scaled + scaled.T)
 
+    def widen(self, reached: Iterable[int]) -> None:
+        """Take the seed's sigma back for these (by their place in phi), besides those taken back before.
+
+        A refuted sigma says nothing; what is left is the range around the seed, and equal belief within it has a sigma
+        of its half width over sqrt(3). Correlations stay.
+        """
+        self.widened = tuple(sorted({*self.widened, *reached}))
+        factor, chosen = np.ones(self.size), list(self.widened)
+        factor[chosen] = self.range_factor[chosen]
+        self.prior = self.seed_prior * np.outer(factor, factor)
+
+    def widen_named(self, names: Iterable[str]) -> None:
+        """The same by name."""
+        places = {self.seed.parameter_names[free]: place for place, free in enumerate(self.free.tolist())}
+        self.widen([places[name] for name in names if name in places])
+
+    @property
+    def widened_names(self) -> tuple[str, ...]:
+        """Names of the parameters whose sigma was taken back."""
+        return tuple(self.seed.parameter_names[self.free[k]] for k in self.widened)
+
     def values(self, phi: FloatArray) -> FloatArray:
         """Parameter values, SI, all of them in the seed's order."""
         theta = self.center.copy()
         theta[self.free] += self.scale * phi
         return np.clip(theta, self._limits[:, 0], self._limits[:, 1])
+
+    def theta(self, phi: FloatArray) -> list[float]:
+        """`values` as plain floats for parameters inside their range: what every step evaluates."""
+        theta = self._centers.copy()
+        for k, scale, value in zip(self._free, self._scales, phi.tolist(), strict=True):
+            theta[k] += scale * value
+        return theta
 
     def covariance(self, scaled: FloatArray) -> FloatArray:
         """Covariance of all parameters, SI, from the filter's."""
@@ -50,22 +88,33 @@ class ScaledParameters:
         full[np.ix_(self.free, self.free)] = np.outer(self.scale, self.scale) * 0.5 * (scaled + scaled.T)
         return full
 
-    def projected(self, x: FloatArray, covariance: FloatArray) -> FloatArray:
-        """The state (n, 1) with its last entries, phi, moved inside their range, the others along by their correlation.
+    def contains(self, phi: FloatArray) -> bool:
+        """Whether every scaled parameter is inside its range."""
+        return all(low <= value <= high for low, value, high in zip(self._lows, phi.tolist(), self._highs, strict=True))
+
+    def faded(self, covariance: FloatArray, duration: float) -> FloatArray:
+        """What takes a covariance (m, m) towards the seed's in `duration` s, and never beyond it.
+
+        (1 - share) P + share P_seed: a direction that was not learned has P = P_seed and gets nothing.
+        """
+        return min(1.0, duration / self._forgetting_time) * (self.prior - covariance)
+
+    def projected(self, x: FloatArray, covariance: FloatArray, first: int) -> FloatArray:
+        """The state (n,) with phi, from `first` on, moved inside its range, the others along by their correlation.
 
         Simon, Optimal State Estimation, section 7.5: the constrained estimate of least distance in the filter's metric.
         """
-        first = len(x) - self.size
+        last = first + self.size
         for _ in range(self.size):
-            phi = x[first:, 0]
+            phi = x[first:last]
             excess = np.where(phi > self.upper, phi - self.upper, np.where(phi < self.lower, phi - self.lower, 0.0))
             worst = int(np.argmax(np.abs(excess)))
             variance = covariance[first + worst, first + worst]
             if excess[worst] == 0.0 or variance <= 0.0:
                 break
-            x = x - covariance[:, first + worst : first + worst + 1] * (excess[worst] / variance)
+            x = x - covariance[:, first + worst] * (excess[worst] / variance)
         x = x.copy()
-        x[first:, 0] = np.clip(x[first:, 0], self.lower, self.upper)
+        x[first:last] = np.clip(x[first:last], self.lower, self.upper)
         return x
 
     def at_limit(self, phi: FloatArray) -> FloatArray:

@@ -1,18 +1,19 @@
 """What one sample says: whether it is usable, the drive's torque and its noise, the hanging load."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.ranges import ChannelRanges
-from winch_friction.physics.winch.torque_balance import sample_drive_torque
+from winch_friction.physics.winch.torque_balance import driving_group, sample_drive_torque
 
 
-@dataclass(frozen=True, slots=True)
-class Accepted:
+class Accepted(NamedTuple):
     """Time s, drive torque N m, measured speed rad/s, heave velocity m/s, wire layer (NaN: not measured)."""
 
     time: float
@@ -65,6 +66,39 @@ def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> fl
 
 
 PICKED_UP = 0.1  # a relative change of the measured mass beyond this is another load, not noise
+
+
+class SensorErrors:
+    """Constant errors of pressures and displacements, which the filter considers and never estimates.
+
+    The drive torque is n D dp, so that a relative error of the displacements and one of the pressures are the same
+    thing, which friction cannot be told from; an offset between the two pressure lines of the driving group is a
+    constant torque. `std`: standard deviations of what there is, relative and Pa: from the seed's corrections where it
+    has them, else from the configuration.
+    """
+
+    def __init__(self, crane: Crane, seed: FrictionModel, config: EstimatorConfig) -> None:
+        self._crane = crane
+        known: dict[str, float] = {}
+        for each in seed.corrections:
+            if each.std is None:
+                continue
+            known[each.name] = max(each.std, known.get(each.name, 0.0))
+        scale = math.hypot(
+            known.get("displacement_scale", config.displacement_scale_std),
+            known.get("pressure_scale", config.pressure_scale_std),
+        )
+        offset = known.get("pressure_offset", config.pressure_offset_std)
+        self._scale, self._offset = (scale, offset) if crane.drive.hydraulic else (0.0, 0.0)
+        self.std: Sequence[float] = tuple(each for each in (self._scale, self._offset) if each > 0.0)
+
+    def by(self, sample: Sample, drive: float) -> Sequence[float]:
+        """Derivatives of the true drive torque by the errors, where `drive` N m is measured."""
+        if not self._offset:
+            return (-drive,) if self._scale else ()
+        name = driving_group(tuple(sample.groups))
+        by_offset = -self._crane.motor_count(name) * sample.groups[name].displacement
+        return (-drive, by_offset) if self._scale else (by_offset,)
 
 
 class HangingLoad:

@@ -16,22 +16,24 @@ TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
 SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
 # to and fro: jumps of this share of the largest speed, so many, within this time
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
-CALM = 0.5  # s of agreement before a doubt ends
+CALM = 1.0  # s of agreement, where something is to be seen, before a doubt ends
 
 
 @dataclass
 class Doubt:
-    """A contradiction that counts after `patience` s and is over after `CALM` s without it."""
+    """A contradiction that counts after `patience` s and is over after `CALM` s of agreement."""
 
     patience: float
     _wrong: float = field(default=0.0, init=False)
-    _right: float = field(default=CALM, init=False)
+    _right: float = field(default=0.0, init=False)
     stands: bool = field(default=False, init=False)
 
-    def step(self, wrong: bool, dt: float) -> bool:
-        """Whether it counts, after `dt` s more."""
-        self._wrong = self._wrong + dt if wrong else 0.0
-        self._right = 0.0 if wrong else self._right + dt
+    def step(self, wrong: bool | None, dt: float) -> bool:
+        """Whether it counts, after `dt` s more that were wrong, right, or (None) showed nothing."""
+        if wrong:
+            self._wrong, self._right = self._wrong + dt, 0.0
+        elif wrong is not None:
+            self._wrong, self._right = 0.0, self._right + dt
         self.stands = self._wrong >= self.patience or (self.stands and self._right < CALM)
         return self.stands
 
@@ -41,7 +43,6 @@ class Agreement:
 
     def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
         self._crane, self._ranges = crane, ranges
-        self._speeds, self._torques = Doubt(SPEED_TIME), Doubt(TORQUE_TIME)
         self.forget()
 
     def forget(self) -> None:
@@ -49,8 +50,7 @@ class Agreement:
         self._time = math.nan
         self._command = self._step = math.nan
         self._jumps: list[float] = []
-        for doubt in (self._speeds, self._torques):
-            doubt.step(False, CALM)
+        self._speeds, self._torques = Doubt(SPEED_TIME), Doubt(TORQUE_TIME)
 
     def contradictions(self, sample: Sample) -> tuple[str, ...]:
         """What does not fit, in a few words each."""
@@ -63,19 +63,23 @@ class Agreement:
         }
         return tuple(name for name, stands in found.items() if stands)
 
-    def _speeds_differ(self, sample: Sample) -> bool:
+    def _speeds_differ(self, sample: Sample) -> bool | None:
         command, speed = sample.speed_reference, sample.motor_speed
-        largest = SPEED_SHARE * max(abs(command), abs(speed)) + SPEED_APART * self._ranges.speed
-        return abs(command - speed) > largest  # false for NaN
+        large = max(abs(command), abs(speed))
+        if not large > SPEED_APART * self._ranges.speed:  # true for NaN
+            return None
+        return abs(command - speed) > SPEED_SHARE * large + SPEED_APART * self._ranges.speed
 
-    def _torques_differ(self, sample: Sample) -> bool:
+    def _torques_differ(self, sample: Sample) -> bool | None:
         if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
-            return False
+            return None
         load = self._crane.drum_torque(sample.hook_load, sample.wire_layer) / self._crane.gear_ratio
         drive = sample_drive_torque(sample, self._crane)
         large = max(abs(load), abs(drive))
         rated = self._crane.drum_torque(0.5 * self._ranges.load, sample.wire_layer) / self._crane.gear_ratio
-        return large > SMALLEST_TORQUE * rated and abs(drive - load) > TORQUE_SHARE * large  # false for NaN
+        if not (large > SMALLEST_TORQUE * rated and math.isfinite(drive - load)):
+            return None
+        return abs(drive - load) > TORQUE_SHARE * large
 
     def _chatters(self, sample: Sample) -> bool:
         step = sample.speed_reference - self._command

@@ -65,12 +65,22 @@ class InputGate:
             return self._speed(source, message, receipt, now, sent)
         if source.stamped and not self._near(stamp_time(message), now):
             self._refuse(arrivals, Stamp.AHEAD.value)
+        elif refusal := self._unstamped_refusal(source, message):
+            self._refuse(arrivals, refusal)
         else:
             before = self._stream.rejected[source.topic]
             self._stream.take(source, message, receipt, sent)
             rejected = self._stream.rejected[source.topic] > before
             self._judged(arrivals, now, (self._refusal or UNREADABLE) if rejected else "")
         return None
+
+    def _unstamped_refusal(self, source: Input, message: Any) -> str:
+        """Why a message without a stamp is not believed: it waits for the next speed, but is judged now."""
+        if source.stamped:
+            return ""
+        stamp = self.last_stamp if math.isfinite(self.last_stamp) else 0.0
+        found = ((column, self._plausible.refusal(column, stamp, x)) for column, x in source.decode(message).items())
+        return "; ".join(f"{column}: {refusal}" for column, refusal in found if refusal)
 
     def _near(self, stamp: float, now: float) -> bool:
         """Whether a held input's stamp is not ahead of the speed's clock: it would lock the input out until then."""

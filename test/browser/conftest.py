@@ -22,7 +22,7 @@ def visit(chromium):
     """Open an address at a size in a scheme; returns the page and what the console complained of."""
     opened = []
 
-    def at(address, width=1400, scheme="light", every=False):
+    def at(address, width=1400, scheme="light"):
         page = chromium.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
         opened.append(page)
         said = []
@@ -30,8 +30,6 @@ def visit(chromium):
         page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(address)
         page.wait_for_function("document.documentElement.dataset.plots || !document.querySelector('figure.plot')")
-        if every:  # else what is in view, which is what a reader meets and what keeps these tests quick
-            page.evaluate("drawEveryPlot()")
         return page, said
 
     yield at

@@ -69,6 +69,13 @@ class Replay:
             f"learned: {names or 'nothing beyond the seed'}"
         )
 
+    def to_html(self, path: str | Path) -> Path:
+        """Write the report page, which works offline; returns its path."""
+        from winch_friction.report.replay_page import write_replay_page
+
+        recorded = {"recording": self.compensator.name, "seed model": self.seed.name}
+        return write_replay_page(Path(path), self.result, self.seed, recorded)
+
     def __repr__(self) -> str:
         return f"Replay: {self.summary()}"
 
@@ -121,6 +128,13 @@ class Gap:
             f"{verdict_sentence(self.result)} Gap on locked runs: {locked['before']:.3g} {unit} before, "
             f"{locked['after']:.3g} after; noise {locked['noise_floor']:.3g} {unit}."
         )
+
+    def plot(self) -> Any:
+        """The gap of the locked runs by speed, before and after, as a plotly `Figure`."""
+        from winch_friction.report.gap_plots import speed_plot
+        from winch_friction.report.plots import plotly_figure
+
+        return plotly_figure(speed_plot(self.result))
 
     def to_html(self, path: str | Path) -> Path:
         """Write the report page, which works offline; returns its path."""

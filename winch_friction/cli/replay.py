@@ -17,7 +17,7 @@ def command(
     out: Annotated[OptionalPath, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file of the nodes.")] = None,
-    picture: Annotated[OptionalPath, typer.Option(help="Picture of friction, speed, parameters: .png, .svg.")] = None,
+    picture: Annotated[OptionalPath, typer.Option(help="Report of it: .html, or a still picture: .png, .svg.")] = None,
     learn: Annotated[bool, typer.Option(help="Let the compensator take over what the estimator learns.")] = True,
     remap: Annotated[OptionalTexts, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
     joint: Annotated[str, typer.Option(help="Joint of the speed.")] = "winch_motor",
@@ -62,10 +62,8 @@ def command(
         said = replace(result.model, provenance={**result.model.provenance, **forced})
         write_outputs(out, replace(result.compensator, metadata=forced), result.estimator, said)
     if picture is not None:
-        from winch_friction.report.figures import save_figure
-        from winch_friction.report.replay_picture import replay_figure
-
-        save_figure(replay_figure(result.compensator, result.estimator, seed), picture)
+        said_of = {"recording": recording, "crane": winch.name, "model": model, "learned": learn, **forced}
+        _draw(picture, result, seed, said_of)
     content = {**summary(result), **forced}
     if as_json:
         show_json(content)
@@ -102,9 +100,30 @@ def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace
     return {**options, **({"remap": pairs} if pairs else {}), **({"namespace": namespace} if namespace else {})}
 
 
+def _draw(path: Path, result: Any, seed: Any, provenance: dict[str, Any]) -> None:
+    if path.suffix == ".html":
+        from winch_friction.report.replay_page import write_replay_page
+
+        write_replay_page(path, result, seed, provenance)
+        return
+    from winch_friction.report.figures import save_figure
+    from winch_friction.report.replay_picture import replay_figure
+
+    save_figure(replay_figure(result.compensator, result.estimator, seed), path)
+
+
+# key of the summary -> what people read
+_WORDS = {
+    "recording": "recording", "samples": "samples", "duration_s": "duration [s]",
+    "active_share": "share of time in action [-]", "feedforward_rms_Nm": "feedforward RMS [N*m]",
+    "feedforward_peak_Nm": "feedforward, largest [N*m]", "accepted_share": "share of samples taken [-]",
+    "nis_share_inside": "innovations inside their band [-]",
+}  # fmt: skip
+
+
 def _show(content: dict[str, Any]) -> None:
-    rows = [(name, _text(value)) for name, value in content.items() if not isinstance(value, list)]
-    show_table("Replay", ("", ""), rows)
+    rows = [(_WORDS.get(name, name), _text(value)) for name, value in content.items() if not isinstance(value, list)]
+    show_table("Replay", ("what", "value"), rows)
     _list("Learned", ("parameter", "unit", "seed", "learned", "sigma", "status"), content["parameters"])
     if content["live"]:
         _list("Live against replay, relative", ("node", "compared", "missing", "largest", "equal"), content["live"])

@@ -5,11 +5,18 @@ from pathlib import Path
 import numpy as np
 
 from winch_friction.identification.practice import Practice
+from winch_friction.physics.units import RPM
+from winch_friction.physics.winch.model_curve import ModelCurve, model_curve
 from winch_friction.report.base import Section, TextSection, write_report
+from winch_friction.report.curves import curve_plot
+from winch_friction.report.decision import decision_html, list_html
+from winch_friction.report.plots import plot_html
 from winch_friction.report.practice_motor import motor_sections
 from winch_friction.report.practice_system import system_sections
 from winch_friction.report.practice_verification import verification_sections
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import for_people, number, table_html, value_for_people
+
+LOADS = (15.0, 55.0, 100.0)  # t
 
 
 def write_practice_report(practice: Practice, path: Path) -> Path:
@@ -31,12 +38,35 @@ def practice_sections(practice: Practice) -> list[Section]:
 def summary_html(practice: Practice) -> str:
     """What came out, in a few lines, and the seed."""
     rows = [
-        [p.name, p.unit, value, std]
+        [p.doc, p.name, value_for_people(value, p.unit), value_for_people(std, p.unit), for_people(p.unit)]
         for p, value, std in zip(practice.seed.parameters, practice.seed.values, practice.seed.std, strict=True)
     ]
-    return "".join(paragraph(line, "verdict") for line in summary_lines(practice)) + table_html(
-        ("parameter", "unit", "seed", "σ"), rows, "The seed for the online nodes (joint fit)"
+    first, *others = summary_lines(practice)
+    steps = ["Take seed.yaml as model_file of both nodes, or replay a bag with it first.",
+             "Let `winch-friction gap` ask heave-compensated runs whether the model lacks anything."]  # fmt: skip
+    return (
+        decision_html(first, _facts(practice), list_html(others))
+        + "<h3>What to do next</h3>"
+        + list_html(steps, ordered=True)
+        + plot_html(curve_plot(_curves(practice)))
+        + table_html(("what", "symbol", "seed", "σ", "unit"), rows, "The seed for the online nodes (joint fit)")
     )
+
+
+def _facts(practice: Practice) -> list[tuple[str, str]]:
+    middle = _curves(practice)[1]
+    return [
+        (
+            f"Friction at {middle.load / 1e3:.0f} t, {where} rpm",
+            f"{number(float(middle.torque[k]), 3)} ± {number(float(middle.std[k]), 2)} N·m",
+        )
+        for where, k in ((f"{middle.speed[0] / RPM:.0f}", 0), (f"{middle.speed[-1] / RPM:.0f}", -1))
+    ]
+
+
+def _curves(practice: Practice) -> list[ModelCurve]:
+    """The seed's friction at the loads of the papers' tests."""
+    return [model_curve(practice.seed, practice.folder.crane, load=1e3 * load) for load in LOADS]
 
 
 def summary_lines(practice: Practice) -> list[str]:
@@ -48,7 +78,7 @@ def summary_lines(practice: Practice) -> list[str]:
         if chosen:
             above, below = (np.nanmax([each.worst(side) for each in chosen]) for side in (True, False))
             lines.append(
-                f"T_ft on {len(chosen)} {title} tests: within {above:.2g} % of nominal torque above 250 rpm, "
+                f"Total friction on {len(chosen)} {title} tests: within {above:.2g} % of nominal torque above 250 rpm, "
                 f"{below:.2g} % below."
             )
     for check in practice.ahc["joint fit"]:

@@ -32,18 +32,19 @@ def _torque(axes: Any, compensator: Run, estimator: Run, start: float) -> None:
 
 
 def _parameters(axes: Any, estimator: Run, seed: FrictionModel, start: float) -> None:
-    shown = _most_learned(estimator, seed)
+    shown = most_learned(estimator, seed)
+    meaning = {each.name: each.doc for each in seed.parameters}
     for colour, name in zip(COLOURS, shown, strict=False):
         scale = estimator[f"{name}_std"][0]
         value, std = (estimator[name] - seed.value(name)) / scale, estimator[f"{name}_std"] / scale
-        axes.plot(estimator.time - start, value, color=colour, label=name)
+        axes.plot(estimator.time - start, value, color=colour, label=f"{meaning[name]} ({name})")
         axes.fill_between(estimator.time - start, value - std, value + std, color=colour, alpha=0.15, linewidth=0)
     axes.set_ylabel("parameter − seed,\nin σ of the seed, ±1 σ")
     if shown:
-        legend_above(axes, len(shown))
+        legend_above(axes, 2)
 
 
-def _most_learned(estimator: Run, seed: FrictionModel) -> list[str]:
+def most_learned(estimator: Run, seed: FrictionModel) -> list[str]:
     """The parameters whose standard deviation shrank most, best first."""
     names = [name for name in seed.parameter_names if f"{name}_std" in estimator]
     shares = {name: _share(estimator[f"{name}_std"]) for name in names}

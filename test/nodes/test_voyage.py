@@ -22,6 +22,22 @@ def test_the_same_sea_again_with_later_stamps(crane_150t, crane2_model) -> None:
     assert [b[0] - a[0] for a, b in zip(first, second, strict=True)] == pytest.approx([3.0] * 80)
 
 
+def test_legs_are_sailed_one_after_the_other_round_and_round(crane_150t, crane2_model) -> None:
+    first = adjusted(load_scenario("ahc_irregular"), 50.0, 0.5)
+    second = first.override({"load": 15e3, "name": "light"})
+    voyage = Voyage(first, crane_150t, crane2_model, seed=4, legs=(second,))
+    loads, starts = [], []
+    for _ in range(4):
+        voyage.begin(1000.0)
+        loads.append(round(voyage.sample.hook_load, -3))
+        starts.append(voyage.now)
+        while voyage.advance(0.0):
+            pass
+        assert voyage.finished
+    assert loads == [55e3, 15e3, 55e3, 15e3]
+    assert starts == pytest.approx([1000.0, 1002.5, 1005.0, 1007.5])
+
+
 def test_on_the_walls_clock_the_stamps_do_not_run_ahead(crane_150t, crane2_model) -> None:
     voyage = Voyage(adjusted(load_scenario("ahc_irregular"), 50.0, 0.5), crane_150t, crane2_model, seed=4)
     voyage.begin(5000.0, gap=0.0)

@@ -12,7 +12,8 @@ import pytest
 from dds_bench import Bench
 from std_msgs.msg import String
 
-from winch_friction.cli.demo.measures import measure
+from winch_friction.cli.demo.legs import voyage_legs
+from winch_friction.cli.demo.measures import measure, of_leg
 from winch_friction.cli.demo.plan import DemoPlan, make_plan
 from winch_friction.cli.demo.processes import events, running_nodes, running_stage
 from winch_friction.cli.demo.recording import Recording, read_recording
@@ -27,7 +28,7 @@ NODES = ("compensator", "estimator", "simulator")
 
 @dataclass(frozen=True)
 class Voyage:
-    """What a run of two phases left: seed model, then the learned one."""
+    """What a run of two legs left: with the seed model, then with the learned one."""
 
     plan: DemoPlan
     recording: Recording
@@ -42,8 +43,8 @@ def voyage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Voyage]:
     bench = Bench(out)
     os.environ["ROS_DOMAIN_ID"] = str(bench.domain)
     try:
-        plan = make_plan(out, "ahc_irregular", 50.0, 11, 1.3)
-        plan = replace(plan, phases=plan.phases[2:])
+        plan = make_plan(out, "ahc_irregular", voyage_legs("ahc_irregular")[:2], 0.82, 40.0, 11, 1.3)
+        plan = replace(plan, feedforwards=plan.feedforwards[2:])
         parameter_file, plan_file = plan.write()
         with running_nodes(parameter_file, out / "logs") as nodes, running_stage(plan_file, out / "logs") as stage:
             said = list(events(stage, nodes, out / "logs"))
@@ -68,9 +69,10 @@ def _names(bench: Bench, node: str) -> dict[str, set[str]]:
 
 def test_no_sample_is_lost(voyage: Voyage) -> None:
     samples = voyage.recorded["/winch/joint_states"]
-    assert samples == 2 * (50 * 50 + 1)
-    # between the two phases the compensator is deactivated, and says its torque's way to zero
-    assert samples <= voyage.recorded["/compensator/friction_torque"] <= samples + LAST_RAMP
+    phases = len(voyage.plan.phases)
+    assert samples == phases * (50 * 40 + 1)
+    # between two phases the compensator is deactivated, and says its torque's way to zero
+    assert samples <= voyage.recorded["/compensator/friction_torque"] <= samples + (phases - 1) * LAST_RAMP
     assert voyage.recorded["/estimator/friction_torque"] == samples
 
 
@@ -84,11 +86,13 @@ def test_live_equals_replay(voyage: Voyage) -> None:
 
 
 def test_the_learned_model_compensates_better(voyage: Voyage) -> None:
-    seed, learned = measure(voyage.plan, voyage.recording)
-    assert learned.residual < seed.residual
-    visited = [share for share in learned.friction_error_share[1:] if np.isfinite(share)]
-    assert len(visited) >= 2
-    assert max(visited) < 0.05
+    rows = measure(voyage.plan, voyage.recording)
+    for leg in voyage.plan.legs:
+        seed, learned = of_leg(rows, leg.name)
+        assert learned.residual < seed.residual
+        visited = [share for share in learned.friction_error_share[1:] if np.isfinite(share)]
+        assert len(visited) >= 2
+        assert max(visited) < 0.05
 
 
 def test_a_late_joiner_gets_the_latest_model(voyage: Voyage) -> None:

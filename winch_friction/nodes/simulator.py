@@ -40,6 +40,7 @@ class SimulatorNodeOptions:
     """What only the simulator node can be told. Raises `InputError` for values out of range."""
 
     scenario: str = option("ahc_55t_215", doc="scenario file, or the name of a shipped scenario")
+    legs: tuple[str, ...] = option((), doc="scenarios that follow it, one at each ~/reset, round and round")
     seed: int = option(1, lower=0, upper=2**31 - 1, doc="which sea, which sensor noise")
     friction_factor: float = option(
         1.3, lower=0.1, upper=3.0, doc="the plant's system friction as a multiple of the model file's"
@@ -78,7 +79,8 @@ class SimulatorNode(WinchNode):
         self.own = own = self._own.read(self)
         scenario = adjusted(load_scenario(own.scenario), own.sensor_rate, own.duration)
         truth = scaled_system(model, own.friction_factor)
-        self.voyage = Voyage(scenario, crane, truth, own.seed, hidden_effects(own.hidden))
+        legs = [adjusted(load_scenario(each), own.sensor_rate, own.duration) for each in own.legs]
+        self.voyage = Voyage(scenario, crane, truth, own.seed, hidden_effects(own.hidden), legs)
         self.topics = self.options.topics(crane)
         self.answers = Answers(own.wait_for if own.lockstep else ())
         self.held = HeldTorque(max(HOLD_TIME, HELD_SCANS / scenario.sensors.rate))

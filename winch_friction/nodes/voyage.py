@@ -35,7 +35,10 @@ def adjusted(scenario: Scenario, sensor_rate: float, duration: float) -> Scenari
 
 
 class Voyage:
-    """Repeats one scenario; stamps are the time since its start plus an origin that only grows."""
+    """Sails one scenario, or one leg after the other, again and again; stamps only grow.
+
+    They are the time since a leg's start plus an origin. `scenario` is the leg being sailed.
+    """
 
     def __init__(
         self,
@@ -44,8 +47,10 @@ class Voyage:
         truth_model: FrictionModel,
         seed: int,
         hidden: Sequence[tuple[str, float]] = (),
+        legs: Sequence[Scenario] = (),
     ) -> None:
         self.scenario, self.crane, self.truth_model, self.seed, self.hidden = scenario, crane, truth_model, seed, hidden
+        self._legs, self._begun = (scenario, *legs), 0
         self.samples = 0
         self._origin: float | None = None
         self._simulator = self._fresh()
@@ -55,8 +60,10 @@ class Voyage:
         return Simulator(self.scenario, self.crane, self.truth_model, seed=self.seed, hidden=self.hidden)
 
     def begin(self, origin: float, gap: float = GAP) -> None:
-        """From the scenario's start, dated `origin` s or, after another voyage, at least `gap` s after its end."""
+        """The next leg, from its start, dated `origin` s or, after another, at least `gap` s after its end."""
         self._origin = origin if self._origin is None else max(self.now + gap, origin)
+        self.scenario = self._legs[self._begun % len(self._legs)]
+        self._begun += 1
         self._simulator = self._fresh()
         self.samples = 0
 

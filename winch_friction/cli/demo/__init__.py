@@ -10,13 +10,15 @@ import typer
 from winch_friction.cli.console import show_json, show_table, stderr
 from winch_friction.physics.errors import InputError
 
-PRODUCTS = ("bag", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
+PRODUCTS = ("bag", "legs", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
 
 
 def command(
     out: Annotated[Path, typer.Option(help="Folder for bag, picture, page and logs.")] = Path("out/demo"),
-    scenario: Annotated[str, typer.Option(help="Shipped scenario or file; heave compensation.")] = "ahc_irregular",
-    duration: Annotated[float, typer.Option(help="Seconds of sea per phase.", min=40.0, max=3600.0)] = 60.0,
+    scenario: Annotated[
+        str, typer.Option(help="First leg: shipped scenario or file; heave compensation.")
+    ] = "ahc_irregular",
+    duration: Annotated[float, typer.Option(help="Seconds of sea per leg.", min=40.0, max=3600.0)] = 50.0,
     seed: Annotated[int, typer.Option(help="Which sea.", min=0)] = 1,
     friction_factor: Annotated[
         float,
@@ -28,16 +30,34 @@ def command(
 
     Example: winch-friction demo --seed 7 --duration 200
     """
-    from winch_friction.cli.demo.plan import make_plan
+    from winch_friction.cli.demo.legs import voyage_legs
 
+    legs = voyage_legs(scenario)  # a scenario that cannot be sailed is said before anything is touched or started
     _clear(out)
-    plan = make_plan(out.resolve(), scenario, duration, seed, friction_factor)
+    plan, search = _planned(out.resolve(), scenario, legs, duration, seed, friction_factor)
     started = time.monotonic()
     _play(plan)
-    results = _evaluate(plan, time.monotonic() - started)
+    results = _evaluate(plan, search, time.monotonic() - started)
     show_json(results) if json else _show(plan, results)
     if not all(each["equal"] and not each["missing"] for each in results["live_equals_replay"]):
         raise RuntimeError(f"the replay of {plan.bag} differs from the live outputs")
+
+
+def _planned(out: Path, scenario: str, legs: Any, duration: float, sea: int, factor: float) -> Any:
+    """The plan with the efficiency factor that is best on its first leg, and the search for it."""
+    from winch_friction.cli.demo.plan import CRANE, SEED, make_plan
+    from winch_friction.cli.demo.tuning import search_efficiency
+    from winch_friction.physics.friction.scaled import scaled_system
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+
+    truth = scaled_system(load_model(SEED), factor)
+    first = legs[0].scenario.override({"duration": duration})
+    with stderr.status("tuning the efficiency factor on the first leg ...") as status:
+        say = lambda each: status.update(f"tuning the efficiency factor on the first leg: {each:.2f}")
+        search = search_efficiency(load_crane(CRANE), truth, first, sea, say)
+    stderr.print(f"best efficiency factor at {legs[0].title}: {search.best:.2f} of {len(search.efficiencies)} tried")
+    return make_plan(out, scenario, legs, search.best, duration, sea, factor), search
 
 
 def _clear(out: Path) -> None:
@@ -91,8 +111,9 @@ def _follow(bars: Any, tasks: dict[str, Any], event: dict[str, Any]) -> None:
         bars.console.print(f"recorded {sum(event['messages'].values())} messages")
 
 
-def _evaluate(plan: Any, elapsed: float) -> dict[str, Any]:
+def _evaluate(plan: Any, search: Any, elapsed: float) -> dict[str, Any]:
     """Figures, replay, picture and page from the bag."""
+    from winch_friction.cli.demo.learned import learned_parameters
     from winch_friction.cli.demo.measures import measure
     from winch_friction.cli.demo.page import sections
     from winch_friction.cli.demo.picture import draw
@@ -112,16 +133,23 @@ def _evaluate(plan: Any, elapsed: float) -> dict[str, Any]:
     truth = scaled_system(plan.seed, plan.friction_factor)
     save_figure(picture, plan.out / "demo.png")
     save_model(recording.models[-1], plan.out / "learned_model.yaml")
-    page = sections(plan, recording, rows, agreements, truth, picture)
+    parameters = learned_parameters(plan.seed, recording.models[-1], truth)
+    page = sections(plan, recording, rows, agreements, parameters, search, picture)
     write_report(plan.out / "demo.html", "The loop closes", page, f"{plan.scenario}, sea {plan.sea}")
     results = _results(plan, rows, agreements, elapsed)
+    results["parameters"] = [each.as_dict() for each in parameters]
+    results["efficiency"] = {
+        "factor": search.best,
+        "tuned_at": plan.legs[0].title,
+        "tried": dict(zip(map("{:.2f}".format, search.efficiencies), search.residuals, strict=True)),
+    }
     write_text(plan.out / "demo.json", _json_text(results))
     return results
 
 
 def _results(plan: Any, rows: Any, agreements: Any, elapsed: float) -> dict[str, Any]:
     return {
-        "schema": "winch_friction.demo/1",
+        "schema": "winch_friction.demo/2",
         "scenario": plan.scenario,
         "sea": plan.sea,
         "friction_factor": plan.friction_factor,
@@ -144,23 +172,27 @@ def _json_text(results: dict[str, Any]) -> str:
 
 def _show(plan: Any, results: dict[str, Any]) -> None:
     phases = results["phases"]
-    bins = list(phases[0]["friction_torque_error_share"])
-    rows = [
-        [
-            each["title"],
-            f"{each['residual_heave_rms_m'] * 1e3:.2f}",
-            f"{each['less_than_without']:.0%}" if each["less_than_without"] else "-",
-            *(_share(each["friction_torque_error_rms_Nm"][b], each["friction_torque_error_share"][b]) for b in bins),
-        ]
-        for each in phases
-    ]
-    title = f"Residual heave, and friction-torque error [N m] by rpm: {plan.scenario}, sea {plan.sea}"
-    show_table(title, ("feedforward", "heave [mm]", "less", *(each.removesuffix(" rpm") for each in bins)), rows)
+    rows = []
+    for leg in plan.legs:
+        own = [each for each in phases if (each["load_t"], each["displacement_cm3_per_rev"]) == leg.key]
+        rows.append([leg.title, *(_left(each) for each in own)])
+    title = f"Left of the heave in mm RMS, and how much less than without: {plan.scenario}, sea {plan.sea}"
+    show_table(title, ("leg", *(each.title for each in plan.feedforwards)), rows)
+    show_table("Learned", ("parameter", "unit", "seed", "learned", "stated σ", "truth", "off by"), _learned(results))
     worst = max(each["largest"] for each in results["live_equals_replay"])
     speed = results["simulated_seconds"] / results["elapsed_seconds"]
     print(f"live equals replay: largest relative difference {worst:.1e}; sailed at {speed:.1f} x real time")
     print(f"page {plan.out / 'demo.html'}, picture {plan.out / 'demo.png'}, bag {plan.bag}")
 
 
-def _share(error: float, share: float) -> str:
-    return "-" if error != error else f"{error:.0f} ({share:.0%})"
+def _left(phase: dict[str, Any]) -> str:
+    less = f" (-{phase['less_than_without']:.0%})" if phase["feedforward"] != "none" else ""
+    return f"{phase['residual_heave_rms_m'] * 1e3:.1f}{less}"
+
+
+def _learned(results: dict[str, Any]) -> list[list[str]]:
+    return [
+        [p["name"], p["unit"], *(f"{p[key]:.4g}" for key in ("seed", "learned", "std", "truth")),
+         f"{p['sigmas_from_truth']:+.1f} σ"]
+        for p in results["parameters"]
+    ]  # fmt: skip

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.cli.demo.measures import BINS, PhaseFigures, bin_label
+from winch_friction.cli.demo.learned import LearnedParameter
+from winch_friction.cli.demo.measures import BINS, SETTLING, PhaseFigures, bin_label, of_feedforward, of_leg
 from winch_friction.cli.demo.plan import DemoPlan
 from winch_friction.cli.demo.recording import Recording
-from winch_friction.physics.friction import FrictionModel
+from winch_friction.cli.demo.tuning import EfficiencySearch
 from winch_friction.replay.live import AGREEMENT, Comparison
 from winch_friction.report.base import Section, TextSection
 from winch_friction.report.figures import figure_html
@@ -20,73 +21,98 @@ def sections(
     recording: Recording,
     rows: list[PhaseFigures],
     agreements: Sequence[Comparison],
-    truth: FrictionModel,
+    parameters: Sequence[LearnedParameter],
+    search: EfficiencySearch,
     picture: Any,
 ) -> list[Section]:
     """The page's sections."""
     return [
         TextSection("What was done", _story(plan)),
-        TextSection("Compensation", residual_table(rows) + figure_html(picture, _CAPTION)),
-        TextSection("Friction torque by speed", error_table(rows)),
-        TextSection("What was learned", learned_table(plan.seed, recording.models[-1], truth)),
+        TextSection("Compensation", residual_table(plan, rows) + figure_html(picture, _CAPTION)),
+        TextSection("Friction torque by speed", error_table(plan, rows)),
+        TextSection("How the efficiency factor was tuned", search_table(plan, search)),
+        TextSection("What was learned", learned_table(parameters)),
         TextSection("Live equals replay", agreement_table(agreements)),
         TextSection("Files", _files(plan)),
     ]
 
 
 _CAPTION = (
-    "Top: position error of the load over the last half minute of each phase, the same waves in each. Middle: the "
-    "plant's true friction and the feedforward as sent. Bottom: error of the model behind the feedforward."
+    "One column per leg, the same waves in each. Top: position error of the load over the last seconds. Middle: the "
+    "plant's true friction and the feedforward as sent. Bottom: RMS of the position error, and how much less than "
+    "without feedforward."
 )
 
 
 def _story(plan: DemoPlan) -> str:
+    legs = "; ".join(f"{leg.load:g} t at {leg.displacement:g} cm³/rev" for leg in plan.legs)
     words = (
         f"A simulated 150 t crane ({plan.scenario}, sea {plan.sea}) compensates heave against its friction. Its gears "
         f"and drum turn {plan.friction_factor:g} times as hard as the seed model says, and nobody tells the nodes. "
         "Simulator, compensator and estimator are three processes that talk over DDS in lockstep. "
-        f"The same {plan.duration:g} s of sea were sailed four times; the estimator learned all along. "
-        "All figures were measured from the recorded bag, the first 20 s of each phase left out."
+        f"The voyage has {len(plan.legs)} legs of {plan.duration:g} s each ({legs}) and was sailed "
+        f"{len(plan.feedforwards)} times; the estimator learned all along. The efficiency factor is today's practice "
+        f"at its best: {plan.efficiency:.2f} leaves the least heave on the first leg of this very sea, found by search "
+        f"with the true plant. All figures were measured from the recorded bag, the first {SETTLING:g} s of each leg "
+        "left out."
     )
     return paragraph(words)
 
 
-def residual_table(rows: list[PhaseFigures]) -> str:
-    """Residual heave by phase."""
-    body = [
-        (row.title, row.residual * 1e3, row.residual_at_reversal * 1e3, f"{row.gain:.0%}" if row.gain else "–")
-        for row in rows
-    ]
-    columns = ("feedforward", "residual heave RMS [mm]", "around reversals [mm]", "less than without")
-    return table_html(columns, body, "Position error of the load", digits=3)
+def residual_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
+    """Residual heave by leg and feedforward."""
+    body = [(leg.title, *map(_residual, of_leg(rows, leg.name))) for leg in plan.legs]
+    columns = ("leg", *(each.title for each in plan.feedforwards))
+    caption = "Position error of the load, RMS in mm, and how much less than without feedforward"
+    return table_html(columns, body, caption)
 
 
-def error_table(rows: list[PhaseFigures]) -> str:
-    """Friction-torque error by phase and bin."""
+def _residual(row: PhaseFigures) -> str:
+    return f"{row.residual * 1e3:.1f}" + (f" (−{row.gain:.0%})" if row.phase.feedforward.enabled else "")
+
+
+def error_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
+    """Friction-torque error by feedforward, leg and bin."""
     labels = [bin_label(each) for each in BINS]
-    body = [(row.title, *map(_error, row.friction_error, row.friction_error_share)) for row in rows]
+    body = [
+        (each.title, row.phase.leg.title, *map(_error, row.friction_error, row.friction_error_share))
+        for each in plan.feedforwards
+        for row in of_feedforward(rows, each.name)
+    ]
     caption = "RMS error in N m and as a share of the true friction, of the model behind the feedforward (sent / scale)"
     reversal = (
         "Below 50 rpm no model can be right: the feedforward spreads the change of sign over time on purpose, and at "
         "rest friction is whatever holds the load."
     )
-    return table_html(("feedforward", *labels), body, caption) + paragraph(reversal, "faint")
+    return table_html(("feedforward", "leg", *labels), body, caption) + paragraph(reversal, "faint")
 
 
 def _error(error: float, share: float) -> str:
     return "–" if np.isnan(error) else f"{error:.0f} ({share:.0%})"
 
 
-def learned_table(seed: FrictionModel, learned: FrictionModel, truth: FrictionModel) -> str:
-    """Seed, learned and true parameters."""
-    true = truth.as_dict()
+def search_table(plan: DemoPlan, search: EfficiencySearch) -> str:
+    """Every factor that was tried."""
     body = [
-        (p.name, p.unit, seed.value(p.name), learned.value(p.name), float(std), true[p.name])
-        for p, std in zip(learned.parameters, learned.std, strict=True)
+        (f"{each:.2f}", residual * 1e3, "best" if each == search.best else "")
+        for each, residual in zip(search.efficiencies, search.residuals, strict=True)
     ]
-    columns = ("parameter", "unit", "seed", "learned", "std", "truth")
+    words = (
+        f"Tried on the first leg ({plan.legs[0].title}) with the true plant, in one process. A factor cannot know "
+        "that friction hardly falls with the load, nor that it changes with displacement and speed."
+    )
+    columns = ("efficiency factor", "residual heave RMS [mm]", "")
+    return table_html(columns, body, "Search for the efficiency factor", digits=3) + paragraph(words, "faint")
+
+
+def learned_table(parameters: Sequence[LearnedParameter]) -> str:
+    """Seed, learned and true parameters, with the stated sigma."""
+    body = [(p.name, p.unit, p.seed, p.learned, p.std, p.truth, f"{p.sigmas:+.1f}") for p in parameters]
+    columns = ("parameter", "unit", "seed", "learned", "stated σ", "truth", "(learned − truth)/σ")
+    inside = sum(abs(p.sigmas) <= 2.0 for p in parameters)
     note = (
-        "One load and one sea cannot tell all parameters apart: their sum is learned, each one only as far as excited."
+        f"{inside} of {len(parameters)} lie within two of their stated standard deviations of the truth. A few loads "
+        "and one sea cannot tell all parameters apart: their sum is learned, each one only as far as excited."
     )
     return table_html(columns, body, "Parameters at the end") + paragraph(note, "faint")
 

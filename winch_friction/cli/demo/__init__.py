@@ -18,7 +18,7 @@ def command(
     scenario: Annotated[
         str, typer.Option(help="First leg: shipped scenario or file; heave compensation.")
     ] = "ahc_irregular",
-    duration: Annotated[float, typer.Option(help="Seconds of sea per leg.", min=40.0, max=3600.0)] = 50.0,
+    duration: Annotated[float, typer.Option(help="Seconds of sea per leg.", min=40.0, max=3600.0)] = 40.0,
     seed: Annotated[int, typer.Option(help="Which sea.", min=0)] = 1,
     friction_factor: Annotated[
         float,

@@ -9,7 +9,7 @@ from winch_friction.cli.demo.plan import DemoPlan
 from winch_friction.cli.demo.recording import Recording
 from winch_friction.report.figures import COLOURS, look, new_figure
 
-WINDOW = 24.0  # s shown, at the end of each leg
+WINDOW = 20.0  # s shown, at the end of each leg
 GREY = "#777777"
 
 

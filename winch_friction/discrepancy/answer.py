@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Untestable
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Untestable
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks
 from winch_friction.discrepancy.engine.interval import Size
@@ -17,15 +17,6 @@ from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import FrictionModel
 
 SCHEMA = "winch_friction.gap/1"
-
-
-@dataclass(frozen=True)
-class ParameterEstimate:
-    """A parameter of an effect with its standard deviation, SI."""
-
-    value: float
-    std: float
-    unit: str
 
 
 @dataclass(frozen=True)

@@ -5,61 +5,56 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import Effect, GapResult, ParameterEstimate, Side, relative_error
+from winch_friction.discrepancy.answer import Effect, GapResult
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
-from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.interval import rms_with_interval
-from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.omnibus import Dependence
-from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import Finding, Selection
-from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.discrepancy.regressors import build_problem
-from winch_friction.discrepancy.repair import repair, with_reversal_effect
+from winch_friction.discrepancy.proof import both_sides, read_back
+from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, NOTHING, UNEXPLAINED, Verdict
-from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
 
-def assemble(
-    split: Split, crane: Crane, model: FrictionModel, options: GapOptions, search: Search, rng: np.random.Generator
-) -> GapResult:
-    """The result that a search stands by."""
-    cross, selection, verdict = search.cross, search.selection, search.verdict
+def assemble(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> GapResult:
+    """The result that a search stands by, with the proof of the file that it writes."""
+    cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
     explanation = search.explanation
     found = selection.found if explanation is selection.final else ()
-    notes = _provenance(split.train, verdict, options)
-    repaired = repair(model, search.expansion, cross, explanation, notes)
-    effects = [_effect(each, repaired.parameters) for each in found]
-    final_model = repaired.model
-    if search.reversal is not None:
-        final_model, parameters = with_reversal_effect(repaired.model, search.reversal)
-        effects.append(_reversal_effect(search.reversal, parameters))
-    experiment = _experiment(crane, search, options) if options.plan else None
-    train = _side(search.at_seed, search.expansion, split.train, explanation, rng)
-    holdout = _side(search.at_seed, search.expansion, split.holdout, explanation, rng)
+    repaired = draft(search, explanation, _provenance(split.train, verdict, options))
+    training = [run for run in split.runs if run.name in split.train]
+    repaired = polished(repaired, given.model, training, crane)
+    train, holdout = both_sides(given, split.runs, crane, read_back(repaired.model), split.train, split.holdout, rng)
+    experiment = _experiment(given.crane, search, options) if options.plan else None
     unexplained = verdict.kind == UNEXPLAINED
     return GapResult(
-        verdict=verdict.kind, refused=verdict.refused, effects=(*effects, *search.side),
-        regions=tuple(find_regions(cross.problem.blocks, _unweighted(cross, selection.base), READ_AS)),
+        verdict=verdict.kind, refused=verdict.refused, effects=_effects(search, found, repaired),
+        regions=tuple(find_regions(train.blocks, train.before, READ_AS)),
         unit=crane.drive.unit, train=train, holdout=holdout,
         depends=_named(search.left) if unexplained else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
-        untestable=search.untestable, model=final_model, seed_model=model,
+        untestable=search.untestable, model=repaired.model, seed_model=given.model,
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
-        notes=_notes(split.runs, search.loads),
+        notes=(*_notes(split.runs, given.loads), *repaired.cut),
     )  # fmt: skip
+
+
+def _effects(search: Search, found: Sequence[Finding], repaired: Repair) -> tuple[Effect, ...]:
+    effects = [_effect(each, repaired.parameters) for each in found]
+    if search.reversal is not None:
+        effects.append(_reversal_effect(search.reversal, repaired.parameters))
+    side = [each.effect for each in (search.ripple, search.leakage) if each is not None]
+    return (*effects, *side)
 
 
 def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperiment | None:
@@ -79,11 +74,11 @@ def _effect(found: Finding, parameters: Mapping[str, Mapping[str, ParameterEstim
     )  # fmt: skip
 
 
-def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, ParameterEstimate]) -> Effect:
+def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
     candidate = finding.slot.origin[0]
     return Effect(
-        candidate.name, (), finding.slot.label, candidate.law, parameters, finding.p_value, finding.gain, 1.0,
-        "just after reversals",
+        candidate.name, (), finding.slot.label, candidate.law, parameters[candidate.name], finding.p_value,
+        finding.gain, 1.0, "just after reversals",
     )  # fmt: skip
 
 
@@ -91,47 +86,6 @@ def _provenance(train: Sequence[str], verdict: Verdict, options: GapOptions) -> 
     return {
         "repaired_by": "winch-friction gap", "verdict": verdict.kind, "trained_on": list(train), "seed": options.seed,
     }  # fmt: skip
-
-
-def _unweighted(cross: CrossFit, explanation: Explanation) -> FloatArray:
-    return np.asarray(cross.remainder(explanation) / cross.problem.blocks.weight)
-
-
-def _side(
-    at_seed: Expansion, expansion: Expansion, names: Sequence[str], explanation: Explanation, rng: np.random.Generator
-) -> Side:
-    given = _problem(at_seed, names, ())
-    around = _problem(expansion, names, explanation.slots)
-    after = around.blocks.y - around.blocks.x @ explanation.beta
-    before = given.blocks.y
-    torque = _measured(at_seed, given.blocks, names)
-    floor = np.sqrt(np.mean(_noise_per_run(after, around.blocks)[around.blocks.run] ** 2))
-    return Side(
-        runs=tuple(run for run in expansion.runs if run.name in names), blocks=around.blocks,
-        before=before, after=after,
-        size_before=rms_with_interval(before, given.blocks.segment, rng),
-        size_after=rms_with_interval(after, around.blocks.segment, rng), noise_floor=float(floor),
-        relative=(relative_error(before, torque), relative_error(after, torque)),
-    )  # fmt: skip
-
-
-def _noise_per_run(residual: FloatArray, blocks: Blocks) -> FloatArray:
-    """Independent noise of each run, in the residual's unit."""
-    runs = range(int(blocks.run.max()) + 1)
-    own = [blocks.run == k for k in runs]
-    return np.array([noise_of_run(residual[k], blocks.position[k]) if k.any() else 0.0 for k in own])
-
-
-def _problem(expansion: Expansion, names: Sequence[str], slots: Sequence[Slot]) -> Problem:
-    layout, _ = expansion.layout.only(slots)
-    return build_problem([run for run in expansion.runs if run.name in names], layout)
-
-
-def _measured(expansion: Expansion, blocks: Blocks, names: Sequence[str]) -> FloatArray:
-    """RMS-true stand-in for the measured torque of the blocks: each run's own RMS while moving, in the gap's unit."""
-    chosen = [run for run in expansion.runs if run.name in names]
-    own = [np.sqrt(np.mean(((r.gap + r.predicted)[r.used] / r.unit_torque) ** 2)) for r in chosen]
-    return np.array(own)[blocks.run]
 
 
 def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:

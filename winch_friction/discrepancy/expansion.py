@@ -1,19 +1,22 @@
 """Runs prepared around a point: the seed model, or the best explanation so far."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.wire_mode import agreed_damping
-from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, layout_of
+from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
+from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
@@ -36,18 +39,66 @@ class Expansion:
         return CrossFit(build_problem([run for run in self.runs if run.name in names], self.layout, known=slots))
 
 
-def expand_at_seed(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: Mapping[str, float]
-) -> tuple[PreparedRun, ...]:
-    """Runs prepared around the seed model; `loads` kg by name where there is no `hook_load`."""
-    prepared = [prepare(run, crane, model, loads.get(run.name, NAN)) for run in runs]
+@dataclass(frozen=True)
+class Given:
+    """Runs as a model sees them: its corrections taken out, the loads that nobody measured estimated, prepared.
+
+    This is the one path by which any model, the given or the repaired, meets the measurements.
+    """
+
+    runs: tuple[Run, ...]
+    crane: Crane
+    model: FrictionModel
+    loads: Mapping[str, float]  # kg by run, where there is no `hook_load`
+    prepared: tuple[PreparedRun, ...]
+
+
+def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
+    """Measured runs as this model sees them; `InputError` for runs that lack what balance or corrections need."""
+    right, own_crane = _corrected(runs, crane, model)
+    loads = estimated_loads(right, own_crane, model)
+    prepared = [prepare(run, own_crane, model, loads.get(run.name, NAN)) for run in right]
     modes = _agreed_modes(prepared)
-    return tuple(
+    agreed = tuple(
         before
         if before.wire_mode == mode
-        else prepare(run, crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes)
-        for run, before, mode in zip(runs, prepared, modes, strict=True)
+        else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes)
+        for run, before, mode in zip(right, prepared, modes, strict=True)
     )
+    return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed))
+
+
+def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple[tuple[Run, ...], Crane]:
+    pairs = [corrected(run, crane, model) for run in runs]
+    return tuple(run for run, _ in pairs), pairs[0][1]
+
+
+def with_corrections(
+    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: Mapping[str, float], prepared: Sequence[PreparedRun]
+) -> tuple[PreparedRun, ...]:
+    """Prepared runs with what each of the model's corrections would change in their gap, by small steps of it."""
+    columns: list[list[FloatArray]] = [[] for _ in prepared]
+    for k, one in enumerate(model.corrections):
+        step, moved = _moved(one)
+        others = (*model.corrections[:k], moved, *model.corrections[k + 1 :])
+        right, own_crane = _corrected(runs, crane, replace(model, corrections=others))
+        for own, run, old in zip(columns, right, prepared, strict=True):
+            load = loads.get(run.name, NAN)
+            new = prepare(run, own_crane, model, load, mode=old.wire_mode, spikes=np.zeros(1, bool))
+            gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
+            own.append((old.gap - gap) / step)
+    return tuple(
+        replace(run, corrections=np.column_stack([np.empty((len(run.time), 0)), *own]))
+        for run, own in zip(prepared, columns, strict=True)
+    )
+
+
+def _moved(one: Correction) -> tuple[float, Correction]:
+    """A small step of a correction inside its bounds, and the correction after it."""
+    step = 0.5 * correction_std(one)
+    lower, upper = one.bounds
+    step = step if one.value + step <= upper else -min(step, one.value - lower)
+    return step, replace(one, value=one.value + step)
 
 
 def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
@@ -73,29 +124,22 @@ def _mass(run: PreparedRun) -> float:
 
 
 def expand_around(
-    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: Mapping[str, float], before: Expansion,
-    explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False,
-) -> Expansion:  # fmt: skip
+    given: Given, before: Expansion, explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False
+) -> Expansion:
     """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
-    base = before.layout.base
+    base, seed = before.layout.base, given.model
     count = base.parameters
     values = np.array(before.model.values) + explanation.beta[:count] * base.scale[:count]
     bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
     model = seed.with_values(list(np.clip(values, bounds[:, 0], bounds[:, 1])))
-    prepared = tuple(
-        prepare(
-            run,
-            crane,
-            model,
-            loads.get(run.name, NAN),
-            accounted(old, before.layout, explanation),
-            turning,
-            old.wire_mode,
-            np.zeros_like(old.spikes) if turning else old.spikes,
-        )
-        for run, old in zip(runs, before.runs, strict=True)
-    )
-    return Expansion(prepared, layout_of(base_of(seed, model), candidates, prepared, seed), model)
+    prepared = []
+    for run, old in zip(given.runs, before.runs, strict=True):
+        known = accounted(old, before.layout, explanation)
+        spikes = np.zeros_like(old.spikes) if turning else old.spikes
+        load = given.loads.get(run.name, NAN)
+        new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes)
+        prepared.append(replace(new, corrections=old.corrections))
+    return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
 
 
 def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from winch_friction.discrepancy.preparation.balance import Accounted
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import GRAVITY
 
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
@@ -24,25 +25,44 @@ TOLERANCES = (
 )
 
 
-def base_of(model: FrictionModel, expanded: FrictionModel) -> Base:
-    """Prior scale and box of the base parameters around the point of expansion, and the measurement's tolerances."""
+def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, float] | None = None) -> Base:
+    """Prior scale and box of the base parameters around the point of expansion, the measurement's tolerances, and what
+    the model's corrections may be off by. `loose` gives parameters and
+    corrections another deviation than the model's.
+    """
     seed, at = np.array(model.values), np.array(expanded.values)
-    std = model.std
+    std = np.array([(loose or {}).get(n, s) for n, s in zip(model.parameter_names, model.std, strict=True)])
     least = np.maximum(np.abs(seed), [abs(p.typical) * 0.1 for p in model.parameters])
     scale = np.where(std > 0.0, std, LIMITS.default_relative_std * least)
     bounds = np.array([model.bounds_of(name) for name in model.parameter_names]).reshape(-1, 2)
     shift = (at - seed) / scale
     lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
     upper = np.minimum(LIMITS.prior_bound - shift, (bounds[:, 1] - at) / scale)
-    extra = len(TOLERANCES)
+    more = [(sigma, low / sigma, high / sigma) for _, sigma, low, high in TOLERANCES]
+    more += [
+        ((loose or {}).get(key_of(each)) or correction_std(each), -LIMITS.prior_bound, LIMITS.prior_bound)
+        for each in expanded.corrections
+    ]
+    own = np.array(more).reshape(-1, 3)
     return Base(
-        names=model.parameter_names + tuple(name for name, *_ in TOLERANCES),
+        names=model.parameter_names + tuple(name for name, *_ in TOLERANCES) + tuple(map(key_of, expanded.corrections)),
         parameters=len(seed),
-        scale=np.concatenate([scale, [sigma for _, sigma, *_ in TOLERANCES]]),
-        shift=np.concatenate([shift, np.zeros(extra)]),
-        lower=np.concatenate([np.minimum(lower, 0.0), [low / sigma for _, sigma, low, _ in TOLERANCES]]),
-        upper=np.concatenate([np.maximum(upper, 0.0), [high / sigma for _, sigma, _, high in TOLERANCES]]),
+        scale=np.concatenate([scale, own[:, 0]]),
+        shift=np.concatenate([shift, np.zeros(len(own))]),
+        lower=np.concatenate([np.minimum(lower, 0.0), own[:, 1]]),
+        upper=np.concatenate([np.maximum(upper, 0.0), own[:, 2]]),
     )
+
+
+def key_of(correction: Correction) -> str:
+    """A correction's name with what it is restricted to, unique in a model."""
+    return " ".join([correction.name, *correction.groups, *map(str, correction.layers)])
+
+
+def correction_std(correction: Correction) -> float:
+    """Its standard deviation; where none is given, as uncertain as a parameter of which nothing is known."""
+    size = max(abs(correction.value), 0.1 * abs(correction.declared.parameter.typical))
+    return correction.std or LIMITS.default_relative_std * size
 
 
 def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
@@ -66,11 +86,11 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
 
 
 def tolerance_columns(run: PreparedRun) -> FloatArray:
-    """Torque in N m per unit of each tolerance, shape (samples, tolerances)."""
+    """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration
     timing = delay_columns(run, SMALL_DELAY)[:, 0] * run.dt
-    return np.column_stack([weight, inertia, timing])
+    return np.column_stack([weight, inertia, timing, run.corrections])
 
 
 def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:

@@ -1,105 +1,156 @@
-"""The repaired model: the base refitted within its prior, with the effects found as terms and the signals' errors
-noted."""
+"""The repaired model as a file: effects that are terms become terms, what a signal, the geometry, the load or the
+inertia has wrong becomes a correction, and all of it is fitted once more as the file will be read.
+"""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.linalg import block_diag
 
-from winch_friction.discrepancy.answer import ParameterEstimate
-from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.detectors.reversals import ReversalFinding
+from winch_friction.discrepancy.candidates.candidate import (
+    CUT,
+    SOURCE,
+    Candidate,
+    Estimates,
+    ParameterEstimate,
+    Sides,
+)
+from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.expansion import Given, meet
+from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
+from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction import FrictionModel, Term, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.signals import Run
+from winch_friction.physics.winch import Crane
 
 
 @dataclass(frozen=True)
 class Repair:
-    """The repaired model, and per effect its parameters."""
+    """The repaired model, the parameters of each effect, and what was cut at a bound."""
 
     model: FrictionModel
     parameters: dict[str, dict[str, ParameterEstimate]]
+    cut: tuple[str, ...] = ()
 
 
-def repair(
-    seed: FrictionModel, expansion: Expansion, cross: CrossFit, explanation: Explanation, provenance: Mapping[str, Any]
-) -> Repair:
-    """Values and covariance of an explanation as a model file's content."""
-    problem = cross.problem
-    columns = problem.columns(explanation.slots)
-    scale = problem.layout.scales[list(columns)]
+@dataclass
+class _Draft:
+    """A model in the making: parameters by name with their standard deviations, terms and corrections."""
+
+    terms: list[Term]
+    at: dict[str, float]
+    std: dict[str, float]
+    corrections: list[Correction]
+
+    def add_term(self, candidate: Candidate | None, term: Term, own: Estimates) -> None:
+        """A new term, or a change of one that the model has; a curve of another shape is melted in."""
+        values = {name: each.value for name, each in own.items()}
+        if term.name not in [each.name for each in self.terms]:
+            self.terms.append(term)
+            self.at.update(values)
+            self.std.update({name: each.std for name, each in own.items()})
+            return
+        names = [p.name for p in term.parameters if candidate is None or candidate.merge or not p.shape]
+        merge = candidate.merge if candidate else None
+        self.at.update(merge(self.at, values) if merge else {name: self.at[name] + values[name] for name in names})
+        for name in names:
+            self.std[name] = float(np.hypot(self.std[name], own[name].std))
+
+    def add_correction(self, new: Correction) -> None:
+        """A new correction, or a change of one that the model has."""
+        for k, old in enumerate(self.corrections):
+            if key_of(old) == key_of(new):
+                self.corrections[k] = _changed(old, old.value + new.value, new.std)
+                return
+        self.corrections.append(new)
+
+
+def _changed(correction: Correction, value: float, std: float | None) -> Correction:
+    lower, upper = correction.bounds
+    inside = min(max(value, lower), upper)
+    source = correction.source.partition(f", {CUT}")[0]
+    if inside != value:
+        source += f", {CUT} {value:g} {correction.declared.parameter.unit}"
+    return replace(correction, value=inside, std=std, source=source)
+
+
+def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any]) -> Repair:
+    """The values of an explanation, and of what was found beside the moving samples, as a model."""
+    seed, cross = search.given.model, search.cross
+    columns = cross.problem.columns(explanation.slots)
+    scale = cross.problem.layout.scales[list(columns)]
     value = explanation.beta * scale
     covariance = cross.covariance(explanation) * np.outer(scale, scale)
-    count = problem.base.parameters
-    at = dict(zip(expansion.model.parameter_names, np.array(expansion.model.values) + value[:count], strict=True))
-    std = dict(zip(expansion.model.parameter_names, np.sqrt(np.diag(covariance)[:count]), strict=True))
-    keep = list(range(count))
-    names = list(seed.parameter_names)
-    terms, corrections, parameters = list(seed.terms), {}, {}
+    std = np.sqrt(np.diag(covariance))
+    base = cross.problem.base
+    count = base.parameters
+    names = search.expansion.model.parameter_names
+    own = _Draft(
+        list(seed.terms),
+        dict(zip(names, np.array(search.expansion.model.values) + value[:count], strict=True)),
+        dict(zip(names, std[:count], strict=True)),
+        [],
+    )
+    for k, each in enumerate(seed.corrections, start=len(base.names) - len(seed.corrections)):
+        own.corrections.append(_changed(each, each.value + value[k], float(std[k])))
+    parameters: dict[str, dict[str, ParameterEstimate]] = {}
+    sides = _sides(search.given)
     for slot in explanation.slots:
-        candidate, shape = slot.origin
         where = [columns.index(c) for c in slot.columns]
-        own = _estimates(slot, value[where], np.sqrt(np.diag(covariance)[where]))
-        unused = [p.name for p, c in zip(candidate.linear, slot.columns, strict=True) if cross.total_g[c, c] <= 0.0]
-        own = {name: each for name, each in own.items() if candidate.term is not None or name not in unused}
-        parameters[slot.name] = own
-        term = candidate.term
-        if term is None:
-            corrections[slot.name] = {n: e.value for n, e in own.items()} | {"which": slot.label}
-        elif term.name in seed.term_names:
-            _merge(candidate, at, std, own)
-        else:
-            terms.append(term)
-            at.update({name: each.value for name, each in own.items()})
-            std.update({name: each.std for name, each in own.items()})
-            for name, k in zip((p.name for p in candidate.linear), where, strict=True):
-                names.append(name)
-                keep.append(k)
-    model = _assembled(seed, tuple(terms), at, std, names, covariance[np.ix_(keep, keep)])
-    notes = {**seed.provenance, **provenance}
-    if corrections:
-        notes["measurement_corrections"] = corrections
-    return Repair(FrictionModel(**{**_fields(model), "provenance": notes}), parameters)
+        found = _estimates(slot, value[where], std[where], cross)
+        parameters[slot.name] = found
+        _add(own, slot, found, sides)
+    if search.reversal is not None:
+        finding = search.reversal
+        at = [finding.cross.problem.columns(finding.fitted.slots).index(c) for c in finding.slot.columns]
+        size = finding.cross.problem.layout.scales[list(finding.slot.columns)]
+        deviation = np.sqrt(np.diag(finding.cross.covariance(finding.fitted)))[at] * size
+        found = _estimates(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
+        parameters[finding.slot.name] = found
+        _add(own, finding.slot, found, sides)
+    if search.ripple is not None and (wave := angle.in_phase(_training(search), search.ripple)) is not None:
+        own.add_term(None, term_named(angle.TERM), wave)
+    if search.leakage is not None:
+        rate = search.leakage
+        own.add_correction(Correction("slip_leakage", rate.leakage, rate.std, source=SOURCE))
+    return _model_of(own, seed, search.given.crane, parameters, provenance)
 
 
-def with_reversal_effect(
-    model: FrictionModel, finding: ReversalFinding
-) -> tuple[FrictionModel, dict[str, ParameterEstimate]]:
-    """The model with an effect that shows only after reversals; its amplitudes are independent of the other
-    parameters."""
-    term = finding.slot.origin[0].term
-    problem = finding.cross.problem
-    columns = problem.columns(finding.fitted.slots)
-    where = [columns.index(c) for c in finding.slot.columns]
-    scale = problem.layout.scales[list(finding.slot.columns)]
-    std = np.sqrt(np.diag(finding.cross.covariance(finding.fitted)))[where] * scale
-    own = _estimates(finding.slot, finding.fitted.beta[where] * scale, std)
-    if term is None or term.name in model.term_names:
-        return model, own
-    old = model.covariance if model.covariance is not None else np.diag(np.full(len(model.values), 1e-12))
-    added = [own[p.name] for p in term.parameters]
-    covariance = block_diag(old, np.diag([max(each.std, 1e-12) ** 2 for each in added]))
-    values = (*model.values, *(float(np.clip(own[p.name].value, p.lower, p.upper)) for p in term.parameters))
-    fields = _fields(model) | {"terms": (*model.terms, term), "values": values, "covariance": covariance}
-    return FrictionModel(**fields), own
+def _training(search: Search) -> list[Any]:
+    names = {run.name for run in search.expansion.runs}
+    return [run for run in search.at_seed.runs if run.name in names]
 
 
-def _fields(model: FrictionModel) -> dict[str, Any]:
-    return {name: getattr(model, name) for name in FrictionModel.__dataclass_fields__}
+def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides) -> None:
+    candidate, shape = slot.origin
+    if candidate.term is not None:
+        own.add_term(candidate, candidate.term, found)
+    elif candidate.corrects is not None:
+        for each in candidate.corrects(found, shape, sides):
+            own.add_correction(each)
 
 
-def _estimates(slot: Slot, value: FloatArray, std: FloatArray) -> dict[str, ParameterEstimate]:
+def _sides(given: Given) -> Sides:
+    """Which motor groups close the balance somewhere, and which never do."""
+    named = {(group.name, group.balances) for run in given.prepared for group in run.groups}
+    balancing = sorted(name for name, balances in named if balances)
+    return Sides(given.crane, tuple(balancing), tuple(sorted(name for name, b in named if not b)))
+
+
+def _estimates(slot: Slot, value: FloatArray, std: FloatArray, cross: CrossFit) -> dict[str, ParameterEstimate]:
+    """The amplitudes of an effect, and the shape parameters of its term."""
     candidate, shape = slot.origin
     found = {
         p.name: ParameterEstimate(float(v), float(s), p.unit)
-        for p, v, s in zip(candidate.linear, value, std, strict=True)
+        for p, v, s, c in zip(candidate.linear, value, std, slot.columns, strict=True)
+        if candidate.term is not None or cross.total_g[c, c] > 0.0
     }
     if candidate.term is not None:
         units = {p.name: p.unit for p in candidate.term.parameters}
@@ -108,32 +159,114 @@ def _estimates(slot: Slot, value: FloatArray, std: FloatArray) -> dict[str, Para
     return found
 
 
-def _merge(
-    candidate: Candidate, at: dict[str, float], std: dict[str, float], own: Mapping[str, ParameterEstimate]
-) -> None:
-    """An effect whose term the model has already changes that term; a curve of another shape is melted in."""
-    values = {name: each.value for name, each in own.items()}
-    assert candidate.term is not None
-    names = [p.name for p in candidate.term.parameters]
-    at.update(candidate.merge(at, values) if candidate.merge else {name: at[name] + values[name] for name in names})
-    for name in names:
-        std[name] = float(np.hypot(std[name], own[name].std))
-
-
-def _assembled(seed, terms, at, std, names, known) -> FrictionModel:  # type: ignore[no-untyped-def]
-    declared = unique_parameters(terms)
-    bounds, values, deviations = {}, [], []
+def _model_of(
+    own: _Draft, seed: FrictionModel, crane: Crane, parameters: dict[str, dict[str, ParameterEstimate]],
+    provenance: Mapping[str, Any],
+) -> Repair:  # fmt: skip
+    declared = unique_parameters(tuple(own.terms))
+    values, deviations, cut = [], [], []
     for p in declared:
         lower, upper = seed.bounds_of(p.name) if p.name in seed.parameter_names else (p.lower, p.upper)
-        value = float(np.clip(at[p.name], lower, upper))
+        value = float(np.clip(own.at[p.name], lower, upper))
+        if abs(value - own.at[p.name]) > 1e-9 * abs(p.typical):
+            cut.append(f"{p.name}: {CUT} {own.at[p.name]:.4g} {p.unit}")
         values.append(value)
-        deviations.append(max(std[p.name], 1e-12 * abs(p.typical)))
-        if p.name in seed.bounds:
-            bounds[p.name] = seed.bounds[p.name]
-    scale = np.sqrt(np.maximum(np.diag(known), 1e-300))
-    correlation = np.eye(len(declared))
-    index = [[p.name for p in declared].index(name) for name in names]
-    correlation[np.ix_(index, index)] = known / np.outer(scale, scale)
-    np.fill_diagonal(correlation, 1.0)
-    covariance = correlation * np.outer(deviations, deviations)
-    return FrictionModel(f"{seed.name}_repaired", terms, tuple(values), covariance, bounds, seed.constants, {})
+        deviations.append(max(own.std[p.name], 1e-12 * abs(p.typical)))
+    bounds = {name: each for name, each in seed.bounds.items() if name in {p.name for p in declared}}
+    model = FrictionModel(
+        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values), np.diag(deviations) ** 2,
+        bounds, seed.constants, {**seed.provenance, **provenance}, tuple(own.corrections), seed.crane or crane.name,
+    )  # fmt: skip
+    cut += [f"{key_of(each)}: {each.source.partition(', ')[2]}" for each in own.corrections if CUT in each.source]
+    return Repair(model, parameters, tuple(cut))
+
+
+def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], crane: Crane) -> Repair:
+    """The model fitted once more to these runs along the path by which its file will be read.
+
+    The draft comes from a linear problem around the seed: melted curves, pressures that depend on what was found and
+    shapes from a grid leave a second order, which a few Gauss-Newton steps on the model itself take away. Steps that do
+    not shrink the gap are not taken. The covariance is that of the last fit, wider where more than noise is left.
+    """
+    best = drafted
+    now = meet(runs, crane, best.model)
+    prior, loose = _prior(drafted, seed)
+    for _ in range(LIMITS.polishing):
+        step, covariance, deviations = _step(now, prior, loose)
+        tried = _stepped(best.model, step, covariance, deviations)
+        new = meet(runs, crane, tried)
+        if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
+            # no better, but the uncertainty is this fit's all the same
+            best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))
+            break
+        now, best = new, replace(best, model=tried)
+    return replace(best, parameters=_reported(best, seed))
+
+
+def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[str, float]]:
+    """What is known before the fit: the seed's parameters as the seed has them, what was found only by its size."""
+    model = drafted.model
+    known = seed.as_dict()
+    loose: dict[str, float] = {}
+    own = {name for found in drafted.parameters.values() for name in found}
+    values = {name: known.get(name, value) for name, value in model.as_dict().items()}
+    for name, std in zip(model.parameter_names, model.std, strict=True):
+        if name in own or name not in known:
+            loose[name] = LIMITS.loosened * std
+            values[name] = model.as_dict()[name]
+        else:
+            loose[name] = float(seed.std[seed.parameter_names.index(name)])
+    old = {key_of(each): each for each in seed.corrections}
+    for each in model.corrections:
+        before = old.get(key_of(each))
+        loose[key_of(each)] = LIMITS.loosened * (each.std or 0.0) if before is None else before.std or 0.0
+    return model.with_values(values), loose
+
+
+def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Change of parameters and corrections, the parameters' covariance and the corrections' deviations."""
+    base = base_of(prior, now.model, loose)
+    cross = CrossFit(build_problem(now.prepared, layout_of(base, (), now.prepared, prior)))
+    fitted = cross.explain(())
+    count, corrections = base.parameters, len(now.model.corrections)
+    keep = [*range(count), *range(len(base.names) - corrections, len(base.names))]
+    scale = base.scale[keep]
+    excess = max(fitted.train_loss / max(float(cross.problem.grams.count.sum()), 1.0), 1.0)
+    covariance = cross.covariance(fitted)[np.ix_(keep, keep)] * excess
+    # no parameter is less certain after the fit than before it
+    shrink = np.minimum(1.0, 1.0 / np.sqrt(np.diag(covariance)))
+    covariance = covariance * np.outer(shrink, shrink) * np.outer(scale, scale)
+    return fitted.beta[keep] * scale, covariance[:count, :count], np.sqrt(np.diag(covariance)[count:])
+
+
+def _stepped(model: FrictionModel, step: FloatArray, covariance: FloatArray, deviations: FloatArray) -> FrictionModel:
+    count = len(model.values)
+    bounds = np.array([model.bounds_of(name) for name in model.parameter_names]).reshape(-1, 2)
+    values = np.clip(np.array(model.values) + step[:count], bounds[:, 0], bounds[:, 1])
+    corrections = tuple(
+        _changed(each, each.value + change, float(std))
+        for each, change, std in zip(model.corrections, step[count:], deviations, strict=True)
+    )
+    least = np.diag(np.maximum(np.diag(covariance), [(1e-9 * abs(p.typical)) ** 2 for p in model.parameters]))
+    covariance = covariance - np.diag(np.diag(covariance)) + least
+    return replace(model.with_values(list(values)), covariance=covariance, corrections=corrections)
+
+
+def _misfit(given: Given) -> float:
+    """RMS of the gap over the moving samples of each run, in units that a run's own drive gives it."""
+    own = [float(np.mean((run.gap[run.used] / run.unit_torque) ** 2)) for run in given.prepared if run.used.any()]
+    return float(np.sqrt(np.mean(own))) if own else 0.0
+
+
+def _reported(best: Repair, seed: FrictionModel) -> dict[str, dict[str, ParameterEstimate]]:
+    """The estimates of new terms as the polished model has them."""
+    model = best.model
+    new = {
+        name: (value, float(std))
+        for name, value, std in zip(model.parameter_names, model.values, model.std, strict=True)
+        if name not in seed.parameter_names
+    }
+    return {
+        effect: {name: ParameterEstimate(*new[name], e.unit) if name in new else e for name, e in found.items()}
+        for effect, found in best.parameters.items()
+    }

@@ -6,31 +6,30 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
 from winch_friction.discrepancy.detectors import flow_balance, reversals
 from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.detectors.flow_balance import Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.selection import Selection, select
-from winch_friction.discrepancy.expansion import Expansion, estimated_loads, expand_around, expand_at_seed
+from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict, decide
-from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.winch import Crane
 
 
 @dataclass(frozen=True)
 class Search:
     """What the training runs gave."""
 
+    given: Given
     at_seed: Expansion
     expansion: Expansion
     cross: CrossFit
@@ -38,9 +37,9 @@ class Search:
     left: tuple[Dependence, ...]
     verdict: Verdict
     reversal: ReversalFinding | None
-    side: tuple[Effect, ...]
+    ripple: Ripple | None
+    leakage: Leakage | None
     untestable: tuple[Untestable, ...]
-    loads: Mapping[str, float]
 
     @property
     def explanation(self) -> Explanation:
@@ -48,15 +47,12 @@ class Search:
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
-def search_runs(
-    split: Split, crane: Crane, model: FrictionModel, options: GapOptions, rng: np.random.Generator
-) -> Search:
+def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.Generator) -> Search:
     """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs."""
-    loads = estimated_loads(split.runs, crane, model)
-    prepared = expand_at_seed(split.runs, crane, model, loads)
-    training = [(r, p) for r, p in zip(split.runs, prepared, strict=True) if r.name in split.train]
+    model, prepared = given.model, given.prepared
+    training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
-    ripple = angle.detect(own_runs, own_prepared, crane)
+    ripple = angle.detect(own_runs, own_prepared, given.crane, model)
     usable, blind = testable(options.candidates or all_candidates(options.effects_file), prepared, model)
     candidates = [each for each in usable if each.regime == MOVING]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
@@ -64,7 +60,7 @@ def search_runs(
     expansion, selection = at_seed, select(cross, rng, 1)
     for _ in range(LIMITS.most_expansions):
         candidates, usable = (_refined(each, selection.final) for each in (candidates, usable))
-        around = expand_around(split.runs, crane, model, loads, expansion, selection.final, candidates)
+        around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)
         cross = expansion.cross(split.train, selection.final.slots)
@@ -79,15 +75,12 @@ def search_runs(
     if verdict.kind != UNEXPLAINED:
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
-        reversal = reversals.detect(
-            split.runs, crane, model, loads, expansion, selection.final, usable, split.train, rng, cleaned
-        )
+        reversal = reversals.detect(given, expansion, selection.final, usable, split.train, rng, cleaned)
     leakage = flow_balance.detect(own_runs, own_prepared)
-    side = ([ripple.effect] if ripple else []) + ([leakage] if leakage else [])
-    if verdict.kind == NOTHING and (reversal or side):
+    if verdict.kind == NOTHING and (reversal or ripple or leakage):
         verdict = Verdict(MISSING)
     return Search(
-        at_seed, expansion, cross, selection, tuple(left), verdict, reversal, tuple(side), tuple(blind), loads
+        given, at_seed, expansion, cross, selection, tuple(left), verdict, reversal, ripple, leakage, tuple(blind)
     )
 
 

@@ -71,6 +71,9 @@ class Thresholds:
     # -- refinement
     most_expansions: int = 2  # preparations around what was found; a third changes nothing (campaign)
     shape_std: float = 0.1  # relative; a shape is chosen from a grid
+    polishing: int = 3  # Gauss-Newton steps on the repaired model itself; more change nothing
+    worth_polishing: float = 0.999  # of the misfit: a step that does not get below it is not taken
+    loosened: float = 10.0  # times its first deviation: what was just found is fitted freely
     # -- next experiment
     enough_separation: float = 3.0  # standard deviations that tell two effects apart
 

@@ -8,6 +8,7 @@ import numpy as np
 from winch_friction.discrepancy.answer import GapResult
 from winch_friction.discrepancy.assembly import assemble
 from winch_friction.discrepancy.engine.omnibus import dependences
+from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.holdout import lock_holdout
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
@@ -31,12 +32,12 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     runs = against_simulations(runs, model)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
-    search = search_runs(split, crane, model, options, rng)
-    result = assemble(split, crane, model, options, search, rng)
+    search = search_runs(split, meet(split.runs, crane, model), options, rng)
+    result = assemble(split, crane, options, search, rng)
     if len(split.train) < LIMITS.fewest_runs and result.effects and not _proved(result):
-        return assemble(split, crane, model, options, _withdrawn(search), rng)
+        return assemble(split, crane, options, _withdrawn(search), rng)
     if search.explanation.slots and _refuted(result):
-        return assemble(split, crane, model, options, _unexplained(search, rng), rng)
+        return assemble(split, crane, options, _unexplained(search, rng), rng)
     return result
 
 
@@ -66,7 +67,9 @@ def _withdrawn(search: Search) -> Search:
     """
     selection = replace(search.selection, final=search.selection.base, found=())
     refused = "what seemed to be missing did not shrink the gap on the locked part; bring more runs"
-    return replace(search, selection=selection, verdict=Verdict(NOTHING, refused), reversal=None, side=())
+    return replace(
+        search, selection=selection, verdict=Verdict(NOTHING, refused), reversal=None, ripple=None, leakage=None
+    )
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

@@ -8,18 +8,22 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.correction import Correction, declared_correction
 from winch_friction.physics.friction.term import Parameter, Term
+from winch_friction.physics.winch import Crane
 
 Values = Mapping[str, float]
 Columns = Callable[[PreparedRun, Values], FloatArray]
 Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
 # where an effect shows: in moving samples, just after reversals, over the shaft's angle, in the flow, or nowhere
+SOURCE, CUT = "winch-friction gap", "cut at its bound from"
 MOVING, REVERSALS, ANGLE, FLOW, NOWHERE = "moving", "just after reversals", "angle", "flow", "nowhere"
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
@@ -42,6 +46,30 @@ Shapes = Callable[[Sequence[PreparedRun]], list[Shape]]
 
 
 @dataclass(frozen=True)
+class ParameterEstimate:
+    """A parameter of an effect with its standard deviation, SI."""
+
+    value: float
+    std: float
+    unit: str
+
+
+Estimates = Mapping[str, ParameterEstimate]
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Whose transducers an effect may concern: the crane, and the motor groups that close the balance or do not."""
+
+    crane: Crane
+    balancing: tuple[str, ...]
+    passive: tuple[str, ...]
+
+
+Corrects = Callable[[Estimates, "Shape", Sides], list[Correction]]
+
+
+@dataclass(frozen=True)
 class Untestable:
     """An effect that the given channels cannot show, and the channel it would need."""
 
@@ -49,6 +77,14 @@ class Untestable:
     law: str
     needs: str
     because: str
+
+
+def correction(name: str, estimate: ParameterEstimate, factor: float = 1.0, **ties: Any) -> Correction:
+    """A correction of `factor` times an estimate, inside the declared bounds; `source` says where they cut it."""
+    declared, value = declared_correction(name).parameter, factor * estimate.value
+    inside = min(max(value, declared.lower), declared.upper)
+    source = SOURCE if inside == value else f"{SOURCE}, {CUT} {value:g} {declared.unit}"
+    return Correction(name, inside, abs(factor) * estimate.std, source=source, **ties)
 
 
 def single_shape(_: Sequence[PreparedRun]) -> list[Shape]:
@@ -92,6 +128,7 @@ class Candidate:
     reversal_gain: float | None = None  # share of the error just after reversals that names it there; None: never
     reversal_rival: bool = False  # may explain what happens there
     shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
+    corrects: Corrects | None = None  # how its estimates become corrections of the repaired model
     merge: Merge | None = None  # how its term melts with the same term of another shape; None: values add
 
     def most_in(self, model: FrictionModel) -> float:

@@ -10,9 +10,10 @@ from scipy.optimize import least_squares
 
 from winch_friction.discrepancy.candidates.candidate import REVERSALS, Candidate, Shape, Shapes, Values, label_of
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.balance import state_history
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import term_named
-from winch_friction.physics.friction.compiled import CompiledTerms, broadcast_columns, compiled
+from winch_friction.physics.friction.compiled import broadcast_columns, compiled
 from winch_friction.physics.friction.term import Term
 
 Grid = Mapping[str, tuple[float, ...]]
@@ -130,35 +131,3 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
         parts = functions.vector_gradient(run.point, theta, z)
     keep = [k for k, p in enumerate(functions.parameters) if not p.shape]
     return np.nan_to_num(broadcast_columns([parts[k] for k in keep], len(run.time)))
-
-
-def state_history(
-    functions: CompiledTerms, point: Sequence[Any], theta: Sequence[float], dt: float
-) -> tuple[FloatArray, ...]:
-    """States dz/dt = gain - decay z from rest, exact for signals frozen over a step; one array per state.
-
-    The equations of the shipped terms have rates that do not depend on the state, so one pass of a scalar recursion
-    over precomputed coefficients is all it takes.
-    """
-    if not functions.initial_states:
-        return ()
-    size = np.broadcast(*point).size
-    zeros = tuple(0.0 for _ in functions.initial_states)
-    rates = functions.vector_state_rates(tuple(point), tuple(theta), zeros)
-    out = []
-    for k, initial in enumerate(functions.initial_states):
-        gain, decay = (np.broadcast_to(rates[2 * k + j], size) for j in (0, 1))
-        exponent = decay * dt
-        keep = np.exp(-exponent)
-        weight = np.where(exponent > 1e-9, -np.expm1(-exponent) / np.maximum(exponent, 1e-9), 1.0)
-        out.append(_recursion(initial, keep.tolist(), (gain * dt * weight).tolist()))
-    return tuple(out)
-
-
-def _recursion(z: float, keep: list[float], add: list[float]) -> FloatArray:
-    history: list[float] = []
-    append = history.append
-    for a, b in zip(keep, add, strict=True):
-        z = a * z + b
-        append(z)
-    return np.array(history)

@@ -4,9 +4,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values, single_shape
+from winch_friction.discrepancy.candidates.candidate import (
+    Candidate,
+    Estimates,
+    Shape,
+    Sides,
+    Values,
+    correction,
+    single_shape,
+)
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import GRAVITY
 
@@ -14,9 +23,7 @@ ONE_DEPTH = -999.0  # a label among the layer numbers
 ONE_METRE = 1.0  # then e_R is the depth in m
 
 m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain")
-mu_w = Parameter(
-    "mu_w", "kg/m", 12.0, lower=-200.0, upper=200.0, doc="wire weight that the load signal does not contain"
-)
+mu_w = Parameter("mu_w", "kg/m", 12.0, lower=0.0, upper=200.0, doc="wire weight that the load signal does not contain")
 e_R = Parameter("e_R", "1", 0.06, lower=-0.5, upper=0.5, doc="relative error of the rope radius")
 dJ = Parameter("dJ", "kg*m^2", 0.2, lower=-5.0, upper=10.0, doc="missing inertia at the motor shaft")
 
@@ -79,6 +86,27 @@ def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
     return run.acceleration[:, None]
 
 
+def _to_mass(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
+    masses = [correction("tare_load", found["m_h"])] if shape.values["hook"] else []
+    return masses + ([correction("wire_weight", found["mu_w"])] if shape.values["wire"] else [])
+
+
+def _to_radius(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    """What the crane file's radius lacks, layer by layer."""
+    radii = dict(enumerate(sides.crane.drum.layer_radii, start=1))
+    kind = shape.values["layer"]
+    if kind == ONE_DEPTH:
+        return [correction("layer_radius", found["e_R"])]
+    if kind > 0.0:
+        radii = {int(kind): radii[int(kind)]}
+    depth = {k: -kind - k if kind < 0.0 else 1.0 for k in radii}
+    return [correction("layer_radius", found["e_R"], depth[k] * r, layers=(k,)) for k, r in radii.items() if depth[k]]
+
+
+def _to_inertia(found: Estimates, _: Shape, __: Sides) -> list[Correction]:
+    return [correction("inertia", found["dJ"])]
+
+
 def geometry_candidates() -> list[Candidate]:
     """Tare, rope radius, inertia."""
     return [
@@ -88,8 +116,9 @@ def geometry_candidates() -> list[Candidate]:
             (m_h, mu_w),
             tare_columns,
             _tare_shapes,
-            kind="geometry",
+            kind="load",
             needs=("hook_load",),
+            corrects=_to_mass,
         ),
         Candidate(
             "layer_radius",
@@ -100,8 +129,16 @@ def geometry_candidates() -> list[Candidate]:
             kind="geometry",
             needs=("hook_load",),
             plain=True,
+            corrects=_to_radius,
         ),
         Candidate(
-            "inertia_error", r"\Delta J\,\dot\omega", (dJ,), inertia_columns, single_shape, kind="inertia", plain=True
+            "inertia_error",
+            r"\Delta J\,\dot\omega",
+            (dJ,),
+            inertia_columns,
+            single_shape,
+            kind="inertia",
+            plain=True,
+            corrects=_to_inertia,
         ),
     ]

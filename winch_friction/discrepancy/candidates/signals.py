@@ -5,13 +5,25 @@ The true pressure stands for itself only through the base model's prediction; th
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Columns, Shape, Shapes, Values
+from winch_friction.discrepancy.candidates.candidate import (
+    Candidate,
+    Columns,
+    Corrects,
+    Estimates,
+    Shape,
+    Shapes,
+    Sides,
+    Values,
+    correction,
+)
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
@@ -141,14 +153,69 @@ def _no_passive_group(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return None if several else ("a passive motor group", "no run has one")
 
 
+def _groups(shape: Shape, sides: Sides) -> tuple[str, ...]:
+    """Names of the motor groups that a shape speaks of; none stands for all."""
+    return {ALL: (), BALANCING: sides.balancing, OTHER: sides.passive}[shape.values["groups"]]
+
+
+def _to(name: str, parameter: Parameter) -> Corrects:
+    def corrects(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+        return [correction(name, found[parameter.name], groups=_groups(shape, sides))]
+
+    return corrects
+
+
+def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    name = "pressure_scale_a" if shape.values["port_a"] else "pressure_scale"
+    return [correction(name, found[e_p.name], groups=_groups(shape, sides))]
+
+
+def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
+    """A speed that comes late, or pressures that do, which is a speed that comes early."""
+    if shape.values["late"] == SPEED:
+        return [correction("signal_delay", found[tau.name])]
+    return [correction("pressure_delay", found[tau.name], -1.0)]
+
+
+def _to_gas(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    ties: dict[str, Any] = {"groups": sides.passive, "time_constant": shape.values["tau"]}
+    return [
+        correction("accumulator_warmth", found[e_T.name], **ties),
+        correction("accumulator_heat", found[g_T.name], **ties),
+    ]
+
+
 def signal_candidates() -> list[Candidate]:
     """Offset, gain, delay, displacement feedback, and the passive side's gas."""
     scale, delay = r"e_p\sum_g n_g D_g\,\Delta p_g", r"\tau\,\dot M"
     return [
-        _in_groups("pressure_offset", r"\sum_g n_g D_g\,p_0", p_0, partial(group_columns, _offset), group_shapes),
-        _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes),
-        _in_groups("swivel_offset", r"D_0\sum_g n_g\,\Delta p_g", D_0, partial(group_columns, _swivel), group_shapes),
-        Candidate("signal_delay", delay, (tau,), delay_columns, _delay_shapes, kind="signal", reversal_rival=True),
+        _in_groups(
+            "pressure_offset",
+            r"\sum_g n_g D_g\,p_0",
+            p_0,
+            partial(group_columns, _offset),
+            group_shapes,
+            _to("pressure_offset", p_0),
+        ),
+        _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes, _to_scale),
+        _in_groups(
+            "swivel_offset",
+            r"D_0\sum_g n_g\,\Delta p_g",
+            D_0,
+            partial(group_columns, _swivel),
+            group_shapes,
+            _to("displacement_offset", D_0),
+        ),
+        Candidate(
+            "signal_delay",
+            delay,
+            (tau,),
+            delay_columns,
+            _delay_shapes,
+            kind="signal",
+            reversal_rival=True,
+            corrects=_to_delay,
+        ),
         # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
         # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
         Candidate(
@@ -161,9 +228,10 @@ def signal_candidates() -> list[Candidate]:
             hydraulic=True,
             continuous=("tau",),
             blind=_no_passive_group,
+            corrects=_to_gas,
         ),
     ]
 
 
-def _in_groups(name: str, law: str, parameter: Parameter, columns: Columns, shapes: Shapes) -> Candidate:
-    return Candidate(name, law, (parameter,), columns, shapes, kind="signal", hydraulic=True)
+def _in_groups(name: str, law: str, parameter: Parameter, columns: Columns, shapes: Shapes, to: Corrects) -> Candidate:
+    return Candidate(name, law, (parameter,), columns, shapes, kind="signal", hydraulic=True, corrects=to)

@@ -11,7 +11,8 @@ from functools import cache
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from winch_friction.discrepancy.answer import Effect, ParameterEstimate
+from winch_friction.discrepancy.answer import Effect
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.terms.effects_winch import walther
 from winch_friction.physics.signals import FloatArray, Run
@@ -27,7 +28,7 @@ SURE = 3.0  # standard deviations beyond the ordinary
 
 
 @dataclass(frozen=True)
-class LostSpeed:
+class Leakage:
     """Leakage at 40 degC in m^3/s/Pa per driving motor, with its standard deviation and what it explains.
 
     `before` and `after` are the rms of the lost speed over segments in rad/s, without and with the leakage, held out by
@@ -50,20 +51,27 @@ class LostSpeed:
         """More than ordinary leakage, surely, and it explains most of what is lost."""
         return self.leakage - SURE * self.std > ORDINARY and self.p_value < 0.01 and self.gain > 0.3
 
+    @property
+    def parameters(self) -> dict[str, ParameterEstimate]:
+        """The leakage as it is reported."""
+        return {"C_leak": ParameterEstimate(self.leakage, self.std, "m^3/s/Pa")}
 
-def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Effect | None:
+    @property
+    def effect(self) -> Effect:
+        """The leakage as an entry of the result."""
+        return Effect(
+            "slip_leakage", (), "per driving motor at 40 degC", r"\omega_{ref}-\omega = C\,\Delta p/(D\,\mu)",
+            self.parameters, self.p_value, self.gain, 1.0, "commanded against reached speed",
+        )  # fmt: skip
+
+
+def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
     """Speed lost in proportion to pressure over viscosity, where a command is logged."""
     found = lost_speed(runs, prepared)
-    if found is None or not found.found:
-        return None
-    return Effect(
-        "slip_leakage", (), "per driving motor at 40 degC", r"\omega_{ref}-\omega = C\,\Delta p/(D\,\mu)",
-        {"C_leak": ParameterEstimate(found.leakage, found.std, "m^3/s/Pa")}, found.p_value, found.gain, 1.0,
-        "commanded against reached speed",
-    )  # fmt: skip
+    return found if found is not None and found.found else None
 
 
-def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> LostSpeed | None:
+def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
     """Leakage from commanded and reached speed; None where no command is logged or nothing is steady."""
     pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
     tables = [_segments(run, p, k) for k, (run, p) in enumerate(pairs)]
@@ -73,7 +81,7 @@ def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> LostSpee
     lost, x, of_run = table[:, 0], table[:, 1:3], table[:, 3]
     coefficients, std = _fit(x, lost)
     before, after = _held_out(lost, x, of_run)
-    return LostSpeed(float(coefficients[1]), float(std), _p_value(before**2 - after**2), _rms(before), _rms(after))
+    return Leakage(float(coefficients[1]), float(std), _p_value(before**2 - after**2), _rms(before), _rms(after))
 
 
 def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:

@@ -14,11 +14,8 @@ from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.selection import candidate_trials
-from winch_friction.discrepancy.expansion import Expansion, expand_around
+from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.regressors import build_problem
-from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import Run
-from winch_friction.physics.winch import Crane
 
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
 FEWEST_BLOCKS = 200
@@ -37,9 +34,8 @@ class ReversalFinding:
 
 
 def detect(
-    runs: Sequence[Run], crane: Crane, seed: FrictionModel, loads: dict[str, float], expansion: Expansion,
-    explanation: Explanation, candidates: Sequence[Candidate], train: Sequence[str], rng: np.random.Generator,
-    cleaned: Callable[[Expansion], Expansion],
+    given: Given, expansion: Expansion, explanation: Explanation, candidates: Sequence[Candidate],
+    train: Sequence[str], rng: np.random.Generator, cleaned: Callable[[Expansion], Expansion],
 ) -> ReversalFinding | None:  # fmt: skip
     """The best effect just after reversals, if it is one that only shows there, surely and usefully.
 
@@ -49,7 +45,7 @@ def detect(
     tried = [each for each in candidates if each.reversal_rival or each.name in named]
     if "signal_delay" in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
         return None
-    turning = cleaned(expand_around(runs, crane, seed, loads, expansion, explanation, tried, turning=True))
+    turning = cleaned(expand_around(given, expansion, explanation, tried, turning=True))
     chosen = [run for run in turning.runs if run.name in train and run.used.any()]
     if sum(int(run.used.sum()) for run in chosen) < FEWEST_BLOCKS:
         return None

@@ -9,16 +9,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
+from scipy.optimize import minimize_scalar
 from scipy.stats import gamma
 
-from winch_friction.discrepancy.answer import Effect, ParameterEstimate
+from winch_friction.discrepancy.answer import Effect
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.grid import smooth
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.physics.friction import term_named
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 from winch_friction.physics.winch.torque_balance import run_drive_torque
 
+TERM = "torque_ripple"
 BINS_PER_REVOLUTION = 64
 LOWEST_ORDER, HIGHEST_ORDER = 0.1, 20.0  # periods per revolution of the motor shaft
 LONGEST_SPECTRUM = 1 << 18
@@ -31,6 +34,7 @@ IN_RUNS, IN_PARTS = 1e-10, 1e-3
 SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
+SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
 
 
@@ -61,21 +65,23 @@ class Ripple:
         }
         gain = 1.0 - 1.0 / np.sqrt(max(self.prominence, 1.0))
         return Effect(
-            "torque_ripple", (), f"{self.order:.3g} periods per revolution", term_named("torque_ripple").latex,
+            TERM, (), f"{self.order:.3g} periods per revolution", term_named(TERM).latex,
             parameters, self.p_value, float(gain), 1.0, "over the shaft's angle",
         )  # fmt: skip
 
 
-def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
-    """A ripple over the shaft's angle that is there for sure."""
-    found = angle_ripple(runs, prepared, crane)
+def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, model: FrictionModel) -> Ripple | None:
+    """A ripple over the shaft's angle that is there for sure, beside the one that the model has."""
+    found = angle_ripple(runs, prepared, crane, model)
     return found if found is not None and found.found else None
 
 
-def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane) -> Ripple | None:
+def angle_ripple(
+    runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, model: FrictionModel
+) -> Ripple | None:
     """The strongest line over the shaft's angle; None where no run moves or carries a load."""
     # a fast ripple is swallowed by the inertia before it reaches the oil, a slow one drowns in the differentiated speed
-    found = [_search(runs, prepared, crane, with_inertia) for with_inertia in (False, True)]
+    found = [_search(runs, prepared, crane, model, with_inertia) for with_inertia in (False, True)]
     lines = [line for line in found if line is not None]
     if not lines:
         return None
@@ -83,8 +89,10 @@ def angle_ripple(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Cr
     return replace(strongest, angle_is_measured=all("shaft_angle" in run for run in runs))
 
 
-def _search(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, with_inertia: bool) -> Ripple | None:
-    tables = [_moving(run, p, crane, with_inertia) for run, p in zip(runs, prepared, strict=True)]
+def _search(
+    runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, model: FrictionModel, with_inertia: bool
+) -> Ripple | None:
+    tables = [_moving(run, p, crane, model, with_inertia) for run, p in zip(runs, prepared, strict=True)]
     tables = [table for table in tables if len(table[0]) > 200 and np.any(table[2])]
     if not tables:
         return None
@@ -120,7 +128,7 @@ def _speed_classes(speed: FloatArray) -> list[np.ndarray]:
 
 
 def _moving(
-    run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool
+    run: Run, prepared: PreparedRun, crane: Crane, model: FrictionModel, with_inertia: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Angle, fast part of the drive torque, T_d/i and speed of the moving samples."""
     good = np.isfinite(run["time"])
@@ -130,6 +138,8 @@ def _moving(
     moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
     angle = np.interp(time, grid, prepared.angle)
     static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
+    if TERM in model.term_names:
+        torque = torque - np.interp(time, grid, model.subset((TERM,)).torque(prepared.point))
     if with_inertia:
         inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
         torque = torque - inertia * np.gradient(_speed(run, crane)[good], time)
@@ -195,3 +205,44 @@ def _waves(run: PreparedRun, ripple: Ripple) -> FloatArray:
 def without_ripple(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> PreparedRun:
     """The run with a ripple of these shares taken out of its gap."""
     return replace(run, gap=run.gap - _waves(run, ripple) @ wave)
+
+
+def in_phase(runs: Sequence[PreparedRun], ripple: Ripple) -> dict[str, ParameterEstimate] | None:
+    """Amplitudes a_r, b_r and order k_r of the one ripple that all runs share; None where each has a phase of its own.
+
+    Runs share a phase only if their angle is measured from one mark. The order is sharpened first: over a long run a
+    spectrum's step is many radians of phase.
+    """
+    chosen = [run for run in runs if "shaft_angle" in run.present and run.used.any() and np.any(run.drum_torque)]
+    if len(chosen) < len(runs) or not chosen:
+        return None
+    span = max(float(np.ptp(run.angle[run.used])) for run in chosen)
+    step = np.pi / span  # a quarter of a line's width
+    orders = ripple.order + step * np.arange(-8, 9) / 2.0
+    best = max(orders, key=lambda order: _shared(chosen, replace(ripple, order=float(order)))[0])
+    near = minimize_scalar(
+        lambda order: -_shared(chosen, replace(ripple, order=float(order)))[0],
+        bounds=(best - step, best + step), method="bounded",
+    )  # fmt: skip
+    sharp = replace(ripple, order=float(near.x))
+    explained, amplitude, std = _shared(chosen, sharp)
+    alone = sum(_explained(run, sharp, _wave_of(run, sharp)) for run in chosen)
+    if explained < SHARED_PHASE * alone:
+        return None
+    a, b = (ParameterEstimate(float(value), std, "1") for value in amplitude)
+    return {"a_r": a, "b_r": b, "k_r": ParameterEstimate(sharp.order, float(0.1 * step), "1")}
+
+
+def _shared(runs: Sequence[PreparedRun], ripple: Ripple) -> tuple[float, FloatArray, float]:
+    """What one wave for all runs explains (N m)^2, its shares of T_d/i, and their standard deviation."""
+    waves = [_waves(run, ripple)[run.used] for run in runs]
+    gaps = [run.gap[run.used] - run.gap[run.used].mean() for run in runs]
+    h, g = sum(w.T @ w for w in waves), sum(w.T @ y for w, y in zip(waves, gaps, strict=True))
+    beta = np.linalg.solve(h + 1e-9 * np.trace(h) * np.eye(2), g)
+    left = sum(float(((y - w @ beta) ** 2).sum()) for w, y in zip(waves, gaps, strict=True))
+    count = sum(len(y) for y in gaps)
+    return float(g @ beta), beta, float(np.sqrt(2.0 * left / count / np.trace(h)))
+
+
+def _explained(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> float:
+    return float((run.gap[run.used] - run.gap[run.used].mean()) @ (_waves(run, ripple)[run.used] @ wave))

@@ -4,7 +4,7 @@ Regressors are never built from the noisy pressure that is being explained: the 
 balance is predicted, only the passive group's is measured, smoothed.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -18,6 +18,7 @@ from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import Crane, operating_point
@@ -106,6 +107,7 @@ class Balance:
     predicted: FloatArray
     groups: Groups
     point: tuple[Any, ...]
+    states: tuple[FloatArray, ...]  # of the model's terms with memory
     jacobian: FloatArray
     unit_torque: float  # N m per bar of the balancing group; per N m of a motor for an electric drive
 
@@ -147,9 +149,10 @@ class Balancing:
     def _electric(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         total = self.crane.motor_total(())
         point = self._point(load, ())
-        predicted = frictionless + self.model.torque(point)
+        states = self._states(point, 0)
+        predicted = frictionless + self.model.torque(point, states)
         measured = self._smoothed(_filled(self._logged_torque))
-        return Balance(measured, predicted, (), point, self.model.jacobian(point), float(total))
+        return Balance(measured, predicted, (), point, states, self.model.jacobian(point, states), float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self._measured
@@ -158,10 +161,11 @@ class Balancing:
         for _ in range(FIXED_POINT_STEPS):
             groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque)
             point = self._point(load, groups)
-            predicted = frictionless + self.model.torque(point)
+            states = self._states(point, len(groups))
+            predicted = frictionless + self.model.torque(point, states)
         own = next(g for g in groups if g.balances)
         unit = BAR * own.count * float(np.median(own.displacement))
-        return Balance(measured, predicted, groups, point, self.model.jacobian(point), unit)
+        return Balance(measured, predicted, groups, point, states, self.model.jacobian(point, states), unit)
 
     @cached_property
     def _measured(self) -> tuple[Groups, FloatArray]:
@@ -181,6 +185,9 @@ class Balancing:
             return np.ones(len(self.grid.time), bool)
         return ~dilated(~np.isfinite(self._logged_torque), self.motion.window // 2)
 
+    def _states(self, point: tuple[Any, ...], groups: int) -> tuple[FloatArray, ...]:
+        return model_states(self.model, point, groups, self.grid.dt)
+
     def _smoothed(self, torque: FloatArray) -> FloatArray:
         """With the acceleration's kernel: what that takes out of one side must not stay in the other."""
         return smooth(torque, self.motion.window)
@@ -196,3 +203,40 @@ class Balancing:
             motor_total=np.full(size, float(self.crane.motor_total(self.run.groups))),
             time=self.grid.time + self.run.time[0], shaft_angle=motion.angle, **optional,
         )  # fmt: skip
+
+
+def model_states(model: FrictionModel, point: tuple[Any, ...], groups: int, dt: float) -> tuple[FloatArray, ...]:
+    """The states of a model's terms with memory along a record."""
+    return state_history(model.compile(groups), point, model.values, dt)
+
+
+def state_history(
+    functions: CompiledTerms, point: Sequence[Any], theta: Sequence[float], dt: float
+) -> tuple[FloatArray, ...]:
+    """States dz/dt = gain - decay z from rest, exact for signals frozen over a step; one array per state.
+
+    The equations of the shipped terms have rates that do not depend on the state, so one pass of a scalar recursion
+    over precomputed coefficients is all it takes.
+    """
+    if not functions.initial_states:
+        return ()
+    size = np.broadcast(*point).size
+    zeros = tuple(0.0 for _ in functions.initial_states)
+    rates = functions.vector_state_rates(tuple(point), tuple(theta), zeros)
+    out = []
+    for k, initial in enumerate(functions.initial_states):
+        gain, decay = (np.broadcast_to(rates[2 * k + j], size) for j in (0, 1))
+        exponent = decay * dt
+        keep = np.exp(-exponent)
+        weight = np.where(exponent > 1e-9, -np.expm1(-exponent) / np.maximum(exponent, 1e-9), 1.0)
+        out.append(_recursion(initial, keep.tolist(), (gain * dt * weight).tolist()))
+    return tuple(out)
+
+
+def _recursion(z: float, keep: list[float], add: list[float]) -> FloatArray:
+    history: list[float] = []
+    append = history.append
+    for a, b in zip(keep, add, strict=True):
+        z = a * z + b
+        append(z)
+    return np.array(history)

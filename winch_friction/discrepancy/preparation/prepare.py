@@ -1,7 +1,6 @@
 """From a measured run to what every candidate reads."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -60,7 +59,8 @@ def prepare(
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
         drum_torque=hanging.drum_torque,
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
-        load_friction=_load_friction(model, balance.point), predicted=balance.predicted, jacobian=balance.jacobian,
+        load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
+        corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.predicted - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
         constants=_constants(crane, model), unit_torque=balance.unit_torque,
         used=used & grid.valid & ~spikes,
@@ -109,9 +109,10 @@ def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:
     return np.asarray(grid.time > min(settling_time(*mode), MOST_SETTLING * grid.time[-1]))
 
 
-def _load_friction(model: FrictionModel, point: tuple[Any, ...]) -> FloatArray:
-    more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(point))
-    return (np.asarray(model.torque(more)) - np.asarray(model.torque(point))) / 0.01
+def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:
+    more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(balance.point))
+    heavier, as_it_is = (np.asarray(model.torque(x, balance.states)) for x in (more, balance.point))
+    return np.asarray((heavier - as_it_is) / 0.01)
 
 
 def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:

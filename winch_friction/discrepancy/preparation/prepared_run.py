@@ -48,6 +48,7 @@ class PreparedRun:
     predicted: FloatArray  # drive torque of the base model, N m
     from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane
     jacobian: FloatArray
+    corrections: FloatArray  # change of the gap in N m per unit of each correction of the model, (samples, corrections)
     gear_ratio: float
     inertia: float
     constants: tuple[tuple[str, float], ...]  # for the candidates' equations

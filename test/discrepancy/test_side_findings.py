@@ -19,7 +19,7 @@ from winch_friction.records.model_file import load_model
 def _prepared(flavour, *effects):
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     runs = [Run(f"run_{k}", columns) for k, columns in enumerate(make_dataset(17, flavour, effects))]
-    return runs, [prepare(run, crane, model) for run in runs], crane
+    return runs, [prepare(run, crane, model) for run in runs], crane, model
 
 
 @pytest.mark.parametrize("flavour", ["paper", "rough"])
@@ -31,7 +31,7 @@ def test_a_ripple_is_found_at_its_order_and_nothing_where_there_is_none(flavour)
 
 
 def test_lost_speed_gives_the_leakage():
-    runs, prepared, _ = _prepared("slow_log", ("slip_leakage", 1.0))
+    runs, prepared, *_ = _prepared("slow_log", ("slip_leakage", 1.0))
     found = lost_speed(runs, prepared)
     truth = 50 * 2 * np.pi / 60 * 215e-6 / (2 * np.pi) / 150e5  # 50 rpm at 150 bar and 40 degC
     assert found.found
@@ -40,20 +40,20 @@ def test_lost_speed_gives_the_leakage():
 
 
 def test_no_speed_is_lost_where_the_controller_knows_its_leakage():
-    runs, prepared, _ = _prepared("rough")
+    runs, prepared, *_ = _prepared("rough")
     found = lost_speed(runs, prepared)
     assert abs(found.leakage) < 0.05 * ORDINARY
     assert not found.found
 
 
 def test_without_a_command_there_is_nothing_to_compare():
-    runs, prepared, _ = _prepared("no_reference")
+    runs, prepared, *_ = _prepared("no_reference")
     assert lost_speed(runs, prepared) is None
 
 
 def test_warm_gas_leaves_the_trace_that_its_candidate_expects():
-    _, null, _ = _prepared("si_files")
-    _, warm, _ = _prepared("si_files", ("accumulator_thermal", 1.0))
+    _, null, *_ = _prepared("si_files")
+    _, warm, *_ = _prepared("si_files", ("accumulator_thermal", 1.0))
     candidate = next(each for each in all_candidates() if each.name == "accumulator_thermal")
     k = 8
     both = null[k].used & warm[k].used

@@ -57,7 +57,8 @@ class Side:
     after: FloatArray
     size_before: Size
     size_after: Size
-    noise_floor: float
+    noise_floor: float  # independent noise of the blocks
+    least_noise: float  # what no balance closes better than
     relative: tuple[float, float]  # residual against drive torque, before and after
 
 

@@ -1,22 +1,24 @@
 """From a search to the result: the repaired model, the proof on locked runs, regions and the next experiment."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import Effect, GapResult
+from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.omnibus import Dependence
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.discrepancy.proof import both_sides, read_back
+from winch_friction.discrepancy.proof import compare, read_back
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -25,22 +27,37 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
 
-def assemble(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> GapResult:
-    """The result that a search stands by, with the proof of the file that it writes."""
-    cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
-    explanation = search.explanation
-    found = selection.found if explanation is selection.final else ()
-    repaired = draft(search, explanation, _provenance(split.train, verdict, options))
+@dataclass(frozen=True)
+class Trial:
+    """A repaired model as its file is read, and what it leaves of the gap."""
+
+    search: Search
+    repaired: Repair
+    train: Side
+    holdout: Side
+
+
+def tried(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
+    """The file that a search would write, put to all runs."""
+    repaired = draft(search, search.explanation, _provenance(split.train, search.verdict, options))
     training = [run for run in split.runs if run.name in split.train]
-    repaired = polished(repaired, given.model, training, crane)
-    train, holdout = both_sides(given, split.runs, crane, read_back(repaired.model), split.train, split.holdout, rng)
+    repaired = polished(repaired, search.given.model, training, crane)
+    after = meet(split.runs, crane, read_back(repaired.model))
+    sides = (compare(search.given, after, names, rng) for names in (split.train, split.holdout))
+    return Trial(search, repaired, *sides)
+
+
+def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
+    """The result that a trial stands by."""
+    search, repaired = trial.search, trial.repaired
+    cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
+    found = selection.found if search.explanation is selection.final else ()
     experiment = _experiment(given.crane, search, options) if options.plan else None
-    unexplained = verdict.kind == UNEXPLAINED
     return GapResult(
         verdict=verdict.kind, refused=verdict.refused, effects=_effects(search, found, repaired),
-        regions=tuple(find_regions(train.blocks, train.before, READ_AS)),
-        unit=crane.drive.unit, train=train, holdout=holdout,
-        depends=_named(search.left) if unexplained else (),
+        regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
+        unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
+        depends=_named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
         untestable=search.untestable, model=repaired.model, seed_model=given.model,
         next_experiment=experiment.content() if experiment else None,

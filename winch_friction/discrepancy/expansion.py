@@ -22,6 +22,7 @@ from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
 
 LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then
+LOAD_CONVERGED = 1e-5  # relative; a tenth of what any load cell tells
 NAN = float("nan")
 
 
@@ -160,9 +161,13 @@ def _weighed(run: Run) -> bool:
 def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
     load = 0.0
     for _ in range(LOAD_ROUNDS):
-        prepared = prepare(run, crane, model, load)
+        # a swinging load weighs the same in the mean, so its wire is not looked into
+        prepared = prepare(run, crane, model, load, mode=(0.0, 0.0), spikes=np.zeros(1, bool))
         gap = prepared.gap[prepared.used] / (prepared.radius[prepared.used] / crane.gear_ratio * GRAVITY)
         direction = prepared.direction[prepared.used]
         sides = [np.median(gap[direction == s]) for s in (-1.0, 1.0) if (direction == s).any()]
-        load = max(load + float(np.mean(sides)), 0.0)
+        change = float(np.mean(sides)) if sides else 0.0
+        load = max(load + change, 0.0)
+        if abs(change) < LOAD_CONVERGED * load:
+            break
     return load

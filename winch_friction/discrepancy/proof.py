@@ -5,20 +5,20 @@ fitted. What is claimed is what a user of the file gets.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from winch_friction.discrepancy.answer import Side, relative_error
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks, segment_length
-from winch_friction.discrepancy.engine.interval import rms_with_interval
+from winch_friction.discrepancy.engine.interval import chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.noise import noise_of_run
-from winch_friction.discrepancy.expansion import Given, meet
+from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.regressors import least_noise_of
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import Run
-from winch_friction.physics.winch import Crane
 from winch_friction.records.model_file import model_from_text, model_to_text
 
 
@@ -27,14 +27,66 @@ def read_back(model: FrictionModel) -> FrictionModel:
     return model_from_text(model_to_text(model), f"repaired model of '{model.name}'")
 
 
-def both_sides(
-    given: Given, runs: Sequence[Run], crane: Crane, repaired: FrictionModel, train: Sequence[str],
-    holdout: Sequence[str], rng: np.random.Generator,
-) -> tuple[Side, Side]:  # fmt: skip
-    """Training and locked runs before and after the repair; `runs` as they were measured, `repaired` as read back."""
-    after = meet(runs, crane, repaired)
-    train_side = compare(given, after, train, rng)
-    return train_side, compare(given, after, holdout, rng)
+@dataclass(frozen=True)
+class Proof:
+    """What the locked runs say of a repaired file; `why` is empty where they bear it out."""
+
+    why: str = ""
+
+    @property
+    def holds(self) -> bool:
+        """Whether the names stand."""
+        return not self.why
+
+
+def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> Proof:
+    """Names stand if the locked gap falls below the interval that it had, falls by more than a mere refit of the base
+    takes off, and no locked run gets significantly worse. Both sides start from the same given model.
+    """
+    before, after = repaired.size_before, repaired.size_after
+    if not after.value < before.interval[0]:
+        return Proof(f"{named}: the locked gap of {before.value:.3g} does not fall surely (to {after.value:.3g})")
+    own = repaired.blocks
+    chance = chance_of_no_gain(*_common(refit, repaired), rng)
+    if chance > LIMITS.proof_p:
+        return Proof(f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})")
+    worse = worse_runs(repaired, rng)
+    if worse:
+        return Proof(f"{named}: the gap of {', '.join(worse)} grows")
+    return Proof() if len(own.y) else Proof(f"{named}: the locked runs have no usable block")
+
+
+def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
+    """Locked runs whose gap grows significantly, beyond what matters to anybody."""
+    found = []
+    least = LIMITS.worse_p / max(len(side.runs), 1)
+    for k, run in enumerate(side.runs):
+        own = side.blocks.run == k
+        before, after = side.before[own], side.after[own]
+        if not own.any() or rms(after) <= LIMITS.worse * np.hypot(rms(before), side.least_noise):
+            continue
+        if chance_of_no_gain(after, before, side.blocks.segment[own], side.blocks.run[own], rng) <= least:
+            found.append(run.name)
+    return tuple(found)
+
+
+def at_the_floor(side: Side) -> bool:
+    """Whether what is left is noise and what no balance of a winch closes, within its interval."""
+    return side.size_after.interval[0] <= LIMITS.at_the_floor * float(np.hypot(side.noise_floor, side.least_noise))
+
+
+def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.ndarray, np.ndarray]:
+    """What either file leaves, over the blocks that both can use."""
+    keys = [list(zip(s.blocks.run.tolist(), s.blocks.position.tolist(), strict=True)) for s in (refit, repaired)]
+    places = {key: k for k, key in enumerate(keys[0])}
+    pairs = np.array([(places[key], k) for k, key in enumerate(keys[1]) if key in places], int).reshape(-1, 2)
+    own = repaired.blocks
+    return refit.after[pairs[:, 0]], repaired.after[pairs[:, 1]], own.segment[pairs[:, 1]], own.run[pairs[:, 1]]
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
 
 
 def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Generator) -> Side:
@@ -50,8 +102,9 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     torque = np.array([_drive(run) for run in runs])[blocks.run]
     return Side(
         runs=runs, blocks=blocks, before=y_before, after=y_after,
-        size_before=rms_with_interval(y_before, blocks.segment, rng),
-        size_after=rms_with_interval(y_after, blocks.segment, rng), noise_floor=float(floor),
+        size_before=rms_with_interval(y_before, blocks.segment, blocks.run, rng),
+        size_after=rms_with_interval(y_after, blocks.segment, blocks.run, rng), noise_floor=float(floor),
+        least_noise=max((least_noise_of(run) for run in runs), default=0.0),
         relative=(relative_error(y_before, torque), relative_error(y_after, torque)),
     )  # fmt: skip
 

@@ -112,7 +112,7 @@ def build_problem(
     """The regression over these runs' usable samples, in the gap's unit."""
     length = segment_length(sum(run.time[-1] for run in runs))
     tables = [_blocks(run, layout, size, length) for run in runs]
-    return problem_of(tables, layout, np.array([_least_noise(run) for run in runs]), known)
+    return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known)
 
 
 def _blocks(run: PreparedRun, layout: Layout, size: int, length: float) -> RunBlocks:
@@ -136,7 +136,7 @@ def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
     return RunBlocks(y, x, table.segment, table.position, table.features, table.direction)
 
 
-def _least_noise(run: PreparedRun) -> float:
+def least_noise_of(run: PreparedRun) -> float:
     """What no balance of a winch closes better than, however quiet its sensors, bar (N m for an electric drive)."""
     if run.groups:
         return LIMITS.least_noise

@@ -115,7 +115,11 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         found = _estimates(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
         _add(own, finding.slot, found, sides)
-    if search.ripple is not None and (wave := angle.in_phase(_training(search), search.ripple)) is not None:
+    if (
+        search.ripple
+        and angle.TERM not in seed.term_names
+        and (wave := _common_wave(search, search.ripple)) is not None
+    ):
         own.add_term(None, term_named(angle.TERM), wave)
     if search.leakage is not None:
         rate = search.leakage
@@ -123,9 +127,11 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     return _model_of(own, seed, search.given.crane, parameters, provenance)
 
 
-def _training(search: Search) -> list[Any]:
-    names = {run.name for run in search.expansion.runs}
-    return [run for run in search.at_seed.runs if run.name in names]
+def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:
+    pairs = list(zip(search.given.runs, search.expansion.runs, strict=True))
+    # what has been found so far is not in the expansion's prediction; it is slow against a ripple
+    training = [(run, p) for run, p in pairs if p.name in search.train]
+    return angle.in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
 
 
 def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides) -> None:

@@ -30,6 +30,7 @@ class Search:
     """What the training runs gave."""
 
     given: Given
+    train: tuple[str, ...]  # names of the runs that it learnt from
     at_seed: Expansion
     expansion: Expansion
     cross: CrossFit
@@ -80,7 +81,18 @@ def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.
     if verdict.kind == NOTHING and (reversal or ripple or leakage):
         verdict = Verdict(MISSING)
     return Search(
-        given, at_seed, expansion, cross, selection, tuple(left), verdict, reversal, ripple, leakage, tuple(blind)
+        given,
+        split.train,
+        at_seed,
+        expansion,
+        cross,
+        selection,
+        tuple(left),
+        verdict,
+        reversal,
+        ripple,
+        leakage,
+        tuple(blind),
     )
 
 

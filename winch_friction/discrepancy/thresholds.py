@@ -61,9 +61,14 @@ class Thresholds:
     fewest_to_lock_whole: int = 4  # runs; with fewer, the end of every run is locked instead
     guard_time: float = 0.5  # s between the two parts of a divided run
     bootstrap_draws: int = 1000  # of segments, for an interval
-    bootstrap_quantiles: tuple[float, float] = (0.025, 0.975)  # a 95 % interval
-    most_kept_noise: float = 3.0  # times the noise that locked runs may keep ...
-    most_kept: float = 0.05  # ... unless it is less than this share of the excess that they had
+    runs_to_redraw: int = 8  # locked runs, from which on runs are redrawn and not only their segments
+    interval: tuple[float, float] = (0.025, 0.975)  # a 95 % interval
+    proof_p: float = 0.025  # chance that the named effects gain nothing on the locked runs beside a mere refit
+    worse_p: float = 0.005  # chance that a locked run which seems worse is not, shared among the runs
+    worse: float = 1.1  # times its former gap: a run that grows by less is as before
+    at_the_floor: float = (
+        1.5  # times the floor (noise and what no balance closes) that nothing missing may leave (campaign)
+    )
     # -- regions
     most_regions: int = 3
     smallest_region: float = 0.03  # of the blocks

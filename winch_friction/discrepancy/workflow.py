@@ -6,15 +6,17 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.discrepancy.answer import GapResult
-from winch_friction.discrepancy.assembly import assemble
+from winch_friction.discrepancy.assembly import Trial, assemble, tried
+from winch_friction.discrepancy.detectors import flow_balance
+from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.holdout import lock_holdout
+from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
+from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
 from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -33,43 +35,60 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
     search = search_runs(split, meet(split.runs, crane, model), options, rng)
-    result = assemble(split, crane, options, search, rng)
-    if len(split.train) < LIMITS.fewest_runs and result.effects and not _proved(result):
-        return assemble(split, crane, options, _withdrawn(search), rng)
-    if search.explanation.slots and _refuted(result):
-        return assemble(split, crane, options, _unexplained(search, rng), rng)
-    return result
+    return assemble(split, options, _proven(split, crane, options, _replicated(search, split, rng), rng))
 
 
-def _proved(result: GapResult) -> bool:
-    """Whether the locked runs' gap came down below the interval that it had before."""
-    return result.holdout.size_after.value < result.holdout.size_before.interval[0]
+def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Search:
+    """The search with only those findings beside the moving samples that show in the locked runs as well."""
+    given = search.given
+    locked = [(run, p) for run, p in zip(given.runs, given.prepared, strict=True) if run.name in split.holdout]
+    runs, prepared = [run for run, _ in locked], [p for _, p in locked]
+    ripple, leakage, reversal = search.ripple, search.leakage, search.reversal
+    if ripple and not angle.holds_on(ripple, runs, prepared, given.crane, given.model):
+        ripple = None
+    if leakage and not flow_balance.holds_on(leakage, runs, prepared):
+        leakage = None
+    if reversal and not reversal.holds_on(split.holdout, rng):
+        reversal = None
+    return replace(search, ripple=ripple, leakage=leakage, reversal=reversal)
 
 
-def _refuted(result: GapResult) -> bool:
-    """Whether the locked runs keep far more than their noise, and not only because there was so much before."""
-    before, after, noise = result.holdout.size_before.value, result.holdout.size_after.value, result.holdout.noise_floor
-    kept = (after**2 - noise**2) / max(before**2 - noise**2, 1e-9)
-    return after > LIMITS.most_kept_noise * noise and kept > LIMITS.most_kept
+def _proven(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
+    """The trial that the locked runs bear out: with all names, with those beside the moving samples, or with none."""
+    refit = tried(split, crane, options, _nameless(search), rng)
+    why = search.verdict.refused
+    if search.explanation.slots or search.reversal:
+        full = tried(split, crane, options, search, rng)
+        names = ", ".join([*search.explanation.names, *([search.reversal.slot.name] if search.reversal else [])])
+        # just after reversals a gap of its own has shrunk already; the moving samples need only stay as they are
+        proof = prove(names, refit.holdout, full.holdout, rng) if search.explanation.slots else None
+        why = proof.why if proof else "".join(worse_runs(full.holdout, rng))
+        if not why:
+            return full
+    beside = replace(_nameless(search), ripple=search.ripple, leakage=search.leakage)
+    if search.ripple or search.leakage:
+        trial = tried(split, crane, options, beside, rng)
+        if not worse_runs(trial.holdout, rng):
+            refit = trial
+    return replace(refit, search=_judged(refit, why, rng))
 
 
-def _unexplained(search: Search, rng: np.random.Generator) -> Search:
-    """The search with what it found refused."""
-    names = ", ".join(found.slot.name for found in search.selection.found)
-    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
-    verdict = Verdict(UNEXPLAINED, f"{names} does not hold on the locked runs")
-    return replace(search, verdict=verdict, left=tuple(left), reversal=None)
-
-
-def _withdrawn(search: Search) -> Search:
-    """The search without its findings: with a few runs the folds are stretches of one operating point, in which small
-    mismatches repeat themselves, so that only the locked part can tell an effect from them.
-    """
+def _nameless(search: Search) -> Search:
+    """The search without any name."""
     selection = replace(search.selection, final=search.selection.base, found=())
-    refused = "what seemed to be missing did not shrink the gap on the locked part; bring more runs"
-    return replace(
-        search, selection=selection, verdict=Verdict(NOTHING, refused), reversal=None, ripple=None, leakage=None
-    )
+    return replace(search, selection=selection, reversal=None, ripple=None, leakage=None)
+
+
+def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
+    """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise."""
+    search = trial.search
+    if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout):
+        found = search.ripple or search.leakage
+        return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
+    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
+    after, noise = trial.holdout.size_after.value, trial.holdout.noise_floor
+    kept = f"the locked runs keep {after:.3g} where their noise is {noise:.3g}"
+    return replace(search, verdict=Verdict(UNEXPLAINED, "; ".join(filter(None, (why, kept)))), left=tuple(left))
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

@@ -14,6 +14,7 @@ from scipy.ndimage import minimum_filter1d
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.terms.effects_winch import walther
 from winch_friction.physics.signals import FloatArray, Run
 
@@ -40,6 +41,8 @@ class Leakage:
     p_value: float
     before: float
     after: float
+    scale: float = 0.0  # error of the speed's scale, that goes with it
+    scale_alone: float = 0.0  # without it
 
     @property
     def gain(self) -> float:
@@ -73,15 +76,33 @@ def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | No
 
 def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
     """Leakage from commanded and reached speed; None where no command is logged or nothing is steady."""
-    pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
-    tables = [_segments(run, p, k) for k, (run, p) in enumerate(pairs)]
-    table = np.concatenate(tables) if tables else np.empty((0, 4))
+    table = _tables(runs, prepared)
     if len(table) < FEWEST_SEGMENTS or len(np.unique(table[:, 3])) < 3:
         return None
     lost, x, of_run = table[:, 0], table[:, 1:3], table[:, 3]
     coefficients, std = _fit(x, lost)
     before, after = _held_out(lost, x, of_run)
-    return Leakage(float(coefficients[1]), float(std), _p_value(before**2 - after**2), _rms(before), _rms(after))
+    alone = float((x[:, 0] @ lost) / max((x[:, 0] ** 2).sum(), 1e-300))
+    return Leakage(
+        float(coefficients[1]), float(std), _p_value(before**2 - after**2), _rms(before), _rms(after),
+        float(coefficients[0]), alone,
+    )  # fmt: skip
+
+
+def holds_on(found: Leakage, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
+    """Whether the leakage also explains the speed that other runs lose."""
+    table = _tables(runs, prepared)
+    if not len(table):
+        return False
+    lost, speed, rate = table[:, 0], table[:, 1], table[:, 2]
+    before = lost - found.scale_alone * speed
+    after = lost - found.scale * speed - found.leakage * rate
+    return _p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
+
+
+def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FloatArray:
+    pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
+    return np.concatenate([np.empty((0, 4)), *(_segments(run, p, k) for k, (run, p) in enumerate(pairs))])
 
 
 def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:

@@ -13,9 +13,11 @@ import numpy as np
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.discrepancy.engine.interval import chance_of_no_gain
 from winch_friction.discrepancy.engine.selection import candidate_trials
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.regressors import build_problem
+from winch_friction.discrepancy.thresholds import LIMITS
 
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
 FEWEST_BLOCKS = 200
@@ -30,7 +32,20 @@ class ReversalFinding:
     gain: float
     cross: CrossFit
     fitted: Explanation
+    base: Explanation  # the same without it
     expansion: Expansion
+
+    def holds_on(self, names: Sequence[str], rng: np.random.Generator) -> bool:
+        """Whether it also shrinks the gap just after reversals of runs that it was not fitted to."""
+        chosen = [run for run in self.expansion.runs if run.name in names and run.used.any()]
+        if not chosen:
+            return False
+        blocks = build_problem(chosen, self.expansion.layout, 1).blocks
+        columns = self.cross.problem.columns
+        without, with_it = (
+            blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta for each in (self.base, self.fitted)
+        )
+        return chance_of_no_gain(without, with_it, blocks.segment, blocks.run, rng) <= LIMITS.proof_p
 
 
 def detect(
@@ -64,4 +79,4 @@ def detect(
     least = 1.0 if candidate.reversal_gain is None else candidate.reversal_gain
     if p[best] > SIGNIFICANCE_AFTER_REVERSALS or gain < least:
         return None
-    return ReversalFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], turning)
+    return ReversalFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], base, turning)

@@ -16,6 +16,7 @@ from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.grid import smooth
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -34,6 +35,8 @@ IN_RUNS, IN_PARTS = 1e-10, 1e-3
 SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
+SAME_ORDER = 0.05  # relative; a spectrum over short runs has no finer lines
+LEFT_OF_KNOWN = 0.4  # share of the known amplitude that its estimate may leave
 SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
 SMALLEST = 2e-4  # share of T_d/i; a smaller ripple is of no use to anybody
 
@@ -49,6 +52,7 @@ class Ripple:
     p_value: float
     prominence: float  # of the line's power over its neighbours'
     angle_is_measured: bool = True
+    with_inertia: bool = False  # seen once the shaft's own inertia was taken out
 
     @property
     def found(self) -> bool:
@@ -73,7 +77,39 @@ class Ripple:
 def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, model: FrictionModel) -> Ripple | None:
     """A ripple over the shaft's angle that is there for sure, beside the one that the model has."""
     found = angle_ripple(runs, prepared, crane, model)
-    return found if found is not None and found.found else None
+    return found if found is not None and found.found and not _known(found, model) else None
+
+
+def holds_on(
+    found: Ripple, runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, model: FrictionModel
+) -> bool:
+    """Whether the same line stands out in runs that it was not found in, whatever its phase there."""
+    tables = [_moving(run, p, crane, model, found.with_inertia) for run, p in zip(runs, prepared, strict=True)]
+    tables = [table for table in tables if len(table[0]) > 200 and np.any(table[2])]
+    if not tables:
+        return False
+    size, orders, use = _lines(tables)
+    power = np.sum([_prominence(angle, torque * static, size, use) for angle, torque, static, _ in tables], axis=0)
+    near = np.abs(orders[use] - found.order) < SAME_ORDER * max(found.order, LOWEST_ORDER)
+    chance = gamma.sf(power[near].max(initial=0.0), len(tables)) * max(int(near.sum()), 1)
+    return bool(chance <= LIMITS.proof_p)
+
+
+def _lines(tables: Sequence[tuple[FloatArray, ...]]) -> tuple[int, FloatArray, np.ndarray]:
+    """Length of the spectrum, the orders of its lines and which of them are looked at."""
+    bins = max(float(np.ptp(angle)) for angle, *_ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
+    size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
+    orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
+    return size, orders, (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
+
+
+def _known(found: Ripple, model: FrictionModel) -> bool:
+    """Whether it is what the model's own ripple leaves: its estimate is never perfect, and a line stands out by far."""
+    if TERM not in model.term_names:
+        return False
+    size = float(np.hypot(model.value("a_r"), model.value("b_r")))
+    near = abs(found.order - model.value("k_r")) < SAME_ORDER * max(model.value("k_r"), LOWEST_ORDER)
+    return near and found.amplitude < LEFT_OF_KNOWN * size
 
 
 def angle_ripple(
@@ -81,8 +117,10 @@ def angle_ripple(
 ) -> Ripple | None:
     """The strongest line over the shaft's angle; None where no run moves or carries a load."""
     # a fast ripple is swallowed by the inertia before it reaches the oil, a slow one drowns in the differentiated speed
-    found = [_search(runs, prepared, crane, model, with_inertia) for with_inertia in (False, True)]
-    lines = [line for line in found if line is not None]
+    # what of a known ripple the inertia swallows is known only where the inertia's torque is taken out
+    ways = (True,) if TERM in model.term_names else (False, True)
+    found = [(_search(runs, prepared, crane, model, inertia), inertia) for inertia in ways]
+    lines = [replace(line, with_inertia=inertia) for line, inertia in found if line is not None]
     if not lines:
         return None
     strongest = min(lines, key=lambda line: (line.p_value, -line.prominence))
@@ -96,10 +134,7 @@ def _search(
     tables = [table for table in tables if len(table[0]) > 200 and np.any(table[2])]
     if not tables:
         return None
-    bins = max(float(np.ptp(angle)) for angle, *_ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
-    size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
-    orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
-    use = (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
+    size, orders, use = _lines(tables)
     whole, power, parts = np.zeros(use.sum()), np.zeros(use.sum()), 0
     for angle, torque, static, speed in tables:
         weighted = torque * static
@@ -207,42 +242,54 @@ def without_ripple(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> Prepar
     return replace(run, gap=run.gap - _waves(run, ripple) @ wave)
 
 
-def in_phase(runs: Sequence[PreparedRun], ripple: Ripple) -> dict[str, ParameterEstimate] | None:
+def in_phase(
+    runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, ripple: Ripple
+) -> dict[str, ParameterEstimate] | None:
     """Amplitudes a_r, b_r and order k_r of the one ripple that all runs share; None where each has a phase of its own.
 
     Runs share a phase only if their angle is measured from one mark. The order is sharpened first: over a long run a
     spectrum's step is many radians of phase.
     """
-    chosen = [run for run in runs if "shaft_angle" in run.present and run.used.any() and np.any(run.drum_torque)]
-    if len(chosen) < len(runs) or not chosen:
+    pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if p.used.any() and np.any(p.drum_torque)]
+    if not pairs or any("shaft_angle" not in p.present for _, p in pairs):
         return None
-    span = max(float(np.ptp(run.angle[run.used])) for run in chosen)
-    step = np.pi / span  # a quarter of a line's width
+    tables = [_unsmoothed(run, p, crane, ripple.with_inertia) for run, p in pairs]
+    step = np.pi / max(float(np.ptp(angle)) for angle, *_ in tables)  # a quarter of a line's width
     orders = ripple.order + step * np.arange(-8, 9) / 2.0
-    best = max(orders, key=lambda order: _shared(chosen, replace(ripple, order=float(order)))[0])
-    near = minimize_scalar(
-        lambda order: -_shared(chosen, replace(ripple, order=float(order)))[0],
-        bounds=(best - step, best + step), method="bounded",
-    )  # fmt: skip
-    sharp = replace(ripple, order=float(near.x))
-    explained, amplitude, std = _shared(chosen, sharp)
-    alone = sum(_explained(run, sharp, _wave_of(run, sharp)) for run in chosen)
-    if explained < SHARED_PHASE * alone:
+    best = max(orders, key=lambda order: _shared(tables, order)[0])
+    near = minimize_scalar(lambda k: -_shared(tables, k)[0], bounds=(best - step, best + step), method="bounded")
+    order = float(near.x)
+    explained, amplitude, std = _shared(tables, order)
+    if explained < SHARED_PHASE * sum(_shared([table], order)[0] for table in tables):
         return None
     a, b = (ParameterEstimate(float(value), std, "1") for value in amplitude)
-    return {"a_r": a, "b_r": b, "k_r": ParameterEstimate(sharp.order, float(0.1 * step), "1")}
+    return {"a_r": a, "b_r": b, "k_r": ParameterEstimate(order, float(0.1 * step), "1")}
 
 
-def _shared(runs: Sequence[PreparedRun], ripple: Ripple) -> tuple[float, FloatArray, float]:
-    """What one wave for all runs explains (N m)^2, its shares of T_d/i, and their standard deviation."""
-    waves = [_waves(run, ripple)[run.used] for run in runs]
-    gaps = [run.gap[run.used] - run.gap[run.used].mean() for run in runs]
-    h, g = sum(w.T @ w for w in waves), sum(w.T @ y for w, y in zip(waves, gaps, strict=True))
+Table = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def _unsmoothed(run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool) -> Table:
+    """Angle, gap before any smoothing and T_d/i of the moving samples: a smoothed gap has lost part of a ripple."""
+    grid = prepared.time + prepared.start
+    good = np.isfinite(run.time)
+    time = run.time[good]
+    gap = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good]) - np.interp(time, grid, prepared.predicted)
+    if with_inertia:
+        inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
+        fast = np.gradient(_speed(run, crane)[good], time) - np.interp(time, grid, prepared.acceleration)
+        gap = gap - inertia * fast
+    moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
+    static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
+    return np.interp(time, grid, prepared.angle)[moving], gap[moving] - gap[moving].mean(), static[moving]
+
+
+def _shared(tables: Sequence[Table], order: float) -> tuple[float, FloatArray, float]:
+    """What one wave for all of them explains (N m)^2, its shares of T_d/i, and their standard deviation."""
+    waves = [s[:, None] * np.column_stack([np.sin(order * x), np.cos(order * x)]) for x, _, s in tables]
+    h = np.sum([w.T @ w for w in waves], axis=0)
+    g = np.sum([w.T @ gap for w, (_, gap, _) in zip(waves, tables, strict=True)], axis=0)
     beta = np.linalg.solve(h + 1e-9 * np.trace(h) * np.eye(2), g)
-    left = sum(float(((y - w @ beta) ** 2).sum()) for w, y in zip(waves, gaps, strict=True))
-    count = sum(len(y) for y in gaps)
+    left = sum(float(((gap - w @ beta) ** 2).sum()) for w, (_, gap, _) in zip(waves, tables, strict=True))
+    count = sum(len(gap) for _, gap, _ in tables)
     return float(g @ beta), beta, float(np.sqrt(2.0 * left / count / np.trace(h)))
-
-
-def _explained(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> float:
-    return float((run.gap[run.used] - run.gap[run.used].mean()) @ (_waves(run, ripple)[run.used] @ wave))

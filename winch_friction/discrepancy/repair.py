@@ -48,6 +48,7 @@ class _Draft:
     at: dict[str, float]
     std: dict[str, float]
     corrections: list[Correction]
+    bare: dict[str, tuple[float, float]]  # bounds of what a bare model lacks, of which any size is believed
 
     def add_term(self, candidate: Candidate | None, term: Term, own: Estimates) -> None:
         """A new term, or a change of one that the model has; a curve of another shape is melted in."""
@@ -97,6 +98,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         dict(zip(names, np.array(search.expansion.model.values) + value[:count], strict=True)),
         dict(zip(names, std[:count], strict=True)),
         [],
+        {},
     )
     for k, each in enumerate(seed.corrections, start=len(base.names) - len(seed.corrections)):
         own.corrections.append(_changed(each, each.value + value[k], float(std[k])))
@@ -106,7 +108,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         where = [columns.index(c) for c in slot.columns]
         found = _estimates(slot, value[where], std[where], cross)
         parameters[slot.name] = found
-        _add(own, slot, found, sides)
+        _add(own, slot, found, sides, seed)
     if search.reversal is not None:
         finding = search.reversal
         at = [finding.cross.problem.columns(finding.fitted.slots).index(c) for c in finding.slot.columns]
@@ -114,7 +116,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         deviation = np.sqrt(np.diag(finding.cross.covariance(finding.fitted)))[at] * size
         found = _estimates(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
-        _add(own, finding.slot, found, sides)
+        _add(own, finding.slot, found, sides, seed)
     if (
         search.ripple
         and angle.TERM not in seed.term_names
@@ -134,10 +136,15 @@ def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEst
     return angle.in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
 
 
-def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides) -> None:
+def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: FrictionModel) -> None:
     candidate, shape = slot.origin
     if candidate.term is not None:
         own.add_term(candidate, candidate.term, found)
+        if candidate.most_in(seed) >= LIMITS.unbounded:
+            own.bare |= {
+                p.name: (p.lower, max(p.upper, LIMITS.bare_room * abs(own.at[p.name])))
+                for p in candidate.term.parameters
+            }
     elif candidate.corrects is not None:
         for each in candidate.corrects(found, shape, sides):
             own.add_correction(each)
@@ -172,15 +179,17 @@ def _model_of(
     declared = unique_parameters(tuple(own.terms))
     values, deviations, cut = [], [], []
     for p in declared:
-        lower, upper = seed.bounds_of(p.name) if p.name in seed.parameter_names else (p.lower, p.upper)
+        lower, upper = own.bare.get(p.name, (p.lower, p.upper))
+        lower, upper = seed.bounds_of(p.name) if p.name in seed.parameter_names else (lower, upper)
         value = float(np.clip(own.at[p.name], lower, upper))
         if abs(value - own.at[p.name]) > 1e-9 * abs(p.typical):
             cut.append(f"{p.name}: {CUT} {own.at[p.name]:.4g} {p.unit}")
         values.append(value)
         deviations.append(max(own.std[p.name], 1e-12 * abs(p.typical)))
-    bounds = {name: each for name, each in seed.bounds.items() if name in {p.name for p in declared}}
+    names = {p.name for p in declared}
+    bounds = {name: each for name, each in {**own.bare, **seed.bounds}.items() if name in names}
     model = FrictionModel(
-        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values), np.diag(deviations) ** 2,
+        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values), np.diag(deviations) ** 2 if values else None,
         bounds, seed.constants, {**seed.provenance, **provenance}, tuple(own.corrections), seed.crane or crane.name,
     )  # fmt: skip
     cut += [f"{key_of(each)}: {each.source.partition(', ')[2]}" for each in own.corrections if CUT in each.source]
@@ -255,7 +264,7 @@ def _stepped(model: FrictionModel, step: FloatArray, covariance: FloatArray, dev
     )
     least = np.diag(np.maximum(np.diag(covariance), [(1e-9 * abs(p.typical)) ** 2 for p in model.parameters]))
     covariance = covariance - np.diag(np.diag(covariance)) + least
-    return replace(model.with_values(list(values)), covariance=covariance, corrections=corrections)
+    return replace(model.with_values(list(values)), covariance=covariance if count else None, corrections=corrections)
 
 
 def _misfit(given: Given) -> float:

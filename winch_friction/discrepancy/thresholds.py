@@ -26,6 +26,7 @@ class Thresholds:
     unbounded: float = 1e9  # typical sizes: what a bare model's plain terms may have
     least_noise: float = 0.1  # bar; a 12-bit transducer of 600 bar steps by 0.15
     least_share_of_torque: float = 1e-3  # of an electric drive's torque
+    bare_room: float = 10.0  # times the size found: how far a bare model's new parameter may move later
     # -- folds and evidence
     fewest_runs: int = 5  # with fewer, folds are stretches of time
     folds: int = 8  # of stretches

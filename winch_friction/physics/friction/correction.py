@@ -110,7 +110,7 @@ _DECLARED = (
         "load", Action.MASS, ("hook_load",), reads=("wire_out",),
     ),
     DeclaredCorrection(
-        "inertia", Parameter("inertia", "kg*m^2", 0.2, -100.0, 100.0, doc="inertia that the crane file lacks"),
+        "inertia", Parameter("inertia", "kg*m^2", 0.2, -1e5, 1e5, doc="inertia that the crane file lacks"),
         "inertia", Action.INERTIA,
     ),
     _gas(

@@ -189,7 +189,8 @@ def _model_of(
     names = {p.name for p in declared}
     bounds = {name: each for name, each in {**own.bare, **seed.bounds}.items() if name in names}
     model = FrictionModel(
-        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values), np.diag(deviations) ** 2 if values else None,
+        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values),
+        np.diag(deviations) ** 2 if values else None,
         bounds, seed.constants, {**seed.provenance, **provenance}, tuple(own.corrections), seed.crane or crane.name,
     )  # fmt: skip
     cut += [f"{key_of(each)}: {each.source.partition(', ')[2]}" for each in own.corrections if CUT in each.source]

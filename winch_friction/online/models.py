@@ -8,7 +8,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.records.model_file import model_from_text
 
-LARGEST = 256 * 1024  # characters; a model of 30 parameters with its correlations has 20 thousand
+LARGEST = 96 * 1024  # characters; a model of 30 parameters with its correlations has 20 thousand
 MOST_BRACKETS = 2000  # lists and mappings that open; a correlation has one a parameter
 DEEPEST = 100  # columns of indentation
 PERIOD = 1.0  # s between two models that are looked at

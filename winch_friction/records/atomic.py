@@ -1,7 +1,11 @@
-"""Writing files so that a reader sees the old content or the new, never half of it."""
+"""Writing files so that a reader sees the old content or the new, never half of it.
 
+What a kill in the moment of renaming leaves beside a file is removed by the next one who writes or reads it anew.
+"""
+
+import glob
 import os
-import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,12 +13,15 @@ from pathlib import Path
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
-    """A temporary path beside `path` that replaces it when the block ends without an error, and vanishes otherwise."""
+    """A temporary path beside `path` that replaces it when the block ends without an error, and vanishes otherwise.
+
+    What a process that was killed left there is removed by the next one that writes the same file.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=path.suffix)
-    os.close(handle)
-    temporary = Path(name)
+    remove_stale(path)
+    temporary = _beside(path)
+    temporary.touch(mode=0o600)
     try:
         yield temporary
         _flush_to_disk(temporary)
@@ -25,10 +32,67 @@ def atomic_path(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Write a text file atomically."""
-    with atomic_path(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-    return Path(path)
+    """Write a text file atomically; where the system can, in a file that has no name before it is whole."""
+    path, content = Path(path), text.encode("utf-8")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    remove_stale(path)
+    if not _write_nameless(path, content):
+        with atomic_path(path) as temporary:
+            temporary.write_bytes(content)
+    return path
+
+
+def _write_nameless(path: Path, content: bytes) -> bool:
+    """False where there are no files without a name (not Linux, or a network's file system)."""
+    flags = getattr(os, "O_TMPFILE", None)
+    if flags is None:
+        return False
+    try:
+        handle = os.open(path.parent, flags | os.O_RDWR, 0o666)
+    except OSError:
+        return False
+    with os.fdopen(handle, "wb") as stream:
+        stream.write(content)
+        stream.flush()
+        os.fsync(handle)
+        temporary = _beside(path)
+        temporary.unlink(missing_ok=True)
+        try:
+            os.link(f"/proc/self/fd/{handle}", temporary, follow_symlinks=True)
+        except OSError:  # no /proc
+            return False
+    try:
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+    return True
+
+
+def _beside(path: Path) -> Path:
+    """The temporary file of this process and thread; its name says whose it is."""
+    return path.with_name(f".{path.stem}.{os.getpid()}-{threading.get_ident()}.tmp{path.suffix}")
+
+
+def remove_stale(path: Path) -> None:
+    """Remove what processes that are no more left beside a file."""
+    for each in path.parent.glob(f".{_literal(path.stem)}.*-*.tmp{_literal(path.suffix)}"):
+        owner = each.name.removeprefix(f".{path.stem}.").partition("-")[0]
+        if owner.isdigit() and not _alive(int(owner)):
+            each.unlink(missing_ok=True)
+
+
+def _literal(text: str) -> str:
+    return glob.escape(text)
+
+
+def _alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # somebody else's
+        return True
+    return True
 
 
 def _flush_to_disk(path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import write_text
+from winch_friction.records.atomic import remove_stale, write_text
 
 SCHEMA = "winch_friction.checkpoint/1"
 
@@ -21,6 +21,7 @@ def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
 def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
     """The snapshot, or None when there is no file yet; raises `InputError` for what is not a whole checkpoint."""
     path = Path(path)
+    remove_stale(path)
     if not path.exists():
         return None
     try:

@@ -1,0 +1,59 @@
+"""A kill at any moment leaves the old file or the new one, and nothing beside it that the next start does not remove."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from winch_friction.records.atomic import atomic_path, write_text
+from winch_friction.records.checkpoint import read_checkpoint
+
+WRITER = """
+import sys
+from winch_friction.records.checkpoint import write_checkpoint
+print("ready", flush=True)
+k = 0
+while True:
+    k += 1
+    write_checkpoint(sys.argv[1], {"k": k, "x": [float(k)] * 2000})
+"""
+
+
+@pytest.mark.parametrize("delay", [0.01 * k for k in range(12)])
+def test_a_killed_writer_leaves_a_whole_file_and_no_litter(tmp_path: Path, delay: float) -> None:
+    path = tmp_path / "ck.json"
+    process = subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE)
+    process.stdout.readline()
+    time.sleep(0.1 + delay)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert len(read_checkpoint(path)["x"]) == 2000
+    assert [each.name for each in tmp_path.iterdir()] == ["ck.json"]
+
+
+def test_what_a_dead_process_left_is_removed_by_the_next_writer(tmp_path: Path) -> None:
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    (tmp_path / f".run.{dead.pid}-1.tmp.csv").write_text("half")
+    (tmp_path / ".run.other").write_text("not ours")
+    with atomic_path(tmp_path / "run.csv") as temporary:
+        temporary.write_text("whole")
+    assert sorted(each.name for each in tmp_path.iterdir()) == [".run.other", "run.csv"]
+
+
+def test_an_error_leaves_the_old_file_alone(tmp_path: Path) -> None:
+    path = write_text(tmp_path / "a.txt", "old")
+
+    def broken() -> None:
+        with atomic_path(path) as temporary:
+            temporary.write_text("half")
+            raise ValueError
+
+    with pytest.raises(ValueError):
+        broken()
+    assert path.read_text() == "old"
+    assert write_text(path, "new").read_text() == "new"
+    assert len(list(tmp_path.iterdir())) == 1

@@ -1,4 +1,4 @@
-"""A kill at any moment leaves the old file or the new one, and nothing beside it that the next start does not remove."""
+"""A kill at any moment leaves the old file or the new one; what else it leaves, the next start removes."""
 
 import signal
 import subprocess

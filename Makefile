@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet clean
+.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet campaign-import clean
 
 setup: $(READY)
 
@@ -54,6 +54,9 @@ campaign: campaign-loop campaign-identification campaign-gap campaign-rates
 
 campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet: $(READY)
 	$(BIN)/python -m campaign.$(subst campaign-,,$@) $(ARGS)
+
+campaign-import: $(READY)
+	$(BIN)/python -m campaign.import_logs $(ARGS)
 
 clean:
 	rm -rf out build install log

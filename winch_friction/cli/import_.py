@@ -77,17 +77,15 @@ def propose_map(
 ) -> None:
     """Write the proposed map; what keeps it from being imported is an `InputError` after it was written."""
     from winch_friction.importing.map_text import map_text
-    from winch_friction.importing.mapping import with_settings
     from winch_friction.importing.propose import propose
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane
 
     if map_file.exists() and not overwrite:
         raise InputError(f"{map_file}: exists; give another name, or --overwrite")
-    proposal = propose(logs, load_crane(crane) if crane else None, crane)
-    log_map = with_settings(proposal.log_map, settings)
+    proposal = propose(logs, load_crane(crane) if crane else None, crane, settings)
+    log_map, problems = proposal.log_map, list(proposal.problems)
     write_text(map_file, map_text(log_map))
-    problems = [p for p in proposal.problems if p not in proposal.log_map.questions or p in log_map.questions]
     if as_json:
         show_json(_as_content(log_map, problems, proposal.notes, map_file))
     else:

@@ -14,6 +14,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.drive import POWER
 
 _LOAD_SHARE = 0.20  # of the load's torque: transducers, displacement feedback, rope, a layer, an unequal friction
 _CAPACITY_SHARE = 0.025  # of the largest torque: what boost, tare and offsets make at an empty hook
@@ -45,7 +46,12 @@ def groups_of(columns: Columns) -> list[str]:
 
 
 def closure(columns: Columns, crane: Crane) -> Closure | None:
-    """How well the balance closes on average; None when load, drive or speed are not in the log."""
+    """How well the balance closes on average; None when load, drive or speed are not in the log.
+
+    None for a drive known by its power as well: a mean of power over speed hangs on the slowest moments.
+    """
+    if crane.drive.kind == POWER:
+        return None
     drive, load = drive_torque(columns, crane), load_torque(columns, crane)
     if drive is None or load is None or "motor_speed" not in columns:
         return None
@@ -85,6 +91,17 @@ def load_torque(columns: Columns, crane: Crane) -> FloatArray | None:
     if "rope_force" in columns:
         return columns["rope_force"] * radius / crane.gear_ratio
     return None
+
+
+def power_ratio(columns: Columns, crane: Crane) -> float | None:
+    """Mechanical power over the load's torque times the speed, by least squares: about 1 in either sign, or None."""
+    load, power = load_torque(columns, crane), columns.get("mechanical_power")
+    if load is None or power is None or "motor_speed" not in columns:
+        return None
+    lifted = load * columns["motor_speed"]
+    usable = np.isfinite(lifted) & np.isfinite(power)
+    size = float(np.dot(lifted[usable], lifted[usable]))
+    return float(np.dot(power[usable], lifted[usable])) / size if size > 0.0 else None
 
 
 def _mean_of_both_ways(torque: FloatArray, speed: FloatArray, usable: Any) -> float:

@@ -46,10 +46,12 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
         raise InputError(f"{path}: {'; '.join(done.problems)}")
     metadata = {"source": path.name, "imported": {name: entry.source for name, entry in log_map.columns.items()}}
     warnings = tuple(f"{path.name}: {note}" for note in (*log.notes, *done.warnings))
+    motion = {"heave_velocity"} <= set(done.columns) <= {"time", "heave_velocity"}
+    if motion:
+        warnings = (*warnings, f"{path.name}: a ship's motion alone: for a scenario, not a run of a winch")
     return checked_run(
-        f"{path.name}", done.columns, place=log.place, crane=crane,
-        warnings=warnings, metadata=metadata,
-    )  # fmt: skip
+        path.name, done.columns, place=log.place, crane=crane, complete=not motion, warnings=warnings, metadata=metadata
+    )
 
 
 def open_with_map(path: Path, log_map: LogMap) -> Log:
@@ -124,7 +126,10 @@ def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, cr
         _say_bad_cells(log, name, column, log_map.bad_cells, said, problems)
     scale, offset = scale_and_offset(name, channel, entry, crane)
     values = column.values * scale + offset
-    return _within_limits(log, name, channel, column, values, said, problems) if strict else values
+    if entry.differentiate:
+        values = _rate(name, values, _time(log, log_map), entry.differentiate)
+    kept = (said, problems) if strict else ([], [])
+    return _within_limits(log, name, channel, column, values, *kept)
 
 
 def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None) -> tuple[float, float]:
@@ -133,13 +138,30 @@ def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None)
     of = _share_of(entry.of, own, name) if entry.of else _default_share(channel, crane)
     radius = crane.drum.layer_radii[-1] if crane is not None else float("nan")
     gear = crane.gear_ratio if crane is not None else 1.0
-    found = conversion(channel, entry.unit or own, name, of=of, rope_radius=radius, gear_ratio=gear)
+    unit = f"{entry.unit or 'rad'}/s" if entry.differentiate else entry.unit or own
+    found = conversion(channel, unit, name, of=of, rope_radius=radius, gear_ratio=gear)
     if entry.at == "drum" and channel in _AT:
         if crane is None:
             raise InputError(f"{name}: at: drum needs the crane's gear ratio; give the crane")
         found = type(found)(found.scale * gear ** _AT[channel], found.offset)
     factor = entry.sign * entry.factor
     return found.scale * factor, found.offset * factor
+
+
+def _rate(name: str, values: FloatArray, time: FloatArray, cutoff: float) -> FloatArray:
+    """Time derivative behind a zero-phase Butterworth low-pass of order 4.
+
+    Raises `InputError` for gaps and for a cut-off beyond half the sampling rate.
+    """
+    from scipy.signal import butter, filtfilt
+
+    period = float(np.median(np.diff(time)))
+    if not np.isfinite(values).all() or cutoff * period >= 0.5:
+        raise InputError(
+            f"{name}: differentiate: {cutoff:g} Hz needs a gapless position and more than {2 * cutoff:g} samples/s"
+        )
+    smooth = filtfilt(*butter(4, 2.0 * cutoff * period), values)
+    return np.asarray(np.gradient(smooth, time - time[0]), dtype=np.float64)
 
 
 def _share_of(text: str, si_unit: str, name: str) -> float:

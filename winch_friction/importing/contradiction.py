@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from winch_friction.importing.balance import closure, groups_of, opposes_motion, told
+from winch_friction.importing.balance import closure, drive_torque, groups_of, opposes_motion, power_ratio, told
 from winch_friction.importing.expectations import usual_size
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.physics.signals import FloatArray
@@ -14,6 +14,7 @@ from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch.crane import Crane
 
 _RATIO = 0.25  # relative; the wire's layers differ by a twelfth, a wrong gear or unit by more than a third
+_LOSSES = 2.0  # power over load times speed: no winch loses half of it
 _MARGIN = 1.15  # times the crane's displacement: feedback error and a setting beyond its stop
 _KNOWN_FACTORS = (
     ("is in rad/s, not rpm", 1.0 / RPM),
@@ -41,8 +42,10 @@ def contradictions(columns: Columns, crane: Crane) -> list[str]:
     balance = closure(columns, crane)
     if balance is not None and not balance.closes:
         said.append(_unbalanced(columns, crane, balance.motors, balance.load))
+    elif (gain := power_ratio(columns, crane)) is not None:
+        said.extend(_wrong_power(gain))
     elif not said:
-        said.extend(_driving_friction(columns, crane))
+        said.extend(_pushing_load(columns, crane) or _driving_friction(columns, crane))
     return said
 
 
@@ -149,6 +152,28 @@ def _groups_swapped(columns: Columns, one: str, other: str) -> dict[str, FloatAr
 def _usual(name: str, values: FloatArray, crane: Crane) -> bool:
     finite = np.abs(values[np.isfinite(values)])
     return bool(finite.size) and float(np.percentile(finite, 95.0)) <= usual_size(name.rpartition(".")[2], crane)[1]
+
+
+def _wrong_power(gain: float) -> list[str]:
+    if 1.0 / _LOSSES < gain < _LOSSES:
+        return []
+    what = (
+        "the sign of mechanical_power or motor_speed" if -_LOSSES < gain < -1.0 / _LOSSES else "a unit of one of them"
+    )
+    return [f"mechanical_power is {gain:.3g} times load times speed: {what}"]
+
+
+def _pushing_load(columns: Columns, crane: Crane) -> list[str]:
+    """A hanging load always pulls out: motors that hold it give a torque above zero."""
+    drive = drive_torque(columns, crane)
+    groups = [g for g in groups_of(columns) if g in crane.groups]
+    if drive is None or not groups or not np.isfinite(drive).any():
+        return []
+    mean, spread = float(np.nanmean(drive)), float(np.nanstd(drive))
+    if mean > -0.5 * spread or len(groups) > 1:
+        return []
+    ports = f"ports A and B of group '{groups[0]}' were swapped"
+    return [f"the motors give {mean:.4g} N m on average, but a load pulls out: {ports}"]
 
 
 def _driving_friction(columns: Columns, crane: Crane) -> list[str]:

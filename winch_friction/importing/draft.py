@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from winch_friction.importing.carry_out import Converted, convert
 from winch_friction.importing.log import Log
-from winch_friction.importing.mapping import LogMap
+from winch_friction.importing.mapping import LogMap, with_settings
 from winch_friction.physics.winch.crane import Crane
 
 
@@ -26,6 +26,11 @@ class Draft:
         sure = old.confidence if confidence is None else confidence
         entry = replace(old, confidence=sure, because=reason, **fields)  # type: ignore[arg-type]
         self.log_map = replace(self.log_map, columns={**self.log_map.columns, name: entry})
+
+    def apply(self, settings: Sequence[str]) -> None:
+        """What the person says of the map; it answers the questions about that channel."""
+        changed = with_settings(replace(self.log_map, questions=tuple(self.questions)), list(settings))
+        self.log_map, self.questions = replace(changed, questions=()), list(changed.questions)
 
     def converted(self) -> list[Converted]:
         """Every log in SI as the map stands."""

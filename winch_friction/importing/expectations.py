@@ -28,7 +28,7 @@ def usual_size(channel: str, crane: Crane | None) -> tuple[float, float]:
         "motor_speed": (0.0, top),
         "speed_reference": (0.0, top),
         "rope_force": (10.0, 2.0e7),
-        "mechanical_power": (0.0, 5.0e7),
+        "mechanical_power": (0.0, 5.0e6),
         "motor_torque": (0.0, 1.0e6),
     }
     if crane is None:

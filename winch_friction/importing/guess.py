@@ -16,6 +16,7 @@ from winch_friction.importing.units import (
     conversion,
     fitting_si_unit,
     header_readings,
+    says_unit,
     usual_units,
 )
 from winch_friction.physics.errors import InputError
@@ -111,7 +112,10 @@ def _assigned(
 def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> Match | None:
     """The best reading of a column for a slot, None when its unit belongs to something else."""
     best: Match | None = None
-    for bare, unit in header_readings(column.name):
+    readings = header_readings(column.name)
+    for bare, unit in sorted(readings, key=lambda reading: not reading[1]):
+        if not unit and any(says_unit(column.name, said) for _, said in readings if said):
+            break  # a unit that is said is no word of the name; a single letter may be a port
         unit = unit or column.unit
         score, why = _reading_score(column, bare, unit, slot, groups)
         if score <= 0.0:
@@ -131,6 +135,8 @@ def _reading_score(column: LogColumn, bare: str, unit: str, slot: Slot, groups: 
     if slot.channel == "motor_speed" and fitting == "m/s":
         return 0.0, ""  # a speed of the rope has its own slot
     concepts = _concepts(bare)
+    if slot.channel == "rope_speed" and not unit and not any("rope" in token for token in concepts):
+        return 0.0, ""
     score = max(name_score(slot.channel, concepts), 0.9 * name_score(slot.channel, _concepts(column.note)))
     why = f"name '{bare}'"
     if unit and score < _UNIT_ALONE and _unit_tells(slot.channel, unit) and not _is_other(concepts):
@@ -195,6 +201,8 @@ def plausible_units(column: LogColumn, unit: str, channel: str, crane: Crane | N
 
 def in_si(column: LogColumn, unit: str, channel: str, crane: Crane | None) -> np.ndarray | None:
     """A column's values in SI if it were logged in a unit; None when the unit does not fit the channel."""
+    if channel == "heave_velocity" and fitting_si_unit(channel, unit) == "m":
+        return column.values  # a position of metres: its speed has the same size at a ship's periods
     of = crane.max_displacement if crane is not None and channel == "displacement" else 1.0
     try:
         found = conversion(channel, unit, "", of=of or 1.0)

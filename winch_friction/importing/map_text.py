@@ -72,6 +72,8 @@ def _entry_lines(entry: Entry) -> Iterable[str]:
         yield f"factor: {entry.factor:.12g}"
     if entry.of:
         yield f"of: {_quoted(entry.of)}"
+    if entry.differentiate:
+        yield f"differentiate: {entry.differentiate:g}   # Hz; a position becomes a speed behind a low-pass"
     if entry.at != "motor":
         yield f"at: {entry.at}"
     yield f"confidence: {entry.confidence:.2f}"

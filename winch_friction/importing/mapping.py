@@ -22,7 +22,8 @@ class Entry:
     """One channel: `source` is the column's name in the log (for a bag `topic:field`), `unit` as people write it.
 
     `sign` +1 or -1, `factor` a further multiplier, `of` what a share is of (`215 cm^3/rev`), `at` where a speed or
-    torque is measured; `confidence` 0 ... 1 and `because` are the proposal's, nobody needs them.
+    torque is measured; `differentiate` Hz: the column is a position in `unit`, its speed is taken behind a zero-phase
+    low-pass of this frequency; `confidence` 0 ... 1 and `because` are the proposal's, nobody needs them.
     """
 
     source: str
@@ -31,6 +32,7 @@ class Entry:
     factor: float = 1.0
     of: str = ""
     at: str = "motor"
+    differentiate: float = 0.0
     confidence: float = 1.0
     because: str = ""
 
@@ -103,6 +105,7 @@ def _entry(section: Section) -> Entry:
         factor=factor,
         of=section.text("of", ""),
         at=_choice(section, "at", PLACES, "motor"),
+        differentiate=max(0.0, section.number("differentiate", 0.0)),
         confidence=section.number("confidence", 1.0),
         because=section.text("because", ""),
     )
@@ -170,7 +173,7 @@ def _changed(log_map: LogMap, name: str, attribute: str, value: str, setting: st
     old = log_map.columns.get(name)
     fields = {} if old is None else {
         "from": old.source, "unit": old.unit, "sign": old.sign, "factor": old.factor, "of": old.of, "at": old.at,
-        "confidence": old.confidence, "because": old.because,
+        "differentiate": old.differentiate, "confidence": old.confidence, "because": old.because,
     }  # fmt: skip
     entry = _entry(Section(fields | {attribute: value}, f"--set '{setting}'"))
     return replace(log_map, columns={**log_map.columns, name: entry})

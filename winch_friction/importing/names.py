@@ -17,6 +17,7 @@ import yaml
 
 EXACT, SHORT, COMPOUND, BEGINNING, MISSPELT, CONSONANTS = 1.0, 0.9, 0.95, 0.75, 0.8, 0.6
 _SIMILAR = 0.82  # share of equal letters from which a word counts as the misspelt other
+_CLOSE = 0.85  # the same for the second word of a compound, whose first one is known
 _LINKS = ("", "s", "n", "en", "e", "es", "er")  # what German and Norwegian put between the words of a compound
 _FOLD = str.maketrans({"ä": "a", "æ": "a", "ö": "o", "ø": "o", "ü": "u", "å": "a", "ß": "ss"})
 _NEUTRAL = frozenset({"actual"})  # says nothing of what is measured
@@ -108,6 +109,8 @@ def _compound(token: str) -> list[tuple[str, ...]] | None:
             if not rest.startswith(link):
                 continue
             tail = rest[len(link) :]
+            if tail not in words and len(tail) > 4:  # the second word misspelt, or a neighbour's language
+                tail = next(iter(difflib.get_close_matches(tail, words, 1, _CLOSE)), tail)
             if tail in words or (tail in short and (len(tail) > 2 or tail in ("a", "b"))):
                 return [words[head], words.get(tail) or short[tail]]
             further = _compound(tail) if len(tail) > 5 else None
@@ -132,7 +135,7 @@ def _alike(token: str) -> Concepts:
 def _likeness(token: str, word: str) -> float:
     if len(word) > 3 and token.startswith(word):
         return BEGINNING + 0.1
-    if len(word) > 4 and token.endswith(word):
+    if len(word) > 3 and token.endswith(word):
         return BEGINNING + 0.1
     if word.startswith(token):
         return BEGINNING

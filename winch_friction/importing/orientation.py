@@ -1,29 +1,39 @@
-"""Ports and the sign of the speed, where names do not tell them: by what the crane's physics allows."""
+"""Ports and signs, where names do not tell them: by what the crane's physics allows."""
 
 import numpy as np
 
-from winch_friction.importing.balance import closure, groups_of, opposes_motion, told
+from winch_friction.importing.balance import closure, groups_of, opposes_motion, power_ratio, told
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.importing.names import name_concepts
 from winch_friction.physics.winch.crane import Crane
 
+_TELLING = 0.3  # power over load times speed from which its sign is told: losses are not two thirds of it
 
-def settle_orientation(draft: Draft) -> None:
+
+def settle_orientation(draft: Draft, said: frozenset[str] = frozenset()) -> None:
     """Ports, groups and signs by what the crane's physics allows."""
     if draft.crane is None:
         return
     _settle_ports(draft, draft.crane)
-    if "motor_speed" not in draft.log_map.columns:
+    if "motor_speed" in draft.log_map.columns and "motor_speed" not in said:
+        _settle_speed(draft, draft.crane)
+    if "mechanical_power" in draft.log_map.columns and "mechanical_power" not in said:
+        _settle_power(draft, draft.crane)
+
+
+def _settle_speed(draft: Draft, crane: Crane) -> None:
+    if _says_out(draft.log_map.columns["motor_speed"].source):
+        draft.change("motor_speed", sign=-1, because="sign turned: the name says that paying out counts positive")
         return
-    ratios = [r.value for c in draft.converted() if (r := rope_over_motor(c.columns, draft.crane)) is not None]
+    ratios = [r.value for c in draft.converted() if (r := rope_over_motor(c.columns, crane)) is not None]
     if ratios and np.median(ratios) < 0.0:
         draft.change("motor_speed", sign=-1, because="sign turned: the wire comes in while it counts negative")
         return
     if ratios:
         draft.change("motor_speed", because="its sign agrees with the motion of the wire")
         return
-    t_values = [opposes_motion(c.columns, draft.crane) for c in draft.converted()]
+    t_values = [opposes_motion(c.columns, crane) for c in draft.converted()]
     t_value = float(np.median(t_values)) if t_values else 0.0
     groups = groups_of(draft.converted()[0].columns)
     if not told(t_value):
@@ -37,6 +47,27 @@ def settle_orientation(draft: Draft) -> None:
     elif len(groups) <= 1:
         draft.change("motor_speed", sign=-1, because="sign turned: friction would drive the motion otherwise")
     # with several groups swapped ports would do the same: left to the contradictions, as a question
+
+
+def _says_out(name: str) -> bool:
+    """Whether the name of a speed says that it is one of paying out."""
+    found = name_concepts(name)
+    return any("out" in token for token in found) or any(
+        word in name.lower() for word in ("reelout", "payout", "lower")
+    )
+
+
+def _settle_power(draft: Draft, crane: Crane) -> None:
+    """The power that lifts a load is positive: it must have the sign of the load's torque times the speed."""
+    signs = [g for done in draft.converted() if (g := power_ratio(done.columns, crane)) is not None]
+    sign = float(np.median(signs)) if signs else 0.0
+    if sign < -_TELLING:
+        draft.change("mechanical_power", sign=-1, because="sign turned: lifting the load would give power otherwise")
+    elif sign > _TELLING:
+        draft.change("mechanical_power", because="lifting the load takes power with this sign")
+    else:
+        sure = 0.7 * draft.log_map.columns["mechanical_power"].confidence
+        draft.change("mechanical_power", sure, "its sign is not told by the log: taken as positive when hoisting")
 
 
 def _settle_ports(draft: Draft, crane: Crane) -> None:

@@ -14,12 +14,13 @@ from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation
 from winch_friction.importing.reading import read_log
-from winch_friction.importing.time_base import TimeGuess, guess_time
+from winch_friction.importing.time_base import TimeGuess, guess_time, to_seconds
 from winch_friction.importing.unit_guess import settle_units
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, header_readings
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
 
+_SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
 _POOLED = 20_000  # values of each log that are looked at together
 
 
@@ -32,8 +33,11 @@ class Proposal:
     notes: tuple[str, ...]
 
 
-def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "") -> Proposal:
-    """A map for logs of one kind; raises `InputError` only for logs that cannot be read at all."""
+def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "", settings: Sequence[str] = ()) -> Proposal:
+    """A map for logs of one kind, with what the person already says of it (`settings`, as `with_settings` takes them).
+
+    Raises `InputError` only for logs that cannot be read at all and for settings that say nothing.
+    """
     logs = [read_log(path) for path in paths]
     draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
     _refuse_different_names(draft)
@@ -42,7 +46,8 @@ def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "") ->
     found = matches(pooled, crane, draft.log_map.time_from)
     _settle_columns(draft, found, pooled)
     settle_units(draft, found, pooled)
-    settle_orientation(draft)
+    draft.apply(settings)
+    settle_orientation(draft, _said_signs(settings))
     _settle_missing(draft, pooled)
     if crane is not None:
         _settle_contradictions(draft)
@@ -52,6 +57,11 @@ def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "") ->
     notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes)
     problems = tuple(dict.fromkeys([*draft.problems, *log_map.questions]))
     return Proposal(log_map, problems, notes + tuple(_bad_cells(logs, log_map)))
+
+
+def _said_signs(settings: Sequence[str]) -> frozenset[str]:
+    """The channels whose sign the person has said."""
+    return frozenset(s.partition(".sign=")[0].strip() for s in settings if ".sign=" in s)
 
 
 def _refuse_different_names(draft: Draft) -> None:
@@ -132,7 +142,11 @@ def _settle_columns(draft: Draft, found: Mapping[str, Match], pooled: Log) -> No
                     f"motor_speed: '{match.column.name}' is a speed of the rope; give --crane for drum and gear"
                 )
             continue
-        entries[target] = Entry(match.column.name, match.unit, at=at, confidence=match.confidence, because=match.why)
+        cutoff = _position_cutoff(draft, match)
+        why = f"{match.why}; a position: its speed is taken" if cutoff else match.why
+        entries[target] = Entry(
+            match.column.name, match.unit, at=at, differentiate=cutoff, confidence=match.confidence, because=why
+        )
         choices = ambiguity(match.slot.channel, match.unit) if match.unit else ""
         if choices:
             draft.questions.append(
@@ -142,9 +156,28 @@ def _settle_columns(draft: Draft, found: Mapping[str, Match], pooled: Log) -> No
     draft.log_map = replace(draft.log_map, columns=entries)
 
 
+def _position_cutoff(draft: Draft, match: Match) -> float:
+    """The low-pass in Hz of a heave that is logged as a position: above a ship's motion, below half the log's rate."""
+    if match.slot.channel != "heave_velocity" or not match.unit or fitting_si_unit("heave_velocity", match.unit) != "m":
+        return 0.0
+    columns = [draft.logs[0].column(name) for name in draft.log_map.time_from]
+    time = (
+        to_seconds(columns, draft.log_map.time, "time", draft.logs[0].place, strict=False) if columns else np.zeros(2)
+    )
+    period = max(float(np.median(np.diff(time))), 1e-3)
+    return round(min(_SHIP, 0.25 / period), 3)
+
+
+def _is_motion(names: set[str]) -> bool:
+    """Whether a log is a ship's motion alone, for a scenario rather than for a run of a winch."""
+    return "heave_velocity" in names and not names & {"motor_speed", "drum_speed", "hook_load", "motor_torque"}
+
+
 def _settle_missing(draft: Draft, pooled: Log) -> None:
     """Say at once every channel that a run needs and no column gives, beside what was found."""
     names, crane = set(draft.log_map.columns), draft.crane
+    if _is_motion(names):
+        return
     lacking = [] if {"motor_speed", "drum_speed"} & names else ["motor_speed (or drum_speed)"]
     groups = dict.fromkeys(n.rpartition(".")[0] for n in names if "." in n)
     for group in groups:

@@ -36,7 +36,7 @@ def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     else:
         decimal, thousands = decimal_mark((cell for row in rows[-_SAMPLE:] for cell in row), delimiter)
     layout = _layout(path, given, rows, numbers, decimal, thousands)
-    columns = _columns(path, rows, numbers, layout, decimal, thousands, notes)
+    columns = _columns(path, rows, numbers, layout, decimal, thousands, notes, delimiter)
     found = {"kind": "text", "encoding": encoding, "delimiter": delimiter, "decimal": decimal, "thousands": thousands}
     row_numbers = {"names_row": layout.names, "unit_row": layout.units, "first_row": layout.first}
     found |= {key: numbers[row] if row >= 0 else 0 for key, row in row_numbers.items()}
@@ -193,7 +193,7 @@ def _layout(path: Path, given: Mapping[str, Any], rows: Sequence[Sequence[str]],
 
 
 def _columns(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], layout: Layout, decimal: str,
-             thousands: str, notes: list[str]) -> list[LogColumn]:  # fmt: skip
+             thousands: str, notes: list[str], delimiter: str) -> list[LogColumn]:  # fmt: skip
     body = rows[layout.first :]
     heads = {k: list(rows[k]) if k >= 0 else [] for k in (layout.names, layout.units, layout.notes_row)}
     width = max(layout.width, len([c for c in heads[layout.names] if c.strip()]))
@@ -202,6 +202,11 @@ def _columns(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], 
         shown = ", ".join(map(str, ragged[:3]))
         notes.append(
             f"{len(ragged)} lines are shorter than the {width} columns (line {shown}): their cells are missing"
+        )
+    if layout.names >= 0 and layout.width > len(heads[layout.names]) > 1:
+        raise InputError(
+            f"{path}: line {numbers[layout.first]} has {layout.width} cells under {len(heads[layout.names])} names; "
+            f"does '{delimiter}' also stand inside cells (a decimal comma)? Quote such cells, or separate by ';'"
         )
     names = unique_names(_padded(heads[layout.names], width))
     units, remarks = _padded(heads[layout.units], width), _padded(heads[layout.notes_row], width)

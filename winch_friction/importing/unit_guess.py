@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from winch_friction.importing.balance import closure
+from winch_friction.importing.balance import closure, power_ratio
 from winch_friction.importing.carry_out import convert
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.expectations import usual_size
@@ -14,6 +14,7 @@ from winch_friction.importing.guess import Match, plausible_units
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.importing.log import Log
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, usual_units
+from winch_friction.physics.units import CM3_PER_REV
 
 _COMBINATIONS = 300  # of units tried against the torque balance
 _RARER = 0.6  # prior of each next unit in the order of usual ones
@@ -28,12 +29,16 @@ def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
         if ambiguity(match.slot.channel, match.unit):
             continue
         options = _options(draft, name, match, pooled)
-        kind = "pressures" if match.slot.channel.startswith("pressure_") else name
+        shared = {"pressure_a": "pressures", "pressure_b": "pressures", "displacement": "displacements"}
+        kind = shared.get(match.slot.channel, name)  # one unit for all of them
         axes[kind] = [u for u in axes.get(kind, options) if u in options] or axes.get(kind, options)
         members.setdefault(kind, []).append(name)
+    for kind, options in axes.items():
+        for name in members[kind] if len(options) < 2 else ():
+            _set_unit(draft, name, options, None)
     open_axes = {kind: options for kind, options in axes.items() if len(options) > 1}
     chosen = _by_balance(draft, open_axes, members) if open_axes else {}
-    for kind, options in axes.items():
+    for kind, options in open_axes.items():
         for name in members[kind]:
             _set_unit(draft, name, options, chosen.get(kind))
 
@@ -50,7 +55,7 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
         own = CHANNEL_UNITS[match.slot.channel][0]
         draft.questions.append(
             f"{name}: '{match.column.name}' says '{match.unit}', but {size:.4g} {match.unit} is no usual size "
-            f"({low:.3g} to {high:.3g} {own}){hint}"
+            f"({low:.3g} to {high:.3g} {own}){_of_crane(draft, match.slot.channel)}{hint}"
         )
         return [match.unit]
     if match.unit or options:
@@ -58,6 +63,16 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
         named = column.name == name and own in options  # the contract's own name without a unit is SI
         return [own] if named else options
     return []
+
+
+def _of_crane(draft: Draft, channel: str) -> str:
+    """What to say when the crane sets how large a channel may be."""
+    crane = draft.crane
+    if crane is None or channel not in ("displacement", "wire_layer"):
+        return ""
+    has = f"{len(crane.drum.layer_radii)} layers" if channel == "wire_layer" else (
+        f"motors of {crane.max_displacement / CM3_PER_REV:.4g} cm^3/rev")  # fmt: skip
+    return f": is it the log of another crane? '{crane.name}' has {has}"
 
 
 def _by_balance(draft: Draft, axes: Mapping[str, list[str]], members: Mapping[str, list[str]]) -> dict[str, str]:
@@ -85,6 +100,9 @@ def _closing(draft: Draft, units: Mapping[str, str]) -> float:
         found = closure(columns, draft.crane)
         ratio = rope_over_motor(columns, draft.crane)
         off = 0.0 if ratio is None else np.log(max(abs(ratio.value), 1e-9)) / 0.3
+        gain = power_ratio(columns, draft.crane)
+        if gain is not None:  # a sharper test than the mean torque, which needs a power over a speed near zero
+            off, found = np.log(max(abs(gain), 1e-9)) / 0.3, None
         worth.append(np.exp(-0.5 * (min(found.mismatch, 30.0) ** 2 if found else 0.0) - 0.5 * min(off**2, 400.0)))
     return float(np.mean(worth)) + 1e-12
 
@@ -99,7 +117,7 @@ def _set_unit(draft: Draft, name: str, options: Sequence[str], chosen: str | Non
         channel = name.rpartition(".")[2]
         draft.questions.append(
             f"{name}: '{entry.source}' says no unit, and {size:.4g} is no usual size in "
-            f"{', '.join(usual_units(channel))}; set {name}.unit"
+            f"{', '.join(usual_units(channel))}{_of_crane(draft, channel)}; set {name}.unit"
         )
         return
     unit = chosen or options[0]

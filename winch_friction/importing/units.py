@@ -6,6 +6,7 @@ A load may be logged as a force, a displacement as a share of the largest, a spe
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import GRAVITY
@@ -28,7 +29,7 @@ CHANNEL_UNITS: dict[str, tuple[str, ...]] = {
     "rope_force": ("N",),
     "mechanical_power": ("W",),
     "motor_current": ("A", "1"),
-    "heave_velocity": ("m/s",),
+    "heave_velocity": ("m/s", "m"),
     "oil_temperature": ("degC",),
     "wire_layer": ("1",),
     "wire_out": ("m",),
@@ -60,15 +61,29 @@ def header_readings(name: str) -> list[tuple[str, str]]:
         match = pattern.match(name)
         parts = match.groups() if match else ()
         bare, unit = next((pair for pair in zip(parts[::2], parts[1::2], strict=True) if pair[0]), ("", ""))
-        if looks_like_unit(unit):
+        if looks_like_unit(unit, marked=pattern is _AFTER_MARK):
             readings.append((bare.strip(" ,;:/"), worded(unit)))
     return [*dict.fromkeys(readings), (name, "")]
 
 
-def looks_like_unit(text: str) -> bool:
-    """Whether a text can be a unit of any channel."""
+def says_unit(name: str, unit: str) -> bool:
+    """Whether a header marks a unit as one (in brackets, after a slash, a comma or 'in'), so that it is no word of it.
+
+    A single A or B is a port, whatever stands around it; behind a mere blank or underscore only longer units are.
+    """
+    if unit.upper() in ("A", "B"):
+        return False
+    return len(unit) > 1 or bool(re.search(rf"(?:[\[({{<]\s*|/\s*|,\s*|\bin\s+){re.escape(unit)}\s*\W*$", name))
+
+
+@lru_cache(maxsize=4096)
+def looks_like_unit(text: str, marked: bool = True) -> bool:
+    """Whether a text can be a unit of any channel; not marked as one, only the table's spellings and formulas count."""
     text = worded(text)
-    return 0 < len(text) <= 24 and any(known_spelling(text, si) or _converts(text, si) for si in SPELLINGS)
+    formula = marked or bool(re.search(r"[/^*°%²³·]", text))
+    return 0 < len(text) <= 24 and any(
+        known_spelling(text, si) or (formula and _converts(text, si)) for si in SPELLINGS
+    )
 
 
 def worded(unit: str) -> str:
@@ -78,6 +93,7 @@ def worded(unit: str) -> str:
     return unit.strip()
 
 
+@lru_cache(maxsize=4096)
 def _converts(unit: str, si_unit: str) -> bool:
     if not re.fullmatch(r"[\w°^*/.%²³µ·\- ]+", unit) or re.fullmatch(r"[\d. ]+", unit) or len(unit) < 2:
         return False
@@ -122,6 +138,8 @@ def conversion(channel: str, unit: str, where: str, *, of: float = float("nan"),
         if of != of:
             raise InputError(f"{where}: '{unit}' is a share; say of what, e.g. of: 215 cm^3/rev or of: 9.84 mN*m")
         return Conversion(scale * of, 0.0, f"share of {of:.4g} {own}")
+    if si == "m":
+        raise InputError(f"{where}: '{unit}' is a position; say the low-pass of its speed: differentiate: HZ")
     if channel == "hook_load":
         return Conversion(scale / GRAVITY, offset, "mass = force / 9.81 m/s^2")
     if rope_radius != rope_radius:
@@ -141,7 +159,7 @@ def usual_units(channel: str) -> Sequence[str]:
 _USUAL: dict[str, tuple[str, ...]] = {
     "motor_speed": ("rpm", "rad/s", "rev/s"),
     "drum_speed": ("rpm", "rad/s"),
-    "rope_speed": ("m/s", "m/min"),
+    "rope_speed": ("m/s",),
     "speed_reference": ("rpm", "rad/s", "rev/s"),
     "pressure_a": ("bar", "Pa", "MPa", "psi", "kPa"),
     "pressure_b": ("bar", "Pa", "MPa", "psi", "kPa"),

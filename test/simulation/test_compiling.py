@@ -1,6 +1,8 @@
 """Compiled code is never older than its sources, and needs no writable home."""
 
-from winch_friction.simulation.compiling import cache_root, compiled, source_digest
+import pytest
+
+from winch_friction.simulation.compiling import cache_root, compiled, in_order, source_digest
 
 
 def test_any_change_of_a_source_is_another_key(tmp_path):
@@ -33,3 +35,16 @@ def test_numbas_own_setting_is_left_alone():
 
 def _twice(x):
     return 2.0 * x
+
+
+def test_arguments_are_given_by_name_in_the_order_of_the_parameters():
+    def function(first, count, plant, state):
+        return first, count, plant, state
+
+    rest = in_order(function, "first", "count", state="s", plant="p")
+    assert function(1, 2, *rest) == (1, 2, "p", "s")
+    for wrong in ({"plant": 1}, {"plant": 1, "state": 2, "other": 3}):
+        with pytest.raises(TypeError, match=r"state|other"):
+            in_order(function, "first", "count", **wrong)
+    with pytest.raises(TypeError, match="first"):
+        in_order(function, "count", first=1, plant=2, state=3)

@@ -4,6 +4,7 @@ Numba itself notices changes of the file that a function stands in, not of the f
 """
 
 import hashlib
+import inspect
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
@@ -27,6 +28,18 @@ def compiled(function: Callable[..., Any]) -> Any:
             return numba.njit(cache=True)(function)
         except RuntimeError:  # no place to write: compile anew in every process
             return numba.njit(function)
+
+
+def in_order(function: Any, *given: str, **named: Any) -> tuple[Any, ...]:
+    """Arguments of a compiled function by their names, in the order of its parameters, for calls that cost no names.
+
+    `given` are the first parameters, which each call brings itself; `TypeError` for names that do not fit.
+    """
+    wanted = list(inspect.signature(getattr(function, "py_func", function)).parameters)
+    if wanted[: len(given)] != list(given) or set(wanted[len(given) :]) != set(named):
+        odd = set(wanted[len(given) :]) ^ set(named)
+        raise TypeError(f"{function}: {sorted(odd) or given} do not fit its parameters {wanted}")
+    return tuple(named[name] for name in wanted[len(given) :])
 
 
 @contextmanager

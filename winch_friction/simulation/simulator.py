@@ -17,6 +17,7 @@ from winch_friction.simulation.assembly import (
     schedule,
     viscous_parameters,
 )
+from winch_friction.simulation.compiling import in_order
 from winch_friction.simulation.control.settings import CONTROL_STATES
 from winch_friction.simulation.hidden.catalogue import apply_effects
 from winch_friction.simulation.model_errors import put_errors
@@ -24,7 +25,7 @@ from winch_friction.simulation.plant.friction_kernel import friction_kernel
 from winch_friction.simulation.plant.loop import run_periods
 from winch_friction.simulation.plant.point import POINT_LENGTH
 from winch_friction.simulation.plant.start import equilibrium, first_row
-from winch_friction.simulation.plant.state import COLUMNS, STATES
+from winch_friction.simulation.plant.state import COLUMNS, ROW, STATES
 from winch_friction.simulation.plant_file import PlantFile, load_plant
 from winch_friction.simulation.scenario import Scenario
 from winch_friction.simulation.sensors.channels import channels
@@ -92,19 +93,23 @@ class Simulator:
         nominal = np.array(self.model.values, float)
         terms = np.array(kernel.initial_states, float)
         step = 2.0 * np.pi / settings.encoder_counts if settings.encoder_counts and settings.quantisation else 0.0
+        spread = settings.pressure_noise if settings.noise else 0.0
         self._kernel = kernel
         self._x = np.zeros(POINT_LENGTH)
         self._state, self._memory = equilibrium(self._plant, self._control)
         self.feedforward = np.zeros(self.periods + 1)
         self.history = np.zeros((self.periods + 1, len(COLUMNS)))
-        self._arguments = (
-            self._plant[0], self._torque[0], self._control[0],
-            np.array([kernel.torque_address, kernel.rates_address], np.int64), nominal,
-            viscous_parameters(self.model), nominal.copy(), terms, np.zeros(2 * len(terms)), self._memory, self._x,
-            self._state, np.zeros((5, len(STATES))), np.zeros(CONTROL_STATES), np.zeros(4),
-            np.array([step, settings.pressure_noise if settings.noise else 0.0, self.period]), self._noise,
-            self._schedule, np.ascontiguousarray(self.motion.tip), self.motion.reference, self.motion.oil,
-            self.feedforward, self.history, max(1, round(self.period / self.scenario.step)),
+        self._arguments = in_order(
+            run_periods, "first", "count",
+            plant=self._plant[0], hidden=self._torque[0], controller=self._control[0],
+            addresses=np.array([kernel.torque_address, kernel.rates_address], np.int64),
+            nominal=nominal, viscous=viscous_parameters(self.model), theta=nominal.copy(),
+            z=terms, gains=np.zeros(2 * len(terms)), memory=self._memory, x=self._x,
+            state=self._state, stages=np.zeros((5, len(STATES))), control_memory=np.zeros(CONTROL_STATES),
+            measured=np.zeros(4), sensing=np.array([step, spread, self.period]), noise=self._noise,
+            schedule=self._schedule, motion=np.ascontiguousarray(self.motion.tip), reference=self.motion.reference,
+            oil=self.motion.oil, feedforward=self.feedforward, history=self.history.view(ROW)[:, 0],
+            substeps=max(1, round(self.period / self.scenario.step)),
         )  # fmt: skip
         self.tick = 0
         self._scan = 0

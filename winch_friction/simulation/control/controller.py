@@ -17,6 +17,15 @@ from winch_friction.simulation.control.settings import (
     TICKS,
     WASHOUT,
 )
+from winch_friction.simulation.plant.state import (
+    READ_ANGLE,
+    READ_DROP,
+    READ_PASSIVE,
+    READ_SPEED,
+    WANTED_ACCELERATION,
+    WANTED_ANGLE,
+    WANTED_SPEED,
+)
 
 
 @compiled
@@ -80,17 +89,18 @@ def control(c, memory, reference, measured, friction):
     """One period: reference (angle, speed, acceleration), measured (angle, speed, dp, passive dp), feedforward N m."""
     if c.mode == 0.0:
         memory[TICKS] += 1.0
-        return min(max(c.drive_displacement * reference[1], -c.pump_flow), c.pump_flow)
+        return min(max(c.drive_displacement * reference[WANTED_SPEED], -c.pump_flow), c.pump_flow)
     ahead = c.lead + c.period
-    jerk = extrapolate(c, memory, reference[2])
-    speed = reference[1] + reference[2] * ahead + 0.5 * jerk * ahead * ahead
-    acceleration = reference[2] + jerk * ahead
+    jerk = extrapolate(c, memory, reference[WANTED_ACCELERATION])
+    speed = reference[WANTED_SPEED] + reference[WANTED_ACCELERATION] * ahead + 0.5 * jerk * ahead * ahead
+    acceleration = reference[WANTED_ACCELERATION] + jerk * ahead
     smooth = spread_feedforward(c, memory, friction)
-    torque = c.static_torque - c.passive_displacement * measured[3] + c.inertia * acceleration + smooth
-    angle_error = reference[0] - measured[0]
+    torque = c.static_torque - c.passive_displacement * measured[READ_PASSIVE] + c.inertia * acceleration + smooth
+    angle_error = reference[WANTED_ANGLE] - measured[READ_ANGLE]
     if c.mode == 1.0:
-        command = pump_command(c, memory, speed, angle_error, torque / c.drive_displacement, measured[2])
+        command = pump_command(c, memory, speed, angle_error, torque / c.drive_displacement, measured[READ_DROP])
     else:
-        command = torque_command(c, memory, torque, reference[1] - measured[1], angle_error)
+        speed_error = reference[WANTED_SPEED] - measured[READ_SPEED]
+        command = torque_command(c, memory, torque, speed_error, angle_error)
     memory[TICKS] += 1.0
     return command

@@ -9,17 +9,32 @@ from winch_friction.simulation.plant.equations import gas_pressure, reported_gas
 from winch_friction.simulation.plant.integrator import integrate_period
 from winch_friction.simulation.plant.state import (
     ANGLE,
+    COUNTED_DISPLACEMENT,
     DIRECTION,
     DRIVE,
     E_FRICTION,
     E_HEAVE,
     E_IN,
     E_LOST,
+    ENCODER_STEP,
     LOAD,
+    NOISE_OF_DROP,
+    NOISE_OF_PASSIVE,
     P_A,
     P_B,
+    PERIOD,
+    PRESSURE_NOISE,
+    READ_ANGLE,
+    READ_DROP,
+    READ_PASSIVE,
+    READ_SPEED,
+    SET_BOOST,
+    SET_DISPLACEMENT,
     SPEED,
     TIP,
+    TIP_SPEED,
+    WANTED_LOAD,
+    WANTED_SPEED,
 )
 
 _OIL_REFERENCE = 40.0  # degC
@@ -46,14 +61,14 @@ def scale_viscous(p, nominal, viscous, theta, oil):
 @compiled
 def sense(p, sensing, state, measured, noise):
     """What the controller reads: encoder counts and pressures (angle, speed, dp, passive dp)."""
-    step = sensing[0]
+    step, spread = sensing[ENCODER_STEP], sensing[PRESSURE_NOISE]
     angle = math.floor(state[ANGLE] / step + 0.5) * step if step > 0.0 else state[ANGLE]
-    measured[1] = (angle - measured[0]) / sensing[2] if step > 0.0 else state[SPEED]
-    measured[0] = angle
-    measured[2] = pressure_difference(p, state) + sensing[1] * noise[0]
-    measured[3] = (
-        reported_gas_pressure(p, state) - p.passive_low + sensing[1] * noise[1] if p.passive_count > 0.0 else 0.0
-    )
+    measured[READ_SPEED] = (angle - measured[READ_ANGLE]) / sensing[PERIOD] if step > 0.0 else state[SPEED]
+    measured[READ_ANGLE] = angle
+    measured[READ_DROP] = pressure_difference(p, state) + spread * noise[NOISE_OF_DROP]
+    measured[READ_PASSIVE] = 0.0
+    if p.passive_count > 0.0:
+        measured[READ_PASSIVE] = reported_gas_pressure(p, state) - p.passive_low + spread * noise[NOISE_OF_PASSIVE]
 
 
 @compiled
@@ -67,61 +82,65 @@ def pressure_difference(p, state):
 
 @compiled
 def run_periods(
-    first, count, p, hidden, c, addresses, nominal, viscous, theta, z, gains, memory, x, state, stages, control_memory,
-    measured, sensing, noise, schedule, motion, reference, oil, feedforward, history, substeps,
+    first, count, plant, hidden, controller, addresses, nominal, viscous, theta, z, gains, memory, x, state, stages,
+    control_memory, measured, sensing, noise, schedule, motion, reference, oil, feedforward, history, substeps,
 ):  # fmt: skip
     """Advance `count` control periods from number `first`.
 
     `schedule` (periods + 1, 3): displacement, the controller's, boost pressure;
     `motion` (periods + 1, 4): tip height, speed, acceleration, water surface; `reference` (periods + 1, 4): shaft
-    angle, speed, acceleration, load target in m; `history` (periods + 1, len(COLUMNS)): filled from row `first + 1`.
+    angle, speed, acceleration, load target in m; `history` (periods + 1,): records of `state.ROW`,
+    filled from `first + 1`.
     """
+    p, c = plant, controller
     period = c.period
     for k in range(first, first + count):
         time = k * period
-        p.displacement, c.drive_displacement, p.boost_pressure = schedule[k, 0], schedule[k, 1], schedule[k, 2]
+        p.displacement, p.boost_pressure = schedule[k, SET_DISPLACEMENT], schedule[k, SET_BOOST]
+        c.drive_displacement = schedule[k, COUNTED_DISPLACEMENT]
         scale_viscous(p, nominal, viscous, theta, oil[k])
         sense(p, sensing, state, measured, noise[k])
         command = control(c, control_memory, reference[k], measured, feedforward[k])
         friction, tension, drum, acceleration = integrate_period(
-            p, hidden, addresses, theta, z, gains, memory, x, state, stages, time, command, motion[k : k + 2, 1:],
-            substeps, period, oil[k],
+            p, hidden, addresses, theta, z, gains, memory, x, state, stages, time, command,
+            motion[k : k + 2, TIP_SPEED:], substeps, period, oil[k],
         )  # fmt: skip
         row = history[k + 1]
         record_row(p, row, state, memory, motion[k + 1], reference[k + 1], friction, tension, drum)
-        row[0] = time + period
-        row[3] = acceleration
-        row[15] = command
-        row[19] = oil[k + 1]
-        row[22] = feedforward[k]
+        row.time = time + period
+        row.acceleration = acceleration
+        row.command = command
+        row.oil_temperature = oil[k + 1]
+        row.friction_feedforward = feedforward[k]
 
 
 @compiled
 def record_row(p, row, state, memory, motion, reference, friction, tension, drum):
-    """One row of the truth, in the order of `state.COLUMNS`."""
+    """The record of one period: the truth."""
     dp = pressure_difference(p, state)
-    row[1] = state[ANGLE]
-    row[2] = state[SPEED]
-    row[4] = state[P_A] if p.secondary == 0.0 else p.boost_pressure + max(dp, 0.0)
-    row[5] = state[P_B] if p.secondary == 0.0 else p.boost_pressure + max(-dp, 0.0)
-    row[6] = p.displacement
-    row[7] = gas_pressure(p, state) if p.passive_count > 0.0 else 0.0
-    row[8] = p.passive_low
-    row[9] = p.passive_displacement
-    row[10] = friction
-    row[11] = state[LOAD] - reference[3]
-    row[12] = state[TIP]
-    row[13] = motion[1]
-    row[14] = reference[1]
-    row[16] = drum
+    pump_driven = p.secondary == 0.0
+    row.shaft_angle = state[ANGLE]
+    row.motor_speed = state[SPEED]
+    row.pressure_a = state[P_A] if pump_driven else p.boost_pressure + max(dp, 0.0)
+    row.pressure_b = state[P_B] if pump_driven else p.boost_pressure + max(-dp, 0.0)
+    row.displacement = p.displacement
+    row.passive_pressure_a = gas_pressure(p, state) if p.passive_count > 0.0 else 0.0
+    row.passive_pressure_b = p.passive_low
+    row.passive_displacement = p.passive_displacement
+    row.passive_reported = reported_gas_pressure(p, state) if p.passive_count > 0.0 else 0.0
+    row.friction_torque = friction
+    row.position_error = state[LOAD] - reference[WANTED_LOAD]
+    row.heave = state[TIP]
+    row.heave_velocity = motion[TIP_SPEED]
+    row.speed_reference = reference[WANTED_SPEED]
+    row.drum_torque = drum
     paid_out = -p.metres_per_radian * state[ANGLE]
-    row[17] = drum / (GRAVITY * p.radius) - (p.mass + p.wire_mass * paid_out - p.reported_mass)
-    row[18] = p.wire_out - p.metres_per_radian * state[ANGLE]
-    row[20] = tension
-    row[21] = memory[DIRECTION]
-    row[23] = state[E_IN]
-    row[24] = state[E_HEAVE]
-    row[25] = state[E_FRICTION]
-    row[26] = state[E_LOST]
-    row[27] = stored_energy(p, state)
-    row[28] = reported_gas_pressure(p, state) if p.passive_count > 0.0 else 0.0
+    row.hook_load = drum / (GRAVITY * p.radius) - (p.mass + p.wire_mass * paid_out - p.reported_mass)
+    row.wire_out = p.wire_out + paid_out
+    row.tension = tension
+    row.direction = memory[DIRECTION]
+    row.energy_in = state[E_IN]
+    row.energy_heave = state[E_HEAVE]
+    row.energy_friction = state[E_FRICTION]
+    row.energy_lost = state[E_LOST]
+    row.energy_stored = stored_energy(p, state)

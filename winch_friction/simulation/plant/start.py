@@ -7,13 +7,13 @@ import numpy as np
 from winch_friction.physics.units import GRAVITY
 from winch_friction.simulation.plant.loop import record_row
 from winch_friction.simulation.plant.state import (
-    COLUMNS,
     DRIVE,
     E_IN,
     GAS_T,
     GAS_V,
     P_A,
     P_B,
+    ROW,
     STATES,
 )
 
@@ -36,9 +36,10 @@ def equilibrium(plant: np.ndarray, control: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def first_row(plant: np.ndarray, state: np.ndarray, motion: Any, history: np.ndarray) -> None:
-    """Row 0 of the history."""
+    """Row 0 of the history (periods + 1, len(COLUMNS))."""
     p = plant[0]
     drum = p["mass"] * GRAVITY * p["radius"]
     memory = np.zeros(2)
-    record_row(p, history[0], state, memory, motion.tip[0], motion.reference[0], 0.0, p["mass"] * GRAVITY, drum)
-    history[0, COLUMNS.index("oil_temperature")] = motion.oil[0]
+    first = history.view(ROW)[0, 0]
+    record_row(p, first, state, memory, motion.tip[0], motion.reference[0], 0.0, p["mass"] * GRAVITY, drum)
+    first["oil_temperature"] = motion.oil[0]

@@ -1,4 +1,6 @@
-"""What the plant carries: the places of its states and of the columns that each control period records."""
+"""What the plant carries: the places of its states, of what drives it, and the record of each control period."""
+
+import numpy as np
 
 STATES = (
     "shaft_angle",  # rad
@@ -24,6 +26,7 @@ ANGLE, SPEED, TIP, LOAD, LOAD_SPEED, P_A, P_B, DRIVE, DRIVE_RATE, GAS_V, GAS_T, 
 # memory that is updated exactly between the steps of the integrator
 DIRECTION, DWELL = range(2)
 
+# what each control period records, SI; one record per tick
 COLUMNS = (
     "time",
     "shaft_angle",
@@ -55,3 +58,12 @@ COLUMNS = (
     "energy_stored",
     "passive_reported",
 )
+ROW = np.dtype([(name, np.float64) for name in COLUMNS])
+
+# places in what a period is given: what the controller reads, how it reads, what is switched, what is prescribed
+READ_ANGLE, READ_SPEED, READ_DROP, READ_PASSIVE = range(4)
+ENCODER_STEP, PRESSURE_NOISE, PERIOD = range(3)
+SET_DISPLACEMENT, COUNTED_DISPLACEMENT, SET_BOOST = range(3)
+WANTED_ANGLE, WANTED_SPEED, WANTED_ACCELERATION, WANTED_LOAD = range(4)
+TIP_HEIGHT, TIP_SPEED, TIP_ACCELERATION, SURFACE = range(4)
+NOISE_OF_DROP, NOISE_OF_PASSIVE = range(2)

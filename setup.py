@@ -94,8 +94,8 @@ setup(
     install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "sympy>=1.12", "filterpy>=1.4.5", "pyyaml>=6.0"],
     extras_require=EXTRAS,
     zip_safe=False,
-    maintainer="The winch_friction developers",
-    maintainer_email="winch.friction@example.com",
+    maintainer="Seed f077614b maintainers",
+    maintainer_email="maintainers@users.noreply.h-seed-f077614b.example",
     description="Friction of a hydraulic winch: compensated and learned online, identified offline, questioned always.",
     license="Apache-2.0",
     entry_points={

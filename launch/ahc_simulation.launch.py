@@ -1,6 +1,9 @@
 """The whole loop: a simulated 150 t crane in a sea, its compensator and its estimator.
 
 ros2 launch winch_friction ahc_simulation.launch.py scenario:=ahc_irregular rate:=1.0
+
+Its time is the topic `clock` of its namespace, which the nodes take for their `/clock`: two loops in two namespaces
+do not share one. Without a namespace that is `/clock`.
 """
 
 from launch.actions import DeclareLaunchArgument
@@ -46,6 +49,7 @@ def lifecycle_node(name: str, own: dict[str, ParameterValue | bool]) -> Lifecycl
         namespace=LaunchConfiguration("namespace"),
         output="screen",
         parameters=[ParameterFile(LaunchConfiguration("params_file"), allow_substs=True), own],
+        remappings=[("/clock", "clock")],
         arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
     )
 

@@ -15,6 +15,8 @@ PACKAGE = "winch_friction"
 # outputs of the recorded nodes would answer beside those of the fresh ones; --clock makes the time
 NOT_PLAYED = ".*/(compensator|estimator|simulator)/.*|.*/friction_model|/diagnostics|/clock|/rosout|/parameter_events"
 
+CLOCK_RATE = "200"  # Hz; a watchdog of 0.1 s that goes by this clock sees it move
+
 
 def generate_launch_description() -> LaunchDescription:
     """The two nodes with one parameter file, and the player."""
@@ -50,15 +52,17 @@ def lifecycle_node(name: str) -> LifecycleNode:
     )
 
 
-def overrides() -> dict[str, ParameterValue]:
-    """Launch arguments that are parameters of every node."""
+def overrides() -> dict[str, ParameterValue | str]:
+    """Launch arguments that are parameters of every node; the watchdog goes by the recording's clock, not by how busy
+    this machine is."""
     names = ("use_sim_time", "autostart")
-    return {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}
+    own = {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}
+    return {**own, "watchdog_clock": "ros"}
 
 
 def player() -> ExecuteProcess:
     """`ros2 bag play` with a clock."""
-    options = ["--clock", "--rate", LaunchConfiguration("rate"), "--delay", LaunchConfiguration("delay")]
+    options = ["--clock", CLOCK_RATE, "--rate", LaunchConfiguration("rate"), "--delay", LaunchConfiguration("delay")]
     return ExecuteProcess(
         cmd=["ros2", "bag", "play", LaunchConfiguration("bag"), *options, "--exclude-regex", NOT_PLAYED],
         output="screen",

@@ -60,3 +60,16 @@ def test_default_parameter_file_is_shipped(path: Path) -> None:
     for each in parts:
         content = yaml.safe_load((ROOT.joinpath(*each)).read_text())
         assert all(set(section) == {"ros__parameters"} for section in content.values())
+
+
+def test_every_loop_has_a_clock_of_its_own() -> None:
+    """Two simulations in two namespaces would set each other's time."""
+    nodes = _calls(ast.parse((ROOT / "launch" / "ahc_simulation.launch.py").read_text()), "LifecycleNode")
+    for each in nodes:
+        remappings = next(keyword.value for keyword in each.keywords if keyword.arg == "remappings")
+        assert ast.literal_eval(remappings) == [("/clock", "clock")]
+
+
+def test_a_replay_does_not_go_by_the_walls_clock() -> None:
+    text = (ROOT / "launch" / "replay.launch.py").read_text()
+    assert '"watchdog_clock": "ros"' in text

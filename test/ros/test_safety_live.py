@@ -13,6 +13,7 @@ from dds_bench import CRANE, Bench, diagnostics, efforts
 from diagnostic_msgs.msg import DiagnosticArray
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
@@ -197,3 +198,16 @@ def test_the_consumer_lets_an_old_torque_go_and_takes_no_nonsense(
     applied = [each.effort[1] for each in truth]
     assert all(map(math.isfinite, applied))
     assert max(abs(b - a) for a, b in zip(applied[-60:-1], applied[-59:], strict=True)) < 100.0
+
+
+def test_two_loops_in_two_namespaces_have_a_clock_each(bench: Bench) -> None:
+    """As `ahc_simulation.launch.py` starts them."""
+    arguments = ("-r", "__ns:=/north", "-r", "/clock:=clock")
+    bench.start("simulator", *arguments, name="north_simulator", rate=1.0)
+    bench.start("compensator", *arguments, name="north", use_sim_time=True, ramp_time=0.3, watchdog_timeout=5.0)
+    own, common = bench.listen("north/clock", Clock), bench.listen("/clock", Clock)
+    torque = bench.listen("north/compensator/friction_torque")
+    assert bench.spin(90.0, lambda: len(torque) > 100)
+    assert own
+    assert not common
+    assert bench.node.count_publishers("/clock") == 0

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.signals import Run
 
 app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
@@ -17,6 +18,7 @@ def run(
     source: Annotated[Path, typer.Argument(help="Run file or bag.")],
     out: Annotated[list[Path], OUT],
     crane: Annotated[str, typer.Option(help="Crane: for drum speeds and displacement fractions.")] = "",
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
 ) -> None:
     """Convert a run file or bag.
@@ -26,9 +28,10 @@ def run(
       winch-friction convert run log.csv log.parquet log.mcap
     """
     from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.runs import read_run
 
-    content = read_run(source, load_crane(crane) if crane else None)
+    content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
     show_warnings(content.warnings)
     _write(content, out, as_json)
 

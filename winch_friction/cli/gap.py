@@ -41,6 +41,7 @@ def command(
     ] = None,
     fmu: Annotated[OptionalPath, typer.Option(help="FMU of your own simulation, to compare with.")] = None,
     fmu_map: Annotated[OptionalPath, typer.Option(help="Which run columns are which variables of the FMU.")] = None,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; gap.json says so.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
@@ -53,7 +54,8 @@ def command(
 
         blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json)
         return
-    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, fmu, fmu_map)
+    files = (fmu, fmu_map, params_file)
+    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, *files)
     if as_json:
         show_json(content)
     else:
@@ -72,6 +74,7 @@ def run_gap(
     force: bool = False,
     fmu: Path | None = None,
     fmu_map: Path | None = None,
+    params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
     from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
@@ -80,6 +83,7 @@ def run_gap(
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.atomic import write_text
+    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
     from winch_friction.records.runs import read_run
 
@@ -92,7 +96,8 @@ def run_gap(
     seed_model = load_model(model)
     loaded_crane = crane_of(crane, seed_model, paths)
     refuse_other_crane(seed_model, loaded_crane)
-    read = [read_run(path, loaded_crane) for path in progress(paths, "reading runs")]
+    mapping = bag_options_of(params_file)
+    read = [read_run(path, loaded_crane, **mapping) for path in progress(paths, "reading runs")]
     for run in read:
         show_warnings(run.warnings)
     read = _simulated(read, fmu, fmu_map)

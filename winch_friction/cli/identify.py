@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.optional import OptionalPaths, OptionalTexts
+from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts
 
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
 
@@ -100,6 +100,7 @@ def system(
     restarts: Restarts = 3,
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
@@ -112,13 +113,15 @@ def system(
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
+    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
     from winch_friction.records.runs import read_runs
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     supplied = load_model(motor).only("motor")
     known = crane_of(crane, supplied, runs)
-    tests, others = read_runs(runs, known), read_runs(held_out, known)
+    mapping = bag_options_of(params_file)
+    tests, others = read_runs(runs, known, **mapping), read_runs(held_out, known, **mapping)
     forced = refuse_implausible([*tests, *others], known, force=force, near=runs)
     found = identify_system(
         tests,

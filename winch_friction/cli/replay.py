@@ -20,8 +20,8 @@ def command(
     picture: Annotated[OptionalPath, typer.Option(help="Report of it: .html, or a still picture: .png, .svg.")] = None,
     learn: Annotated[bool, typer.Option(help="Let the compensator take over what the estimator learns.")] = True,
     remap: Annotated[OptionalTexts, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
-    joint: Annotated[str, typer.Option(help="Joint of the speed.")] = "winch_motor",
-    pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "gauge",
+    joint: Annotated[str, typer.Option(help="Joint of the speed; none: params-file's, or winch_motor.")] = "",
+    pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "",
     namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Summary as JSON.")] = False,
@@ -40,12 +40,13 @@ def command(
     from winch_friction.cli.inputs import crane_of
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
 
-    options = bag_options(remap or [], joint, pressure_reference, namespace)
+    options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
     if terms_file is not None:
         load_file(terms_file)
     settings = settings_from_file(params_file) if params_file else None
@@ -94,9 +95,11 @@ def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace
     pairs = dict(each.split("=", 1) for each in remap if "=" in each)
     if len(pairs) != len(remap):
         raise InputError("--remap: write TOPIC=NAME_IN_THE_BAG, e.g. winch/joint_states=/joint_states")
-    options: dict[str, Any] = {"speed_joint": joint, "pressure_reference": pressure_reference}
-    if joint not in ("winch_motor", "winch_drum"):
+    options: dict[str, Any] = {"speed_joint": joint} if joint else {}
+    if joint not in ("", "winch_motor", "winch_drum"):
         options["motor_joint"] = joint
+    if pressure_reference:
+        options["pressure_reference"] = pressure_reference
     return {**options, **({"remap": pairs} if pairs else {}), **({"namespace": namespace} if namespace else {})}
 
 

@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 from winch_friction.physics.options import check, option
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
+from winch_friction.records.mapping import InputMapping
 
 
 @dataclass(frozen=True)
-class NodeOptions:
+class NodeOptions(InputMapping):
     """Files, conventions of the inputs and the node's own habits. Raises `InputError` for values out of range."""
 
     autostart: bool = option(True, doc="configure and activate at start, without waiting for a lifecycle manager")
@@ -16,17 +15,6 @@ class NodeOptions:
     model_file: str = option("a6vm215_crane2", doc="model file or shipped name: the seed, and what ~/load_model loads")
     terms_file: str = option(
         "", doc="Python file that declares friction terms of your own, which the model files may name; it is run"
-    )
-    groups: tuple[str, ...] = option(("active", "passive"), doc="motor groups on the shaft, by their names in topics")
-    speed_joint: str = option(
-        "winch_motor", choices=("winch_motor", "winch_drum"), doc="joint whose speed winch/joint_states carries"
-    )
-    pressure_reference: str = option("gauge", choices=PRESSURE_REFERENCES, doc="what the pressure transducers measure")
-    displacement_unit: str = option(
-        "fraction", choices=DISPLACEMENT_UNITS, doc="unit of the displacement joints: of the maximum, or m3/rad"
-    )
-    float64_inputs: tuple[str, ...] = option(
-        (), doc="channels that a plain bridge sends as std_msgs/Float64, stamped on receipt, e.g. active.pressure_a"
     )
     diagnostics_period: float = option(1.0, lower=0.05, upper=60.0, unit="s", doc="time between diagnostics")
     watchdog_timeout: float = option(
@@ -41,17 +29,6 @@ class NodeOptions:
 
     def __post_init__(self) -> None:
         check(self)
-
-    def topics(self, crane: Crane) -> TopicMap:
-        """The input topics of this crane under these conventions."""
-        return crane_topics(
-            crane,
-            self.groups,
-            speed_joint=self.speed_joint,
-            pressure_reference=self.pressure_reference,
-            displacement_unit=self.displacement_unit,
-            float64_channels=self.float64_inputs,
-        )
 
 
 READ_WITH_MODEL = ("crane", "model_file", "terms_file")  # may change at any time, and count from the next reading on

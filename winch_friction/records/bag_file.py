@@ -9,7 +9,7 @@ from typing import Any
 from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.topics import Input, TopicMap, crane_topics, stamp_time
+from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
 NANOSECOND = 1e-9
 _PEEKED = 20  # messages looked at to tell a displacement's unit
@@ -183,6 +183,9 @@ def _topics(
     path: Path, reader: Any, typestore: Any, crane: Crane | None, groups: tuple[str, ...],
     found: Mapping[str, str], conventions: dict[str, Any],
 ) -> TopicMap:  # fmt: skip
+    types = {each.topic: each.msgtype for each in reader.connections}
+    if "float64_channels" not in conventions:  # what comes plain in the bag came plain from the bridge
+        conventions["float64_channels"] = _plain_channels(groups, {c for c, t in found.items() if types[t] == FLOAT64})
     if "displacement_unit" not in conventions:
         plain = [found[f"winch/{g}/displacement"] for g in groups if f"winch/{g}/displacement" in found]
         conventions["displacement_unit"] = _displacement_unit(reader, typestore, plain)
@@ -193,13 +196,22 @@ def _topics(
     return TopicMap(groups=groups, **conventions)
 
 
+def _plain_channels(groups: tuple[str, ...], plain: set[str]) -> tuple[str, ...]:
+    """First channels of the held inputs whose topics are std_msgs/Float64 in the bag; a speed without a stamp must be
+    asked for."""
+    topics = TopicMap(groups=groups)
+    held = {topic: s for topic, s in topics.inputs.items() if topic != topics.speed_topic and s.stamped}
+    return tuple(source.channels[0] for topic, source in held.items() if topic in plain)
+
+
 def _displacement_unit(reader: Any, typestore: Any, topics: list[str]) -> str:
     """Settings up to 1 and m^3/rad of about 1e-5 lie five decades apart: the numbers tell."""
-    connections = [c for c in reader.connections if c.topic in topics and c.msgtype.endswith("JointState")]
+    connections = [c for c in reader.connections if c.topic in topics]
     if not connections:
         return "m3_per_rad"
     for count, (connection, _, raw) in enumerate(reader.messages(connections)):
-        positions = typestore.deserialize_cdr(raw, connection.msgtype).position
+        message = typestore.deserialize_cdr(raw, connection.msgtype)
+        positions = [message.data] if connection.msgtype == FLOAT64 else getattr(message, "position", ())
         if any(abs(value) > _LARGEST_DISPLACEMENT for value in positions):
             return "fraction"
         if count >= _PEEKED:

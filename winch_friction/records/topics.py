@@ -54,6 +54,7 @@ class TopicMap:
 
     `pressure_reference`: 'gauge' or 'absolute', what the transducers' messages mean; `displacement_unit`: 'fraction' of
     `max_displacement` (m^3/rad) or 'm3_per_rad'; `speed_joint` is `motor_joint` or `drum_joint` (times `gear_ratio`);
+    `swash_joint` names the joint of a group's displacement;
     `float64_channels` come from a simple bridge as std_msgs/Float64; `drive_scalars` are the channels,
     besides the motor torque, that the crane's drive is known by. Raises `InputError` for unknown choices.
     """
@@ -66,6 +67,7 @@ class TopicMap:
     motor_joint: str = "winch_motor"
     drum_joint: str = "winch_drum"
     speed_joint: str = "winch_motor"
+    swash_joint: str = "{group}_swash"
     float64_channels: tuple[str, ...] = ()
     prefix: str = "winch"
     drive_scalars: tuple[str, ...] = DRIVE_SCALARS
@@ -86,6 +88,10 @@ class TopicMap:
     def speed_topic(self) -> str:
         """The topic that drives the sampling."""
         return f"{self.prefix}/joint_states"
+
+    def swash_of(self, group: str) -> str:
+        """Name of the joint that carries a group's displacement."""
+        return self.swash_joint.replace("{group}", group)
 
     def _motion(self) -> Input:
         ratio = self.gear_ratio if self.speed_joint == self.drum_joint else 1.0
@@ -129,7 +135,7 @@ class TopicMap:
         ]
 
     def _displacement(self, group: str) -> Input:
-        channel, joint, factor = f"{group}.displacement", f"{group}_swash", self._displacement_factor
+        channel, joint, factor = f"{group}.displacement", self.swash_of(group), self._displacement_factor
 
         def decode(message: Any) -> Readings:
             index = _joint_index(message, joint)
@@ -208,7 +214,7 @@ class TopicMap:
         ]
         if values.displacement == values.displacement:
             setting = values.displacement / self._displacement_factor
-            out.append((f"{base}/displacement", joint_state(factory, header, f"{group}_swash", position=setting)))
+            out.append((f"{base}/displacement", joint_state(factory, header, self.swash_of(group), position=setting)))
         return out
 
     def _encode_motion(self, sample: Sample, header: Any, factory: MessageFactory) -> Any:

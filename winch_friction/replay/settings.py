@@ -7,10 +7,10 @@ from typing import Any
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.estimation import EstimatorConfig
-from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
 from winch_friction.physics.options import from_mapping
+from winch_friction.records.mapping import parameters_of
 from winch_friction.records.model_file import load_model
 from winch_friction.records.strict_yaml import read_yaml
 
@@ -79,9 +79,7 @@ def settings_from_file(path: Path) -> ReplaySettings:
     Terms of a `terms_file` are registered, so read the settings before the models.
     """
     content = read_yaml(path)
-    if not isinstance(content, Mapping):
-        raise InputError(f"{path}: not a ROS parameter file: expected node names with ros__parameters")
-    compensator, estimator = _parameters(content, "compensator", path), _parameters(content, "estimator", path)
+    compensator, estimator = (parameters_of(content, node, str(path)) for node in ("compensator", "estimator"))
     for each in (compensator, estimator):
         if terms_file := each.get("terms_file"):
             load_file(terms_file)
@@ -92,17 +90,6 @@ def settings_from_file(path: Path) -> ReplaySettings:
     config = from_mapping(CompensatorConfig, _of(CompensatorConfig, compensator), f"{path}: compensator")
     phase = Phase(config=config, follow_models=bool(compensator.get("follow_model_topic", True)))
     return ReplaySettings((phase,), from_mapping(EstimatorConfig, _of(EstimatorConfig, estimator), str(path)), **own)
-
-
-def _parameters(content: Mapping[str, Any], node: str, path: Path) -> dict[str, Any]:
-    """Parameters of a node: those of every node (`/**`) and its own."""
-    merged: dict[str, Any] = {}
-    for name, section in content.items():
-        if str(name).rsplit("/", 1)[-1] in ("**", node):
-            if not isinstance(section, Mapping) or "ros__parameters" not in section:
-                raise InputError(f"{path}: {name} has no ros__parameters; is this a ROS parameter file?")
-            merged |= section["ros__parameters"] or {}
-    return merged
 
 
 def _of(kind: type, parameters: Mapping[str, Any]) -> dict[str, Any]:

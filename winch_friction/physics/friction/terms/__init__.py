@@ -6,8 +6,14 @@ from winch_friction.physics.friction.terms import (
     effects_motor,
     effects_winch,
     gear_and_drum,
+    laws_fluid,
+    laws_motor,
+    laws_winch,
     motor,
     paper1,
 )
 
-__all__ = ["drive", "effects_memory", "effects_motor", "effects_winch", "gear_and_drum", "motor", "paper1"]
+__all__ = [
+    "drive", "effects_memory", "effects_motor", "effects_winch", "gear_and_drum", "laws_fluid", "laws_motor",
+    "laws_winch", "motor", "paper1",
+]  # fmt: skip

@@ -1,0 +1,71 @@
+"""Other laws of motors and lines: exponents that the literature leaves open, one port, one direction."""
+
+import sympy as sp
+
+from winch_friction.physics.friction.registry import register
+from winch_friction.physics.friction.symbols import D, X, n, oil_temperature, p, p_sum, s, w
+from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.friction.terms.effects_winch import walther
+from winch_friction.physics.units import BAR, RPM
+
+FULL_SPEED, FULL_PRESSURE = 2000.0 * RPM, 200.0 * BAR  # normalise powers: a factor keeps one unit for every exponent
+FULL_FLOW = 0.02  # m^3/s, of one group of motors at speed
+_TINY = 1e-6
+_NU_40 = float(walther(40.0))
+
+c_lp = Parameter("c_lp", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement")
+a_lp = Parameter("a_lp", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="exponent of the pressure")
+b_lp = Parameter("b_lp", "1", 1.0, lower=1.0, upper=5.0, shape=True, doc="exponent of 1 - D/X")
+K_pp = Parameter("K_pp", "N*m", 10.0, lower=-100.0, upper=1e3, doc="port loss at 2000 rpm and full displacement")
+n_pp = Parameter("n_pp", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
+m_pp = Parameter("m_pp", "1", 2.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
+T_cv = Parameter("T_cv", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm and 40 degC")
+n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.0, shape=True, doc="exponent of the speed")
+K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
+n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
+c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")
+w_np = Parameter("w_np", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
+a_np = Parameter("a_np", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
+p_l = Parameter("p_l", "Pa", 2e5, upper=1e7, doc="pressure lost between transducer and motor at 0.02 m^3/s")
+n_l = Parameter("n_l", "1", 1.75, lower=0.5, upper=3.0, shape=True, doc="exponent of the flow")
+b_l = Parameter(
+    "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
+)
+c_hi = Parameter("c_hi", "m^3/rad", 5e-7, lower=-1e-4, upper=1e-4, doc="loss per pressure at the high port")
+c_lo = Parameter("c_lo", "m^3/rad", 2e-6, lower=-1e-4, upper=1e-4, doc="loss per pressure at the low port")
+
+
+def _motor(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], source: str, place: str = "motor") -> Term:
+    return register(Term(name, equation, parameters, Scope.MOTOR, source, place))
+
+
+_p, _w, _x = p / FULL_PRESSURE + _TINY, w / FULL_SPEED + _TINY, D / X
+low_displacement_power = _motor(
+    "low_displacement_power", c_lp.symbol * _p**a_lp.symbol * (sp.Abs(1 - _x) + _TINY) ** b_lp.symbol,
+    (c_lp, a_lp, b_lp), "paper 2 section 5, with the exponents left open",
+)  # fmt: skip
+port_power = _motor(
+    "port_power", K_pp.symbol * _w**n_pp.symbol * _x**m_pp.symbol, (K_pp, n_pp, m_pp),
+    "paper 1 eq 11, with the exponents of speed and displacement apart",
+)  # fmt: skip
+churning_viscous = _motor(
+    "churning_viscous", T_cv.symbol * _w**n_cv.symbol * (walther(oil_temperature) / _NU_40) ** sp.Rational(1, 4),
+    (T_cv, n_cv), "Changenet and Velex 2007: churning grows with a small power of the viscosity",
+)  # fmt: skip
+high_pressure_power = _motor(
+    "high_pressure_power",
+    K_hp.symbol * _p**n_hp.symbol,
+    (K_hp, n_hp),
+    "paper 1 eq 10, C_m, with the exponent left open",
+)
+notch_power = _motor(
+    "notch_power",
+    c_np.symbol * 2 * w * w_np.symbol / (w**2 + w_np.symbol**2) * _p**a_np.symbol * _x, (c_np, w_np, a_np),
+    "paper 1 eq 12 (C_k), with speed and exponent left open",
+)  # fmt: skip
+line_pressure_power = _motor(
+    "line_pressure_power", p_l.symbol * D * (n * D * w / FULL_FLOW + _TINY) ** n_l.symbol * (1 + b_l.symbol * s),
+    (p_l, n_l, b_l), "Blasius 1913 for 1.75, Hagen-Poiseuille for 1; a check valve opens one way", "fluid",
+)  # fmt: skip
+case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")
+case_low_port = _motor("case_low_port", c_lo.symbol * (p_sum - p) / 2, (c_lo,), "loss with one port's pressure alone")

@@ -1,0 +1,84 @@
+"""Other laws of gears, drum, seals and contacts: the shape of a rise, of a drift, of what a rest leaves behind."""
+
+import sympy as sp
+
+from winch_friction.physics.friction.registry import register
+from winch_friction.physics.friction.symbols import T_d, gear_ratio, time, w
+from winch_friction.physics.friction.term import Parameter, Scope, State, Term
+
+REST_SPEED = 0.5  # rad/s; below it a contact ages
+SLIDING_TO_FORGET = 300.0  # rad of shaft, some turns of a gear wheel, after which the rest is forgotten
+LOAD_SCALE = 5e5  # N m of drum torque, some tens of tonnes: normalises powers of the load
+
+C1_g = Parameter("C1_g", "1", 1e-5, upper=1e-3, doc="Stribeck rise per drum torque")
+C3_g = Parameter("C3_g", "N*m", 1.0, upper=100.0, doc="Stribeck rise without load")
+v_g = Parameter("v_g", "rad/s", 20.0, lower=0.5, upper=300.0, shape=True, doc="Stribeck speed")
+C1_l = Parameter("C1_l", "1", 1e-5, upper=1e-3, doc="Stribeck rise per drum torque")
+C3_l = Parameter("C3_l", "N*m", 1.0, upper=100.0, doc="Stribeck rise without load")
+v_l = Parameter("v_l", "rad/s", 20.0, lower=0.5, upper=300.0, shape=True, doc="Stribeck speed")
+F_dv = Parameter("F_dv", "N*m", 5.0, upper=200.0, doc="growth of the break-away torque, without load")
+c_dv = Parameter("c_dv", "1", 8e-6, upper=1e-3, doc="growth of the break-away torque, per drum torque")
+g_dv = Parameter("g_dv", "1/s", 0.3, lower=1e-3, upper=10.0, shape=True, doc="rate of growth at rest")
+v_dv = Parameter("v_dv", "rad/s", 10.0, lower=0.5, upper=200.0, shape=True, doc="speed of one e-fold of its decay")
+C_ws = Parameter("C_ws", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level in the end")
+t_ws = Parameter("t_ws", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
+tau_ws = Parameter("tau_ws", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="time of one e-fold")
+C_wl = Parameter("C_wl", "N*m", 1.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level per e-fold of time")
+t_wl = Parameter("t_wl", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
+tau_wl = Parameter("tau_wl", "s", 1e5, lower=1.0, upper=1e12, shape=True, doc="time from which on it is logarithmic")
+c_gp = Parameter("c_gp", "N*m", 5.0, lower=-200.0, upper=200.0, doc="loss per motor at a drum torque of 500 kN m")
+n_gp = Parameter("n_gp", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+c_sp = Parameter("c_sp", "1", 0.02, lower=-0.2, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
+n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
+n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+
+_h = sp.Symbol("z_held", real=True)
+_rest = sp.exp(-w / REST_SPEED)
+_tiny = 1e-9  # of the load scale; keeps derivatives by an exponent finite without load
+_load = sp.Abs(T_d) / LOAD_SCALE + _tiny
+
+
+def _system(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], source: str, **more: object) -> Term:
+    return register(Term(name, equation, parameters, Scope.SYSTEM, source, "gear and drum", **more))  # type: ignore[arg-type]
+
+
+stribeck_gauss = _system(
+    "stribeck_gauss", (C1_g.symbol * T_d + C3_g.symbol) * sp.exp(-((w / v_g.symbol) ** 2)), (C1_g, C3_g, v_g),
+    "Bo and Pavelescu 1982, exponent 2; Armstrong-Helouvry 1991",
+)  # fmt: skip
+stribeck_lorentz = _system(
+    "stribeck_lorentz", (C1_l.symbol * T_d + C3_l.symbol) / (1 + (w / v_l.symbol) ** 2), (C1_l, C3_l, v_l),
+    "Hess and Soom 1990",
+)  # fmt: skip
+dwell_by_speed = _system(
+    "dwell_by_speed", (F_dv.symbol + c_dv.symbol * T_d) * _h * sp.exp(-w / v_dv.symbol), (F_dv, c_dv, g_dv, v_dv),
+    "Kato 1972 for the growth; Armstrong-Helouvry 1991: the grown part follows the Stribeck curve",
+    state=State(
+        _h, gain=g_dv.symbol * _rest, decay=g_dv.symbol * _rest + w / SLIDING_TO_FORGET,
+        doc="age of the contact, 0 ... 1"
+    ),
+)  # fmt: skip
+_since = sp.Piecewise((0.0, time <= t_ws.symbol), ((time - t_ws.symbol) / tau_ws.symbol, True))
+wear_saturating = _system(
+    "wear_saturating", C_ws.symbol * (1 - sp.exp(-_since)), (C_ws, t_ws, tau_ws), "run-in of seals: a first-order lag"
+)
+_after = sp.Piecewise((0.0, time <= t_wl.symbol), ((time - t_wl.symbol) / tau_wl.symbol, True))
+wear_logarithmic = _system(
+    "wear_logarithmic", C_wl.symbol * sp.log(1 + _after), (C_wl, t_wl, tau_wl), "Ludema 1996: logarithmic run-in"
+)
+gear_load_power = _system(
+    "gear_load_power", c_gp.symbol * _load**n_gp.symbol, (c_gp, n_gp), "a power of the load: Hertzian contacts, bending"
+)
+sheave_power = register(
+    Term(
+        "sheave_power", c_sp.symbol * LOAD_SCALE / gear_ratio * _load**n_sp.symbol, (c_sp, n_sp), Scope.SHAFT,
+        "Feyrer 2015: bending loss of a rope grows less than its tension", "gear and drum",
+    )
+)  # fmt: skip
+gear_asymmetry_power = register(
+    Term(
+        "gear_asymmetry_power", e_gp.symbol * LOAD_SCALE / gear_ratio * _load**n_ep.symbol, (e_gp, n_ep),
+        Scope.SHAFT, "gear efficiency by direction, a power of the load", "gear and drum", opposing=False,
+    )
+)  # fmt: skip

@@ -89,7 +89,7 @@ def draw_world(rng: np.random.Generator) -> World:
     return World(
         f"drawn_{rng.integers(1e6):06d}", gear, radii, size, active, motors - active,
         INERTIA * rotor * rng.uniform(0.6, 1.6), 4.1e3 * rope**2, ROPE_STRENGTH * rope**2 * rng.uniform(0.8, 1.2),
-        LINE_VOLUME * oil * rng.uniform(0.7, 1.4), PUMP_FLOW * oil * rng.uniform(0.9, 1.5),
+        LINE_VOLUME * active * ratio / 3.0 * rng.uniform(0.7, 1.4), PUMP_FLOW * oil * rng.uniform(0.9, 1.5),
         _draw_seed(rng, ratio, motors * gear),
     )  # fmt: skip
 

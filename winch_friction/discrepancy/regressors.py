@@ -80,7 +80,16 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                 lower.append(low)
                 upper.append(high)
             slots.append(
-                Slot(candidate.name, shape.label, columns, candidate.brings, candidate.plausible, (candidate, shape))
+                Slot(
+                    candidate.name,
+                    shape.label,
+                    columns,
+                    candidate.brings,
+                    candidate.plausible,
+                    (candidate, shape),
+                    candidate.law_name,
+                    candidate.free,
+                )
             )
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
 

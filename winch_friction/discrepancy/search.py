@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Untestable
-from winch_friction.discrepancy.candidates.catalogue import all_candidates, testable
+from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
 from winch_friction.discrepancy.detectors import flow_balance, reversals
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
@@ -54,7 +54,9 @@ def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
     ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    usable, blind = testable(options.candidates or all_candidates(options.effects_file), prepared, model)
+    usable, blind = testable(
+        options.candidates or candidates_for(prepared, model, options.effects_file), prepared, model
+    )
     candidates = [each for each in usable if each.regime == MOVING]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
     cross = _cleaned(at_seed, ripple, _waves(at_seed, ripple)).cross(split.train)
@@ -98,8 +100,9 @@ def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.
 
 def _refined(candidates: Sequence[Candidate], explanation: Explanation) -> list[Candidate]:
     """The candidates, those that were found with a finer grid of shapes."""
-    found = {slot.name: slot.origin[1] for slot in explanation.slots}
-    return [each.refined(found[each.name]) if each.name in found else each for each in candidates]
+    found = {(slot.name, slot.law): slot.origin[1] for slot in explanation.slots}
+    own = [(each.name, each.law_name) for each in candidates]
+    return [each.refined(found[k]) if k in found else each for each, k in zip(candidates, own, strict=True)]
 
 
 def _waves(expansion: Expansion, ripple: Ripple | None) -> Mapping[str, FloatArray]:

@@ -41,6 +41,8 @@ class Thresholds:
     rival_share: float = 0.03  # of the effect's own gain: a rival within it does as well for any purpose
     rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
     most_names: int = 3  # in a set
+    free_charge: float = 0.05  # of what a flexible member saves, that a law of the literature may save less
+    free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     # -- remainder
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves

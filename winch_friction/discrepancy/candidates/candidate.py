@@ -107,7 +107,7 @@ class Candidate:
     and 'inertia' by a correction.
     """
 
-    name: str
+    name: str  # of the cause
     law: str
     linear: tuple[Parameter, ...] = ()
     columns: Columns = no_columns
@@ -115,6 +115,9 @@ class Candidate:
     kind: str = "friction"
     regime: str = MOVING
     term: Term | None = None  # the friction term to put into the repaired model
+    # -- which member of the cause's family it is
+    law_name: str = ""  # empty: the catalogue's own law
+    free: bool = False  # a monotone curve through the data instead of a law of the literature
     # -- when it is looked for
     needs: tuple[str, ...] = ()  # run columns
     presumes: tuple[str, ...] = ()  # terms of which the model must have one
@@ -161,9 +164,15 @@ class Candidate:
 def _finer(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> list[Shape]:
     given = candidate.shapes(runs)
     axes = {name: _between(shape.values[name], (v.values[name] for v in given)) for name in candidate.continuous}
-    points = itertools.product(*axes.values())
+    # one axis at a time where there are several: neighbours of neighbours would be too many
+    points = itertools.product(*axes.values()) if len(axes) < 2 else _one_by_one(axes, shape)
     finer = [{**shape.values, **dict(zip(axes, point, strict=True))} for point in points]
     return given + [replace(shape, label=label_of(values), values=values) for values in finer if values != shape.values]
+
+
+def _one_by_one(axes: Mapping[str, Sequence[float]], shape: Shape) -> list[tuple[float, ...]]:
+    own = [shape.values[name] for name in axes]
+    return [(*own[:k], value, *own[k + 1 :]) for k, axis in enumerate(axes.values()) for value in axis]
 
 
 def _between(value: float, grid: Iterable[float]) -> list[float]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, NOWHERE, Candidate, Untestable
+from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates
 from winch_friction.discrepancy.candidates.signals import signal_candidates
@@ -35,11 +36,19 @@ def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
     found = [*DETECTED, *shipped_friction(), *signal_candidates(), *geometry_candidates()]
     if effects_file is not None:
         found += [friction_candidate(term) for term in load_file(Path(effects_file))]
-    names = [each.name for each in found]
+    found += literature()
+    names = [each.name for each in found if not each.law_name]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise InputError(f"{effects_file}: effect '{twice[0]}' exists already; give it another name")
     return found
+
+
+def candidates_for(
+    runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None
+) -> list[Candidate]:
+    """Every candidate, and of each family the free member over what these runs have covered."""
+    return [*all_candidates(effects_file), *free_members(runs, model)]
 
 
 def testable(
@@ -56,4 +65,6 @@ def testable(
             usable.append(each)
         else:
             blind.append(reason)
-    return usable, blind
+    seen = {each.name for each in usable}
+    own = {each.name: each for each in reversed(blind) if each.name not in seen}
+    return usable, list(reversed(own.values()))

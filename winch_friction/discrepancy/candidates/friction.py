@@ -127,7 +127,12 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     functions = compiled((term,), len(run.groups), run.constants)
     theta = tuple(values.get(p.name, 1.0) for p in functions.parameters)
     z = state_history(functions, run.point, theta, run.dt)
+    # a term is linear in what is no shape, so one parameter at one and the others at zero give its derivative
+    units = [
+        tuple(float(q is p) if not q.shape else values.get(q.name, 1.0) for q in functions.parameters)
+        for p in functions.parameters
+        if not p.shape
+    ]
     with np.errstate(all="ignore"):
-        parts = functions.vector_gradient(run.point, theta, z)
-    keep = [k for k, p in enumerate(functions.parameters) if not p.shape]
-    return np.nan_to_num(broadcast_columns([parts[k] for k in keep], len(run.time)))
+        parts = [functions.vector_torque(run.point, unit, z) for unit in units]
+    return np.nan_to_num(broadcast_columns(parts, len(run.time)))

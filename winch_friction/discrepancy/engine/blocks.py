@@ -17,6 +17,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 class Slot:
     """Where one shape of one candidate has its columns.
 
+    `law` tells the members of one candidate's family apart, `free` marks the flexible one.
     `brings` names candidates that belong to it, `most` is the largest amplitude (in units of its columns) that is
     believed; `origin` is whatever the caller made the columns of.
     """
@@ -27,6 +28,8 @@ class Slot:
     brings: tuple[str, ...] = ()
     most: float = float("inf")
     origin: Any = None
+    law: str = ""
+    free: bool = False
 
 
 @dataclass(frozen=True)

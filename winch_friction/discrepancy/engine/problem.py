@@ -50,7 +50,8 @@ class Layout:
 
     def slot_like(self, other: Slot) -> Slot:
         """The slot of the same candidate and shape as one of another layout."""
-        return next(each for each in self.slots if (each.name, each.label) == (other.name, other.label))
+        own = (other.name, other.law, other.label)
+        return next(each for each in self.slots if (each.name, each.law, each.label) == own)
 
 
 @dataclass(frozen=True)

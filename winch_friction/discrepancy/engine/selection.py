@@ -65,7 +65,7 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
         worthy = (
             _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LIMITS.least_inside) & (worth >= least)
         )
-        order = np.argsort([each.loss for each in trials])
+        order = np.argsort([_charged(current.loss, each.loss, each.slots[-1]) for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
@@ -115,16 +115,38 @@ def _considered(
 
 
 def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
-    """Every candidate that is not taken added to the set, each in the variant that fits the training runs best."""
-    best: dict[str, tuple[float, Slot]] = {}
+    """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
+    each family the law that does best on held-out runs.
+    """
+    return _heads(
+        current.loss, [cross.explain((*current.slots, slot)) for slot in _fitted(cross, current.slots, taken)]
+    )
+
+
+def _fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list[Slot]:
+    """Of each law of each candidate the variant that fits the training runs best beside the rest."""
+    best: dict[tuple[str, str], tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
-        name = slot.name
-        if name in taken:
+        if slot.name in taken:
             continue
-        loss, _ = cross.train_loss((*current.slots, slot))
-        if name not in best or loss < best[name][0]:
-            best[name] = (loss, slot)
-    return [cross.explain((*current.slots, slot)) for _, slot in best.values()]
+        loss, _ = cross.train_loss((*rest, slot))
+        key = (slot.name, slot.law)
+        if key not in best or loss < best[key][0]:
+            best[key] = (loss, slot)
+    return [slot for _, slot in best.values()]
+
+
+def _heads(before: float, trials: Sequence[Explanation]) -> list[Explanation]:
+    """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
+    heads: dict[str, Explanation] = {}
+    for trial in sorted(trials, key=lambda each: _charged(before, each.loss, each.slots[-1])):
+        heads.setdefault(trial.slots[-1].name, trial)
+    return list(heads.values())
+
+
+def _charged(before: float, after: float, own: Slot) -> float:
+    """Held-out loss, of which a flexible member has to give back a share of what it saves."""
+    return after + (LIMITS.free_charge * max(before - after, 0.0) if own.free else 0.0)
 
 
 def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
@@ -133,17 +155,13 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         improved = False
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
-            taken = {slot.name for slot in rest}
-            losses = [
-                (cross.train_loss((*rest[:k], slot, *rest[k:]))[0], j)
-                for j, slot in enumerate(cross.problem.slots)
-                if slot.name not in taken
-            ]
-            loss, j = min(losses)
-            if loss < current.train_loss * (1.0 - 1e-3):
-                trial = cross.explain((*rest[:k], cross.problem.slots[j], *rest[k:]))
-                if trial.loss < current.loss:
-                    current, improved = trial, True
+            without, own = cross.explain(rest), current.slots[k]
+            least = _charged(without.loss, current.loss, own) * (1.0 - 1e-3)
+            others = [each for each in _fitted(cross, rest, {slot.name for slot in rest}) if each is not own]
+            trials = [cross.explain((*rest, slot)) for slot in others]
+            best = min(trials, key=lambda each: _charged(without.loss, each.loss, each.slots[-1]), default=current)
+            if trials and _charged(without.loss, best.loss, best.slots[-1]) < least:
+                current, improved = cross.explain((*rest[:k], best.slots[-1], *rest[k:])), True
         if not improved:
             break
     return current
@@ -200,15 +218,8 @@ def _rivals(
     """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn."""
     rest = current.slots[:k] + current.slots[k + 1 :]
     own = current.slots[k]
-    best: dict[str, tuple[float, Slot]] = {}
-    for slot in cross.problem.slots:
-        name = slot.name
-        if name in current.names:
-            continue
-        loss, _ = cross.train_loss((*rest, slot))
-        if name not in best or loss < best[name][0]:
-            best[name] = (loss, slot)
-    trials = [cross.explain((*rest, slot)) for _, slot in best.values()]
+    fitted = _fitted(cross, rest, current.names)
+    trials = _heads(without.loss, [cross.explain((*rest, slot)) for slot in fitted])
     worth = without.loss - current.loss
     equal = []
     for trial in trials:

@@ -15,7 +15,7 @@ from winch_friction.physics.friction import symbols
 from winch_friction.physics.friction.term import Parameter, Scope, Term
 
 MOST_SIGNALS = 2
-SHAPES = ("free", "rising", "falling")
+SHAPES = ("free", "rising", "falling", "convex_rising")
 ANCHORS = ("none", "low", "high")
 _SIGNALS = {each.name: each for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)}
 
@@ -25,8 +25,9 @@ class Table:
     """What a tabulated term is, apart from its values.
 
     `knots` by signal, SI, rising; `times` names signals whose product multiplies the curve. `shape` says whether it may
-    only rise or fall with every signal. `anchor`: where it is zero ('low' the first knot, 'high' the last), 'none':
-    its level there is a parameter of its own. `unit` of the curve's values; times `times` they must be N m.
+    only rise or fall with every signal, or rise ever more steeply, on beyond the last knot. `anchor`: where it is zero
+    ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its own. `unit` of the curve's
+    values; times `times` they must be N m.
     """
 
     name: str
@@ -64,7 +65,7 @@ class Table:
 
 def tabulated(table: Table) -> Term:
     """The term of a table; one parameter per interval (or pair of intervals), named `<table>_<k>[_<l>]`."""
-    axes = [_basis(_SIGNALS[name].symbol, at, table.anchor) for name, at in table.knots]
+    axes = [_basis(_SIGNALS[name].symbol, at, table) for name, at in table.knots]
     level = table.anchor == "none"
     parameters, equation = [], sp.Integer(0)
     for index in itertools.product(*(range(len(axis)) for axis in axes)):
@@ -81,10 +82,14 @@ def tabulated(table: Table) -> Term:
     )  # fmt: skip
 
 
-def _basis(signal: sp.Symbol, knots: tuple[float, ...], anchor: str) -> list[sp.Expr]:
+def _basis(signal: sp.Symbol, knots: tuple[float, ...], table: Table) -> list[sp.Expr]:
     """1 and one ramp per interval; anchored at the high end, what of each ramp is still to come."""
+    if table.shape == "convex_rising":
+        top = knots[-1]
+        hinges = [sp.Piecewise((0.0, signal <= a), ((signal - a) / (top - a), True)) for a in knots[:-1]]
+        return [sp.Integer(1), *hinges]
     ramps = [_ramp(signal, a, b) for a, b in itertools.pairwise(knots)]
-    return [sp.Integer(1), *((1 - ramp for ramp in ramps) if anchor == "high" else ramps)]
+    return [sp.Integer(1), *((1 - ramp for ramp in ramps) if table.anchor == "high" else ramps)]
 
 
 def _ramp(signal: sp.Symbol, a: float, b: float) -> sp.Expr:
@@ -97,7 +102,9 @@ def _parameter(table: Table, index: tuple[int, ...]) -> Parameter:
         doc = "level at the first knots"
         return Parameter(name, table.unit, table.typical, lower=float("-inf"), doc=doc)
     # what is still to come of a falling curve is positive
-    sign = {"free": 0, "rising": 1, "falling": -1}[table.shape] * (-1 if table.anchor == "high" else 1)
+    sign = {"free": 0, "rising": 1, "falling": -1, "convex_rising": 1}[table.shape] * (
+        -1 if table.anchor == "high" else 1
+    )
     lower, upper = (0.0 if sign > 0 else float("-inf")), (0.0 if sign < 0 else float("inf"))
     between = ", ".join(
         f"{signal} {at[k - 1]:g} ... {at[k]:g}" for (signal, at), k in zip(table.knots, index, strict=True) if k

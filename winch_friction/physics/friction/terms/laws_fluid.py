@@ -19,7 +19,7 @@ def _amount(name: str) -> Parameter:
 
 
 def _reference(name: str) -> Parameter:
-    return Parameter(name, "degC", 40.0, lower=-20.0, upper=120.0, shape=True, doc=_REFERENCE)
+    return Parameter(name, "degC", 40.0, lower=1.0, upper=120.0, shape=True, doc=_REFERENCE)
 
 
 K_vw, T_vw = _amount("K_vw"), _reference("T_vw")

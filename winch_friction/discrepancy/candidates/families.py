@@ -1,0 +1,154 @@
+"""Families of laws: the same cause by other equations, and by a curve that the data draw.
+
+A cause is named, whatever its law: every member bears the cause's name, competes by held-out loss, and goes into the
+repaired model as a term of its own. Shapes are grids over decades of what is physically possible.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Shapes, label_of
+from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, term_columns
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.dimensions import quotient_unit
+from winch_friction.physics.friction import FrictionModel, Scope, term_named
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
+from winch_friction.physics.friction.table import Table, tabulated
+
+TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
+STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0, 64.0)  # rad/s, octaves from 40 to 600 rpm
+DECAYS = (3.0, 8.0, 20.0)  # rad/s
+AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
+POWERS = (0.5, 1.5, 2.0, 3.0)
+FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
+OIL = ("oil_temperature",)
+
+
+def literature() -> list[Candidate]:
+    """The other laws of the literature, under the names of their causes."""
+    wear = partial(_of, "wear_drift", presumes=COULOMB)
+    return [
+        _of("viscosity_temperature", "viscosity_reference", {"T_vw": TEMPERATURES}, needs=OIL, continuous=("T_vw",)),
+        _of("viscosity_temperature", "viscosity_vogel", {"T_vv": TEMPERATURES, "B_vv": (550.0, 1100.0)}, needs=OIL),
+        _of("viscosity_temperature", "viscosity_exponential", {"T_ve": TEMPERATURES, "b_ve": (0.022, 0.045)},
+            needs=OIL),
+        _of("viscosity_temperature", "viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK_SPEEDS[1:]},
+            needs=OIL),
+        _of("stribeck", "stribeck_gauss", {"v_g": STRIBECK_SPEEDS}),
+        _of("stribeck", "stribeck_lorentz", {"v_l": STRIBECK_SPEEDS}),
+        _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
+            reversal_rival=True),
+        wear("wear_saturating", shapes=_lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
+        wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
+        _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
+        _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
+        _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3)}, needs=OIL),
+        _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
+        _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
+        _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
+            continuous=("n_l",)),
+        _of("case_pressure", "case_high_port"),
+        _of("case_pressure", "case_low_port"),
+        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}),
+        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",)),
+        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}),
+        _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=()),
+    ]  # fmt: skip
+
+
+def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:
+    member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
+    return replace(member, name=cause)
+
+
+def _lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
+    """Drifts from the first run on whose time is a share of the observed time."""
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
+        found = [{start: begin, lag: max((end - begin) * share, 1.0)} for share in shares]
+        return [Shape(label_of(values), values) for values in found]
+
+    return shapes
+
+
+# -- free members: (cause, signal, what multiplies it, scope, shape, anchor, opposing, needs)
+_Free = tuple[str, str, tuple[str, ...], Scope, str, str, bool, tuple[str, ...]]
+FREE: tuple[_Free, ...] = (
+    ("viscosity_temperature", "oil_temperature", ("speed_magnitude",), Scope.SYSTEM, "falling", "high", True, OIL),
+    ("stribeck", "speed_magnitude", ("drum_torque",), Scope.SYSTEM, "falling", "high", True, ()),
+    ("wear_drift", "time", (), Scope.SYSTEM, "rising", "low", True, ()),
+    ("wear_drift", "time", (), Scope.SYSTEM, "falling", "low", True, ()),
+    ("low_displacement_loss", "displacement", ("pressure",), Scope.MOTOR, "falling", "high", True, ()),
+    ("low_displacement_loss", "displacement", (), Scope.MOTOR, "falling", "high", True, ()),
+    ("high_pressure_mixed", "pressure", (), Scope.MOTOR, "convex_rising", "low", True, ()),
+    ("churning", "speed_magnitude", (), Scope.SYSTEM, "convex_rising", "low", True, ()),
+    ("port_turbulence", "speed_magnitude", ("displacement",), Scope.MOTOR, "convex_rising", "low", True, ()),
+    ("gear_load_loss", "drum_torque", (), Scope.SYSTEM, "rising", "low", True, ()),
+    ("gear_asymmetry", "drum_torque", (), Scope.SHAFT, "rising", "low", False, ()),
+)
+UNITS = {each.name: each.unit for each in (*WINCH_SIGNALS, *GROUP_SIGNALS)}
+
+
+def free_members(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """Of each family the curve that the data draw, bent at quantiles of what these runs have covered."""
+    found = [_free(row, runs) for row in FREE]
+    present = {each.term.name for each in found if each is not None and each.term is not None} & set(model.term_names)
+    return [each for each in found if each is not None and each.term is not None and each.term.name not in present]
+
+
+def _free(row: _Free, runs: Sequence[PreparedRun]) -> Candidate | None:
+    cause, signal, times, scope, shape, anchor, opposing, needs = row
+    values = _covered(signal, scope, runs)
+    knots = _knots(values)
+    if len(knots) < 3 or np.ptp(knots) <= 1e-6 * np.abs(knots).max():
+        return None
+    size = np.prod([max(float(np.median(np.abs(_covered(each, scope, runs)))), 1e-12) for each in times])
+    torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
+    name = (
+        f"free_{cause}" + (f"_{times[0]}" if times else "") + ("_falling" if shape == "falling" and not times else "")
+    )
+    count = max(float(np.median([sum(g.count for g in run.groups) or 1 for run in runs])), 1.0)
+    table = Table(
+        name, ((signal, tuple(float(k) for k in knots)),), _unit(times), times, scope, opposing, shape, anchor,
+        typical=0.05 * torque / float(size) / (1.0 if scope is Scope.SHAFT else count),
+        source=f"a monotone curve over {signal} through the data",
+        place="motor" if scope is Scope.MOTOR else "gear and drum",
+    )  # fmt: skip
+    term = tabulated(table)
+    hydraulic = scope is Scope.MOTOR
+    presumes = COULOMB if cause == "wear_drift" else ()
+    return Candidate(
+        cause, term.latex, term.parameters, partial(term_columns, term), term=term, needs=needs, hydraulic=hydraulic,
+        presumes=presumes, law_name=name, free=True, plausible=FAR,
+    )  # fmt: skip
+
+
+def _knots(values: FloatArray) -> FloatArray:
+    """Quantiles of what was covered, to nine digits so that a model file reads well."""
+    if not len(values):
+        return values
+    return np.unique([float(f"{k:.9g}") for k in np.quantile(values, LIMITS.free_knots)])
+
+
+def _unit(times: tuple[str, ...]) -> str:
+    return quotient_unit("N*m", *((UNITS[name], 1.0) for name in times))
+
+
+def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArray:
+    """What the moving samples of all runs have seen of a signal; empty where no run has it."""
+    parts = [_values(signal, run)[run.used] for run in runs if run.used.any()]
+    return np.concatenate(parts) if parts else np.array([])
+
+
+def _values(signal: str, run: PreparedRun) -> FloatArray:
+    if signal in ("pressure", "displacement", "pressure_sum"):
+        own = [np.abs(np.asarray(getattr(group, signal))) for group in run.groups]
+        return np.mean(own, axis=0) if own else np.zeros(len(run.time))
+    index = [each.name for each in WINCH_SIGNALS].index(signal)
+    return np.broadcast_to(np.asarray(run.point[index], float), run.time.shape)

@@ -112,12 +112,25 @@ def run_gap(
     save_model(replace(result.model, provenance={**result.model.provenance, **forced}), out / "model.yaml")
     if content["next_experiment"] and result.next_scenario:
         write_text(out / content["next_experiment"]["scenario"], result.next_scenario)
+    _write_proposals(out, result)
     write_text(out / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
     if report:
         from winch_friction.report.gap import write_gap_report
 
         write_gap_report(out / "report.html", result)
     return content
+
+
+def _write_proposals(out: Path, result: Any) -> None:
+    """Of each proposed law its file of terms and the model with it; those of an earlier call go."""
+    from winch_friction.records.atomic import write_text
+    from winch_friction.records.model_file import save_model
+
+    for old in (*out.glob("proposal_*.py"), *out.glob("proposal_*.yaml")):
+        old.unlink()
+    for number, proposal in enumerate(result.proposals, start=1):
+        write_text(out / f"proposal_{number}.py", proposal.text)
+        save_model(proposal.model, out / f"proposal_{number}.yaml")
 
 
 def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[Any]:
@@ -163,6 +176,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
         f"noise floor {gap['noise_floor']:.3g} {unit}"
     )
+    for proposal in content.get("proposals", ()):
+        print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if content["next_experiment"]:
         print(f"next experiment: {content['next_experiment']['scenario']}")
     print(f"written: {out / 'gap.json'}, {out / 'model.yaml'}, {out / 'report.html'}")

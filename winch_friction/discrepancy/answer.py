@@ -82,6 +82,7 @@ class GapResult:
     next_experiment: Mapping[str, Any] | None = None
     next_scenario: str = ""  # its file's text
     notes: Sequence[str] = field(default_factory=tuple)
+    proposals: Sequence[Any] = field(default_factory=tuple)  # laws for what has no name, the simplest first
 
     def content(self) -> dict[str, Any]:
         """The JSON document of docs/interfaces.md; further keys only add."""
@@ -116,6 +117,7 @@ class GapResult:
                  "outcome": c.verdict} for c in self.considered
             ],
             "notes": list(self.notes),
+            "proposals": [each.content(f"proposal_{k}") for k, each in enumerate(self.proposals, start=1)],
         }  # fmt: skip
 
 

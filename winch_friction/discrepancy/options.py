@@ -13,5 +13,6 @@ class GapOptions:
     holdout: float = 0.25
     seed: int = 0
     effects_file: Path | None = None
+    proposals: bool = True  # laws are looked for where no name fits
     plan: bool = True  # look for the experiment that separates rivals
     candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given

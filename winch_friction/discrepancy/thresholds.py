@@ -42,6 +42,13 @@ class Thresholds:
     rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
     most_names: int = 3  # in a set
     free_charge: float = 0.05  # of what a flexible member saves, that a law of the literature may save less
+    grammar_heads: int = 6  # single factors that are tried together with every other
+    grammar_judged: int = 12  # laws of one and of two factors whose held-out loss is looked at
+    proposal_gain: float = 0.3  # of the gap above the noise that the best law must close to be worth proposing
+    proposal_share: float = 0.8  # of what the best law closes: simpler ones that do nearly as well come first
+    word_price: float = 0.05  # of the logarithm of the loss, per word and constant: a simpler law may leave 5 % more
+    most_proposals: int = 3
+    tuning_rounds: int = 3  # halving steps between the grid's constants
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     # -- remainder
     knots: int = 7  # of the flexible model of one signal

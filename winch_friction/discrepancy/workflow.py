@@ -7,14 +7,16 @@ import numpy as np
 
 from winch_friction.discrepancy.answer import GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, tried
+from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.omnibus import dependences
-from winch_friction.discrepancy.expansion import meet
+from winch_friction.discrepancy.expansion import Expansion, expand_around, meet
 from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
 from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
+from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
@@ -35,7 +37,18 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
     search = search_runs(split, meet(split.runs, crane, model), options, rng)
-    return assemble(split, options, _proven(split, crane, options, _replicated(search, split, rng), rng))
+    trial = _proven(split, crane, options, _replicated(search, split, rng), rng)
+    result = assemble(split, options, trial)
+    if not options.proposals:
+        return result
+
+    def expand(own: Search, candidate: Candidate) -> Expansion:
+        return expand_around(own.given, own.expansion, own.cross.explain(()), [candidate])
+
+    def evaluate(own: Search) -> Trial:
+        return tried(split, crane, options, own, rng)
+
+    return replace(result, proposals=propose(trial, split.train, expand, evaluate, rng))
 
 
 def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Search:

@@ -53,7 +53,6 @@ def literature() -> list[Candidate]:
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
-        _of("case_pressure", "case_low_port"),
         _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",)),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}),

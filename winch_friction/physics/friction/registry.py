@@ -1,6 +1,8 @@
 """The registry: a name in a model file stands for exactly one declared term."""
 
 import importlib.util
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from winch_friction.physics.errors import InputError
@@ -50,6 +52,20 @@ def load_file(path: Path | str) -> list[Term]:
     if loaded != text:
         raise InputError(f"{path}: changed since its terms were loaded; start anew to use it")
     return list(terms)
+
+
+@contextmanager
+def known_for_now(term: Term) -> Iterator[None]:
+    """Let a term that is only proposed be read from a model's text, and forget it afterwards."""
+    _load_shipped()
+    own = term.name not in _TERMS
+    if own:
+        _TERMS[term.name] = term
+    try:
+        yield
+    finally:
+        if own:
+            del _TERMS[term.name]
 
 
 def _text(path: Path) -> bytes:

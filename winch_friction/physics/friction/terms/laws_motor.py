@@ -32,7 +32,6 @@ b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
 )
 c_hi = Parameter("c_hi", "m^3/rad", 5e-7, lower=-1e-4, upper=1e-4, doc="loss per pressure at the high port")
-c_lo = Parameter("c_lo", "m^3/rad", 2e-6, lower=-1e-4, upper=1e-4, doc="loss per pressure at the low port")
 
 
 def _motor(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], source: str, place: str = "motor") -> Term:
@@ -68,4 +67,3 @@ line_pressure_power = _motor(
     (p_l, n_l, b_l), "Blasius 1913 for 1.75, Hagen-Poiseuille for 1; a check valve opens one way", "fluid",
 )  # fmt: skip
 case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")
-case_low_port = _motor("case_low_port", c_lo.symbol * (p_sum - p) / 2, (c_lo,), "loss with one port's pressure alone")

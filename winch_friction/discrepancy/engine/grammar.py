@@ -1,0 +1,181 @@
+"""A small grammar of laws, searched by held-out loss: what could a gap depend on, and how?
+
+A law is an amount times one or two factors; a factor is a function of one signal with at most two constants. It opposes
+the motion or acts one way. The caller evaluates factors as block means per member (motor group) of a record; the engine
+multiplies, fits and compares. It knows nothing of winches.
+"""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.bounded_fit import bounded_fit
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.thresholds import LIMITS
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One function of one signal with its constants by name, in the signal's unit (a lag's and a decay's in s)."""
+
+    kind: str
+    signal: str
+    constants: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def weight(self) -> int:
+        """How much there is to read."""
+        return 1 + len(self.constants)
+
+
+@dataclass(frozen=True)
+class Law:
+    """An amount times factors; `opposing` the motion, or acting one way; `each`: once per member, not once in all."""
+
+    factors: tuple[Factor, ...]
+    opposing: bool
+    each: bool = False
+
+    @property
+    def weight(self) -> int:
+        """Simplicity: the fewer factors and constants the simpler."""
+        return sum(factor.weight for factor in self.factors) + (not self.opposing)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """What it reads, each once."""
+        return tuple(dict.fromkeys(factor.signal for factor in self.factors))
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A law with what it leaves: of the records it was fitted to, and held out (infinite where not yet judged)."""
+
+    law: Law
+    amount: float
+    inside: float
+    loss: float
+    losses: FloatArray
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Which blocks, their weighted base columns and gaps, and the normal equations of the base."""
+
+    chosen: np.ndarray
+    x: FloatArray
+    y: FloatArray
+    h: FloatArray
+    g: FloatArray
+
+
+# block means of a factor: (members, blocks), or (1, blocks) for what is the same for all
+Values = Mapping[Factor, FloatArray]
+
+
+class Grammar:
+    """The search for one problem: `torque` and `direction` per block, `members` (members, blocks) their numbers."""
+
+    def __init__(
+        self, cross: CrossFit, base: Explanation, torque: FloatArray, direction: FloatArray, members: FloatArray
+    ) -> None:
+        blocks = cross.problem.blocks
+        self.cross, self.base, self.members = cross, base, members
+        self.own = list(cross.problem.columns(base.slots))
+        self.x = blocks.x[:, self.own] * blocks.weight[:, None]
+        self.y = blocks.y * blocks.weight
+        self.unit = torque * blocks.weight
+        self.direction = direction
+        numbers, first = np.unique(blocks.segment, return_index=True)
+        self.segment = np.searchsorted(numbers, blocks.segment)
+        fold_of_segment = np.asarray(cross.fold)[np.argsort(np.argsort(numbers))]
+        self.fold = fold_of_segment[self.segment]
+        self.count = len(first)
+        self.parts: dict[int | None, _Part] = {None: self._part(np.ones(len(self.y), bool))}
+        self.parts |= {int(fold): self._part(self.fold != fold) for fold in np.unique(self.fold)}
+
+    def _part(self, chosen: np.ndarray) -> "_Part":
+        """The base's own sums over some blocks, its prior included."""
+        x, y, problem = self.x[chosen], self.y[chosen], self.cross.problem
+        h, g, k = x.T @ x, x.T @ y, len(problem.base.names)
+        h[np.arange(k), np.arange(k)] += LIMITS.prior_weight
+        g[:k] -= LIMITS.prior_weight * problem.base.shift
+        return _Part(chosen, x, y, h, g)
+
+    def column(self, law: Law, values: Values) -> FloatArray:
+        """What one unit of a law adds to the gap, weighted."""
+        product = np.ones((1, len(self.y)))
+        for factor in law.factors:
+            product = product * values[factor]
+        if len(product) > 1:
+            product = (product * (self.members if law.each else self.members > 0)).sum(axis=0, keepdims=True)
+        z = product[0] * self.unit
+        return np.asarray(z * self.direction if law.opposing else z)
+
+    def screened(self, law: Law, values: Values) -> Scored:
+        """A law fitted to all records at once."""
+        z, scale = _unit(self.column(law, values))
+        if scale <= 0.0:
+            return Scored(law, 0.0, float("inf"), float("inf"), np.zeros(0))
+        amount, beta = self._fit(z, None)
+        left = self.y - self.x @ beta - amount * z
+        return Scored(law, amount / scale, float(left @ left), float("inf"), np.zeros(0))
+
+    def judged(self, scored: Scored, values: Values) -> Scored:
+        """The same law with its held-out losses."""
+        z, _ = _unit(self.column(scored.law, values))
+        losses = np.zeros(self.count)
+        for fold in np.unique(self.fold):
+            own = self.fold == fold
+            amount, beta = self._fit(z, int(fold))
+            left = self.y[own] - self.x[own] @ beta - amount * z[own]
+            losses += np.bincount(self.segment[own], weights=left**2, minlength=self.count)
+        return Scored(scored.law, scored.amount, scored.inside, float(losses.sum()), losses)
+
+    def _fit(self, z: FloatArray, fold: int | None) -> tuple[float, FloatArray]:
+        """Amount and the base's coefficients, these inside their bounds and held to their prior; `fold` left out."""
+        part, layout = self.parts[fold], self.cross.problem.layout
+        own = z[part.chosen]
+        cross, power = part.x.T @ own, float(own @ own)
+        h = np.block([[part.h, cross[:, None]], [cross[None], np.array([[power * (1.0 + 1e-9) + 1e-9]])]])
+        lower, upper = np.append(layout.lower[self.own], -np.inf), np.append(layout.upper[self.own], np.inf)
+        beta = bounded_fit(h, np.append(part.g, own @ part.y), lower, upper)
+        return float(beta[-1]), beta[:-1]
+
+    def search(self, values: Values) -> list[Scored]:
+        """Laws by held-out loss, the best of each set of signals: one factor, then the best of these times any."""
+        factors = list(values)
+        singles = [
+            self.screened(law, values) for f in factors for law in _ways((f,), len(values[f]) > 1)
+        ]  # fmt: skip
+        heads = _best_of_each(singles, LIMITS.grammar_heads)
+        pairs = []
+        for head, other in itertools.product(heads, factors):
+            first = head.law.factors[0]
+            if other.signal != first.signal:
+                both = tuple(sorted((first, other), key=lambda f: (f.signal, f.kind)))
+                law = Law(both, head.law.opposing, head.law.each or len(values[other]) > 1)
+                pairs.append(self.screened(law, values))
+        chosen = [*_best_of_each(singles, LIMITS.grammar_judged), *_best_of_each(pairs, LIMITS.grammar_judged)]
+        return sorted((self.judged(each, values) for each in chosen), key=lambda each: each.loss)
+
+
+def _unit(z: FloatArray) -> tuple[FloatArray, float]:
+    scale = float(np.sqrt(np.mean(z**2)))
+    return (z / scale, scale) if np.isfinite(scale) and scale > 0.0 else (z, 0.0)
+
+
+def _ways(factors: tuple[Factor, ...], several: bool) -> list[Law]:
+    each = (True, False) if several else (False,)
+    return [Law(factors, opposing, own) for opposing in (True, False) for own in each]
+
+
+def _best_of_each(scored: Sequence[Scored], most: int) -> list[Scored]:
+    """The law that fits best of each set of signals and way of acting; the best so many."""
+    found: dict[tuple[frozenset[str], bool], Scored] = {}
+    for each in sorted(scored, key=lambda one: one.inside):
+        found.setdefault((frozenset(each.law.signals), each.law.opposing), each)
+    return list(found.values())[:most]

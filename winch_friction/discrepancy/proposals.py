@@ -1,0 +1,227 @@
+"""Laws for what has no name: searched on the training runs, proven on the locked ones, and called proposals.
+
+A proposal says on what the gap depends and how, with amounts and units, so that it shrinks; not what it is.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from winch_friction.discrepancy.assembly import Trial
+from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
+from winch_friction.discrepancy.candidates.friction import friction_candidate
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import run_blocks, segment_length
+from winch_friction.discrepancy.engine.crossfit import flip_p_values
+from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
+from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.proof import prove
+from winch_friction.discrepancy.proposed_term import ProposedTerm, declare
+from winch_friction.discrepancy.search import Search
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.verdict import MISSING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, Word, factors, shape
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.registry import known_for_now
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """One proposed law with its evidence on locked runs; `text` is its file of terms, `model` the repaired model."""
+
+    declared: ProposedTerm
+    parameters: dict[str, ParameterEstimate]
+    text: str
+    model: FrictionModel
+    before: float
+    after: float
+    noise_floor: float
+    unit: str
+    p_value: float
+
+    @property
+    def closed(self) -> float:
+        """Share of the locked gap above the noise that it closes."""
+        return (self.before - self.after) / max(self.before - self.noise_floor, 1e-9)
+
+    @property
+    def sentence(self) -> str:
+        """In plain words; never a cause."""
+        k = next(iter(self.parameters.values()))
+        return (
+            f"{self.declared.sentence}, {k.value:.3g} {k.unit}; closes {100 * min(self.closed, 1.0):.0f} % of the gap; "
+            "what it is, the data do not say"
+        )
+
+    def content(self, stem: str) -> dict[str, Any]:
+        """The entry of `proposals` in gap.json; `stem` names its two files."""
+        return {
+            "equation": str(self.declared.term.equation), "latex": self.declared.term.latex,
+            "opposing": self.declared.term.opposing, "reads": list(self.declared.reads),
+            "parameters": {k: {"value": e.value, "std": e.std, "unit": e.unit} for k, e in self.parameters.items()},
+            "terms_file": f"{stem}.py", "model_file": f"{stem}.yaml",
+            "holdout": {"before": self.before, "after": self.after, "noise_floor": self.noise_floor,
+                        "closed": self.closed, "unit": self.unit},
+            "p_value": self.p_value, "sentence": self.sentence,
+        }  # fmt: skip
+
+
+Expand = Callable[[Search, Candidate], Expansion]
+Evaluate = Callable[[Search], Trial]
+
+
+def propose(
+    refit: Trial, train: Sequence[str], expand: Expand, evaluate: Evaluate, rng: np.random.Generator
+) -> tuple[Proposal, ...]:
+    """At most three laws for an unexplained gap, the simplest first; none where nothing holds on the locked runs.
+
+    `refit` is the trial without a name; `expand` prepares the runs around the search's base with one more candidate,
+    `evaluate` puts the file that a search would write to the locked runs.
+    """
+    search = refit.search
+    if search.verdict.kind != UNEXPLAINED:
+        return ()
+    runs = [run for run in search.expansion.runs if run.name in train]
+    found: list[Proposal] = []
+    for scored, p_value in _laws(search, runs, rng):
+        proposal = _proven(refit, train, scored, p_value, expand, evaluate, rng)
+        if proposal is not None:
+            found.append(proposal)
+        if len(found) == LIMITS.most_proposals:
+            break
+    best = max((each.closed for each in found), default=0.0)
+    return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
+
+
+def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator) -> list[tuple[Scored, float]]:
+    """Laws that come near the best on held-out segments, significantly; the simplest first."""
+    cross, base = search.cross, search.cross.explain(())
+    blocks = cross.problem.blocks
+    torque = np.array([1.0 / run.unit_torque for run in runs])[blocks.run]
+    most = max((len(run.groups) for run in runs), default=1) or 1
+    members = np.zeros((most, len(blocks.y)))
+    for k, run in enumerate(runs):
+        for g, group in enumerate(run.groups):
+            members[g, blocks.run == k] = group.count
+    grammar = Grammar(cross, base, torque, blocks.direction, members)
+    values = _evaluated([f for word in WORDS for f in factors(word, _covered(word, runs))], runs, most)
+    ranked = grammar.search(values)
+    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
+    excess = max(base.loss - floor, 1e-9)
+    if not ranked or base.loss - ranked[0].loss < LIMITS.proposal_gain * excess:
+        return []
+    best = base.loss - ranked[0].loss
+    near = [each for each in ranked if base.loss - each.loss >= LIMITS.proposal_share * best]
+    near = [_tuned(grammar, each, runs, most) for each in near[: LIMITS.grammar_judged]]
+    p_values = flip_p_values(np.array([base.losses - each.losses for each in near]), rng)
+    chances = dict(zip(map(id, near), map(float, p_values), strict=True))
+    sure = [(each, chances[id(each)]) for each in _undominated(near) if chances[id(each)] <= LIMITS.remainder_p]
+    return sorted(sure, key=lambda pair: _order(pair[0], base.loss))
+
+
+def _undominated(laws: Sequence[Scored]) -> list[Scored]:
+    """Those of which none other is as simple and better."""
+    return [
+        each
+        for each in laws
+        if not any(o.law.weight <= each.law.weight and o.loss < each.loss for o in laws if o is not each)
+    ]
+
+
+def _order(scored: Scored, before: float) -> float:
+    """Log of the loss that is left, with a price for every word and constant."""
+    return float(np.log(max(scored.loss, 1e-9) / before)) + LIMITS.word_price * scored.law.weight
+
+
+def _tuned(grammar: Grammar, scored: Scored, runs: Sequence[PreparedRun], most: int) -> Scored:
+    """The law with its constants moved to where it fits best, one after the other between the grid's values."""
+    best = scored
+    step = 0.25
+    for _ in range(LIMITS.tuning_rounds):
+        for k, factor in enumerate(best.law.factors):
+            for j, (name, value) in enumerate(factor.constants):
+                moved = [value * (1.0 + s) for s in (-step, -0.5 * step, 0.5 * step, step)]
+                for trial in moved:
+                    constants = (*factor.constants[:j], (name, float(f"{trial:.4g}")), *factor.constants[j + 1 :])
+                    other = replace(factor, constants=constants)
+                    law = replace(best.law, factors=(*best.law.factors[:k], other, *best.law.factors[k + 1 :]))
+                    judged = grammar.screened(law, _evaluated(law.factors, runs, most))
+                    if judged.inside < best.inside:
+                        best, factor = judged, other
+        step *= 0.5
+    return grammar.judged(best, _evaluated(best.law.factors, runs, most))
+
+
+def _covered(word: Word, runs: Sequence[PreparedRun]) -> FloatArray:
+    """What the moving samples have seen of a signal; empty where a run lacks it."""
+    if word.needs and any(word.needs not in run.channels for run in runs):
+        return np.array([])
+    parts = [np.mean(_signals(word, run), axis=0)[run.used] for run in runs if word.of_run or run.groups]
+    return np.concatenate(parts) if parts else np.array([])
+
+
+def _signals(word: Word, run: PreparedRun) -> FloatArray:
+    """The signal per member, (members, samples), or (1, samples) where it is the same for all."""
+    if word.of_run is not None:
+        return np.atleast_2d(np.broadcast_to(word.of_run(run), run.time.shape))
+    assert word.of_group is not None
+    own = [np.broadcast_to(word.of_group(group), run.time.shape) for group in run.groups]
+    return np.array(own) if own else np.zeros((1, len(run.time)))
+
+
+def _evaluated(
+    wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int, size: int = LIMITS.block_samples
+) -> dict[Factor, FloatArray]:
+    """Block means of factors over all runs, aligned with the problem's blocks."""
+    length = segment_length(sum(run.time[-1] for run in runs))
+    single = [f for f in wanted if BY_NAME[f.signal].of_run is not None]
+    grouped = [f for f in wanted if BY_NAME[f.signal].of_run is None]
+    tables = []
+    for run in runs:
+        signals = {name: _signals(BY_NAME[name], run) for name in {f.signal for f in wanted}}
+        columns = [shape(f.kind, signals[f.signal][0], dict(f.constants), run.dt) for f in single]
+        for f in grouped:
+            own = [shape(f.kind, row, dict(f.constants), run.dt) for row in signals[f.signal]]
+            columns += own + [np.zeros(len(run.time))] * (most - len(own))
+        if columns:
+            table = run_blocks(run.time, run.gap, np.column_stack(columns), run.used, run.direction, {}, size, length)
+            tables.append(table.x)
+    if not tables:
+        return {}
+    x = np.concatenate(tables).T
+    found = {f: x[k : k + 1] for k, f in enumerate(single)}
+    at = len(single)
+    return found | {f: x[at + most * k : at + most * (k + 1)] for k, f in enumerate(grouped)}
+
+
+def _proven(
+    refit: Trial, train: Sequence[str], scored: Scored, p_value: float, expand: Expand, evaluate: Evaluate,
+    rng: np.random.Generator,
+) -> Proposal | None:  # fmt: skip
+    """A law as a term, refitted with the model and put to the locked runs; None where these do not bear it out."""
+    if sum(factor.kind == "lag" or factor.signal == "run_time" for factor in scored.law.factors) > 1:
+        return None  # one memory is all that a proposal may have
+    declared = declare(scored.law, scored.amount)
+    grid = {name: (value,) for name, value in declared.constants.items()}
+    candidate = friction_candidate(declared.term, grid, hydraulic=False)
+    with known_for_now(declared.term):
+        expansion = expand(refit.search, candidate)
+        cross = expansion.cross(train, expansion.layout.slots)
+        base, final = cross.explain(()), cross.explain(expansion.layout.slots)
+        finding = Finding(final.slots[0], (), p_value, float(cross.gain(base, final)), 1.0)
+        selection = Selection(base, final, (finding,))
+        own = replace(
+            refit.search, expansion=expansion, cross=cross, selection=selection, verdict=Verdict(MISSING), left=()
+        )
+        trial = evaluate(own)
+    if not prove(declared.term.name, refit.holdout, trial.holdout, rng).holds:
+        return None
+    held = trial.holdout
+    return Proposal(
+        declared, dict(trial.repaired.parameters[declared.term.name]), declared.text, trial.repaired.model,
+        held.size_before.value, held.size_after.value, held.noise_floor, own.given.crane.drive.unit, p_value,
+    )  # fmt: skip

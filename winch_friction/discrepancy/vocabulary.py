@@ -1,0 +1,137 @@
+"""The words of a proposed law: signals that an equation may read, and the functions of one signal that it may hold.
+
+Each function stands once as text (for the file of terms and, evaluated by SymPy, for the term itself) and once over
+arrays (for the search).
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import lfilter
+
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.grammar import Factor
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+
+QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+LAGS = (3.0, 10.0, 30.0, 90.0)  # s
+FADES = (15.0, 45.0, 140.0)  # s
+PERIODS = tuple(float(x) for x in np.geomspace(0.6, 60.0, 41))  # m of wire, from a groove to a layer
+SECTORS, WIDTHS = 12, (0.15, 0.3, 0.5)  # of a turn
+
+
+@dataclass(frozen=True)
+class Word:
+    """A signal: its symbol in equations, its unit, and how to read it from a run or a motor group."""
+
+    name: str
+    symbol: str
+    unit: str
+    reads: str  # the run column
+    of_run: Callable[[PreparedRun], FloatArray] | None = None
+    of_group: Callable[[GroupSignals], FloatArray] | None = None
+    needs: str = ""  # column that the runs must have
+    kinds: tuple[str, ...] = ("linear", "root", "square", "about", "step", "above", "below")
+
+
+_SHAPES = ("linear", "root", "square", "about", "step", "above", "below", "hump", "fade", "lag")
+WORDS = (
+    Word("motor_speed", "w", "rad/s", "motor_speed", lambda r: np.abs(r.speed), kinds=_SHAPES),
+    Word("drum_torque", "T_d", "N*m", "hook_load", lambda r: r.drum_torque, kinds=("linear", "root", "square", "lag")),
+    Word("acceleration", "sp.Abs(acceleration)", "rad/s^2", "acceleration", lambda r: np.abs(r.acceleration),
+         kinds=("linear", "root", "square", "lag")),
+    Word("oil_temperature", "oil_temperature", "degC", "oil_temperature", lambda r: r.channels["oil_temperature"],
+         needs="oil_temperature", kinds=("about", "step", "above", "below")),
+    Word("wire_out", "wire_out", "m", "wire_out", lambda r: r.channels["wire_out"], needs="wire_out",
+         kinds=("linear", "root", "square", "about", "step", "above", "below", "wave")),
+    Word("wire_layer", "wire_layer", "1", "wire_layer", lambda r: r.channels["wire_layer"], needs="wire_layer",
+         kinds=("about",)),
+    Word("run_time", "run_time", "s", "time", lambda r: r.time, kinds=("fade",)),
+    Word("drum_angle", "(shaft_angle / gear_ratio)", "rad", "shaft_angle", lambda r: r.angle / r.gear_ratio,
+         kinds=("sector",)),
+    Word("displacement", "D", "m^3/rad", "displacement", of_group=lambda g: g.displacement,
+         kinds=("linear", "square", "about", "step", "above", "below")),
+    Word("pressure", "p", "Pa", "pressure", of_group=lambda g: np.abs(g.pressure),
+         kinds=("linear", "root", "square", "above", "step", "lag")),
+)  # fmt: skip
+BY_NAME = {word.name: word for word in WORDS}
+
+# text of each function: {x} the signal, {c}, {h} its constants; a state equation where it has memory
+TEXTS: Mapping[str, str] = {
+    "linear": "{x}",
+    "root": "sp.sqrt({x})",
+    "square": "({x})**2",
+    "about": "({x} - {c})",
+    "step": "sp.Piecewise((0.0, {x} <= {c}), (1.0, True))",
+    "above": "sp.Piecewise((0.0, {x} <= {c}), ({x} - {c}, True))",
+    "below": "sp.Piecewise(({c} - {x}, {x} <= {c}), (0.0, True))",
+    "hump": "sp.exp(-((({x} - {c}) / {h})**2) / 2)",
+    "fade": "sp.exp(-{x} / {c})",
+    "lag": "{z}",
+    "wave": "(1 + sp.sin(2 * sp.pi * ({x} - {h}) / {c})) / 2",
+    "sector": "sp.Piecewise((1.0, sp.Mod({x} / (2 * sp.pi) - {c}, 1) < {h}), (0.0, True))",
+}
+# powers of the signal's unit that a function has; none: it is a pure number
+POWERS = {
+    "linear": 1.0,
+    "root": 0.5,
+    "square": 2.0,
+    "about": 1.0,
+    "above": 1.0,
+    "below": 1.0,
+    "lag": 1.0,
+}  # of the unit
+CONSTANT_UNITS = {"lag": {"c": "s"}, "sector": {"c": "1", "h": "1"}}
+
+
+def shape(kind: str, x: FloatArray, constants: Mapping[str, float], dt: float) -> FloatArray:
+    """A function over the samples of one run."""
+    c, h = constants.get("c", 0.0), constants.get("h", 1.0)
+    if kind == "lag":
+        keep = float(np.exp(-dt / c))
+        return np.asarray(lfilter([1.0 - keep], [1.0, -keep], x, zi=[keep * x[0]])[0])
+    made: dict[str, Callable[[], FloatArray]] = {
+        "linear": lambda: x,
+        "root": lambda: np.sqrt(np.maximum(x, 0.0)),
+        "square": lambda: x**2,
+        "about": lambda: x - c,
+        "step": lambda: (x > c).astype(float),
+        "above": lambda: np.maximum(x - c, 0.0),
+        "below": lambda: np.maximum(c - x, 0.0),
+        "hump": lambda: np.exp(-(((x - c) / h) ** 2) / 2),
+        "fade": lambda: np.exp(-x / c),
+        "wave": lambda: (1.0 + np.sin(2 * np.pi * (x - h) / c)) / 2,
+        "sector": lambda: (np.mod(x / (2 * np.pi) - c, 1.0) < h).astype(float),
+    }
+    return made[kind]()
+
+
+def factors(word: Word, covered: FloatArray) -> Iterator[Factor]:
+    """Every function of a signal that the data could tell, its constants on a grid over what was covered."""
+    span = float(np.ptp(covered)) if len(covered) else 0.0
+    if span <= 1e-6 * float(np.abs(covered).max(initial=1e-12)):
+        return
+    knots = list(dict.fromkeys(float(f"{q:.3g}") for q in np.quantile(covered, QUANTILES)))
+    for kind in word.kinds:
+        for constants in _constants(kind, word, knots, span):
+            yield Factor(kind, word.name, tuple(constants.items()))
+
+
+def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> list[dict[str, float]]:
+    if kind in ("linear", "root", "square"):
+        return [{}]
+    if kind == "about":
+        return [{"c": c} for c in dict.fromkeys((knots[0], knots[len(knots) // 2], knots[-1]))]
+    if kind == "hump":
+        return [{"c": c, "h": width * span} for c in knots for width in (0.05, 0.12)]
+    if kind == "fade":
+        return [{"c": c} for c in (FADES if word.unit == "s" else (0.1 * span, 0.3 * span))]
+    if kind == "lag":
+        return [{"c": c} for c in LAGS]
+    if kind == "wave":
+        periods = [p for p in PERIODS if p < span]
+        return [{"c": p, "h": share * p} for p in periods for share in (0.0, 0.25, 0.5, 0.75)]
+    if kind == "sector":
+        return [{"c": k / SECTORS, "h": width} for k in range(SECTORS) for width in WIDTHS]
+    return [{"c": c} for c in knots]

@@ -118,18 +118,15 @@ def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator)
     near = [each for each in ranked if base.loss - each.loss >= LIMITS.proposal_share * best]
     near = [_tuned(grammar, each, runs, most) for each in near[: LIMITS.grammar_judged]]
     p_values = flip_p_values(np.array([base.losses - each.losses for each in near]), rng)
-    chances = dict(zip(map(id, near), map(float, p_values), strict=True))
-    sure = [(each, chances[id(each)]) for each in _undominated(near) if chances[id(each)] <= LIMITS.remainder_p]
-    return sorted(sure, key=lambda pair: _order(pair[0], base.loss))
+    sure = [(each, float(p)) for each, p in zip(near, p_values, strict=True) if p <= LIMITS.remainder_p]
+    sure.sort(key=lambda pair: _order(pair[0], base.loss))
+    return [pair for pair in sure if pair is sure[0] or _another(pair[0], sure[0][0], base.loss)]
 
 
-def _undominated(laws: Sequence[Scored]) -> list[Scored]:
-    """Those of which none other is as simple and better."""
-    return [
-        each
-        for each in laws
-        if not any(o.law.weight <= each.law.weight and o.loss < each.loss for o in laws if o is not each)
-    ]
+def _another(law: Scored, head: Scored, before: float) -> bool:
+    """Whether a law is an answer of its own beside the best one, and not that one with something added."""
+    more = set(law.law.signals) >= set(head.law.signals)
+    return not more and _order(law, before) <= _order(head, before) + LIMITS.as_good
 
 
 def _order(scored: Scored, before: float) -> float:

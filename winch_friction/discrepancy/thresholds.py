@@ -47,6 +47,7 @@ class Thresholds:
     proposal_gain: float = 0.3  # of the gap above the noise that the best law must close to be worth proposing
     proposal_share: float = 0.8  # of what the best law closes: simpler ones that do nearly as well come first
     word_price: float = 0.05  # of the logarithm of the loss, per word and constant: a simpler law may leave 5 % more
+    as_good: float = 0.25  # of the same logarithm, within which another law is worth showing beside the best
     most_proposals: int = 3
     tuning_rounds: int = 3  # halving steps between the grid's constants
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend

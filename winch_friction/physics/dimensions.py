@@ -45,18 +45,17 @@ def product(*factors: tuple[str, float]) -> dict[str, float]:
 
 def quotient_unit(over: str, *factors: tuple[str, float]) -> str:
     """A readable unit that times the factors gives `over`, such as N*m*s/rad for N*m over rad/s."""
-    parts: list[tuple[str, float]] = []
+    powers: dict[str, float] = {}
     for unit, power in factors:
         for token in _TOKEN.finditer(unit):
             if token[2] != "1":
                 own = float(token[3] or 1.0) * (-1.0 if token[1] == "/" else 1.0)
-                parts.append((token[2], -own * power))
-    powers: dict[str, float] = {}
-    for name, power in parts:
-        powers[name] = powers.get(name, 0.0) + power
-    above = "".join(f"*{_power(n, p)}" for n, p in powers.items() if p > 0)
-    below = "".join(f"/{_power(n, -p)}" for n, p in powers.items() if p < 0)
-    return f"{over}{above}{below}"
+                powers[token[2]] = powers.get(token[2], 0.0) - own * power
+    if over == "N*m" and powers.get("N", 0.0) == powers.get("m", 0.0) == -1.0:  # a torque over a torque
+        over, powers = "1", {name: power for name, power in powers.items() if name not in ("N", "m")}
+    above = "".join(f"*{_power(n, p)}" for n, p in powers.items() if p > 1e-12)
+    below = "".join(f"/{_power(n, -p)}" for n, p in powers.items() if p < -1e-12)
+    return f"{over}{above}{below}".removeprefix("1*")
 
 
 def _power(name: str, power: float) -> str:

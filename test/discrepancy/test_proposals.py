@@ -1,0 +1,99 @@
+"""A law for what has no name: the search on arrays, the file of terms, and the way back in through the verbs."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from campaign.rig import make_dataset, write_csv
+from winch_friction.cli.main import run as winch_friction
+from winch_friction.discrepancy.engine.grammar import Factor, Law
+from winch_friction.discrepancy.proposed_term import declare
+from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, factors, shape
+from winch_friction.physics.dimensions import dimension_of, product
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.registry import known_for_now, load_file
+
+
+def _laws():
+    for word in WORDS:
+        covered = np.linspace(0.3, 50.0, 200)
+        seen = set()
+        for factor in factors(word, covered):
+            if factor.kind not in seen:
+                seen.add(factor.kind)
+                yield Law((factor,), opposing=True, each=bool(word.of_group))
+    two = (Factor("linear", "drum_torque"), Factor("above", "motor_speed", (("c", 90.0),)))
+    yield Law(two, opposing=False)
+
+
+@pytest.mark.parametrize("law", list(_laws()), ids=lambda law: "-".join(f"{f.kind}.{f.signal}" for f in law.factors))
+def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
+    declared = declare(law, 2.5)
+    term = declared.term
+    units = {p.name: p.unit for p in term.parameters}
+    for unit in units.values():
+        dimension_of(unit)
+    powers = {"root": 0.5, "square": 2.0, "step": 0.0, "hump": 0.0, "fade": 0.0, "wave": 0.0, "sector": 0.0}
+    signals = [(BY_NAME[f.signal].unit, powers.get(f.kind, 1.0)) for f in law.factors]
+    assert product((term.parameters[0].unit, 1.0), *signals) == dimension_of("N*m")
+    assert "what it is the data do not say" in term.source
+    model = FrictionModel("m", (term,), tuple(p.typical for p in term.parameters), constants={"gear_ratio": 250.0})
+    assert np.isfinite(model.compile(2).scalar_torque([1.0] * 19, model.values, model.compile(2).initial_states))
+
+
+def test_text_and_arrays_say_the_same():
+    """The function over arrays and the equation in the file of terms are two writings of one law."""
+    x = np.linspace(0.5, 60.0, 40)
+    for kind in TEXTS:
+        if kind in ("lag", "sector"):
+            continue
+        own = (("c", 23.0),) if kind in ("about", "step", "above", "below", "fade") else ()
+        own = (("c", 23.0), ("h", 7.0)) if kind in ("hump", "wave") else own
+        term = declare(Law((Factor(kind, "wire_out", own),), opposing=False), 1.0).term
+        values = tuple(p.typical for p in term.parameters)
+        functions = FrictionModel("m", (term,), values).compile(1)
+        at = [str(s) for s in functions._arguments[0]].index("L")
+        points = [[1.0] * at + [float(v)] + [1.0] * (14 - at) for v in x]
+        scalar = [functions.scalar_torque(point, values, ()) for point in points]
+        assert scalar == pytest.approx(shape(kind, x, dict(own), 0.02)), kind
+
+
+def test_the_file_of_terms_declares_the_very_term(tmp_path):
+    declared = declare(Law((Factor("lag", "drum_torque", (("c", 12.0),)),), opposing=True), 3e-4)
+    path = tmp_path / "proposal.py"
+    path.write_text(declared.text)
+    with known_for_now(declare(Law((Factor("linear", "wire_out"),), opposing=True), 1.0).term):
+        (loaded,) = load_file(path)
+    assert loaded == declared.term
+
+
+@pytest.fixture(scope="module")
+def drag(tmp_path_factory) -> Path:
+    """The verdict on runs with a drag that grows with the wire paid out, as files."""
+    folder = tmp_path_factory.mktemp("drag")
+    paths = write_csv(folder, make_dataset(77, "si_files", [("wire_out_drag", 1.0)], length=0.5))
+    out = folder / "gap"
+    assert winch_friction(["gap", *map(str, paths), "--out", str(out), "--no-report"]) == 0
+    return out
+
+
+def test_a_drag_without_a_name_gets_a_law(drag):
+    content = json.loads((drag / "gap.json").read_text())
+    assert content["verdict"] == "unexplained"
+    assert 1 <= len(content["proposals"]) <= 3
+    first = content["proposals"][0]
+    assert first["reads"] == ["wire_out"]
+    amount = next(iter(first["parameters"].values()))
+    assert amount["unit"] == "N*m/m"
+    assert amount["value"] == pytest.approx(0.12, abs=max(5 * amount["std"], 0.02))  # 12 N m per 100 m
+    assert first["holdout"]["closed"] > 0.8
+    assert "the data do not say" in first["sentence"]
+
+
+def test_the_proposals_files_go_back_in(drag, tmp_path):
+    """The model with the law, and its file of terms, are what replay takes."""
+    run = sorted(drag.parent.glob("run_*.csv"))[-1]
+    files = ["--model", str(drag / "proposal_1.yaml"), "--terms-file", str(drag / "proposal_1.py")]
+    assert winch_friction(["replay", str(run), "--out", str(tmp_path / "replayed.csv"), *files]) == 0

@@ -95,5 +95,12 @@ def test_a_drag_without_a_name_gets_a_law(drag):
 def test_the_proposals_files_go_back_in(drag, tmp_path):
     """The model with the law, and its file of terms, are what replay takes."""
     run = sorted(drag.parent.glob("run_*.csv"))[-1]
-    files = ["--model", str(drag / "proposal_1.yaml"), "--terms-file", str(drag / "proposal_1.py")]
+    files = [
+        "--crane",
+        "crane_150t",
+        "--model",
+        str(drag / "proposal_1.yaml"),
+        "--terms-file",
+        str(drag / "proposal_1.py"),
+    ]
     assert winch_friction(["replay", str(run), "--out", str(tmp_path / "replayed.csv"), *files]) == 0

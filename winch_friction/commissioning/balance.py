@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.friction import FrictionModel
@@ -36,6 +37,7 @@ MOST_SPEED, MOST_PRESSURE = 650.0, 600e5  # rad/s, Pa
 SLOW_SPEED = 0.1  # of the run's top speed: the e-fold of friction at low speed
 INERTIA_SHARE = 0.3
 HEAVE_SHARE, NO_HEAVE_SHARE = 0.15, 0.7  # of the load's inertia, with and without a logged heave
+UNREST_BLOCKS, DYNAMIC_SHARE, MOST_UNREST = 5, 0.3, 0.04  # a second; of the dynamic torque; of the rated torque
 NOISE_SHARE = 0.008  # of the rated torque: what no prior above covers
 FRICTION_NOISE = 0.08  # of the friction
 CAUCHY = 3.0  # sigma beyond which a block counts less
@@ -88,8 +90,20 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
             _Error("inertia", inertial, INERTIA_SHARE, -LEAST_INERTIA / INERTIA_SHARE, MOST_INERTIA / INERTIA_SHARE),
             _Error("load inertia", swing, swings, -1.0 / swings, 2.0 / swings),
         )
-        sigma = np.hypot(NOISE_SHARE * rated, FRICTION_NOISE * friction)
+        noise = NOISE_SHARE * rated, FRICTION_NOISE * friction, _unrest(view, drive, inertial + swing, rated)
+        sigma = np.sqrt(np.sum(np.square(np.broadcast_arrays(*noise)), axis=0))
         return _fit(view, drive, expected, errors, sigma, load)
+
+
+def _unrest(view: RunView, drive: FloatArray, dynamic: FloatArray, rated: float) -> FloatArray:
+    """Torque that ramps and the load bouncing on its wire leave open, N m: it dies away and says nothing of a mistake.
+
+    Bounded, so that a torque which is wrong by orders of magnitude does not excuse itself.
+    """
+    swinging = drive - uniform_filter1d(np.nan_to_num(drive), UNREST_BLOCKS)
+    both = np.hypot(np.nan_to_num(swinging), DYNAMIC_SHARE * np.nan_to_num(dynamic))
+    lasting = maximum_filter1d(both, 2 * UNREST_BLOCKS + 1)
+    return np.minimum(lasting, MOST_UNREST * rated)
 
 
 def static_torque(view: RunView) -> FloatArray:

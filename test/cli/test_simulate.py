@@ -25,7 +25,7 @@ def test_a_scenario_becomes_a_run_that_reads_back(short, tmp_path, suffix, capsy
     assert run(["simulate", short, "--out", str(out), "--seed", "3", "--json"]) == 0
     written = json.loads(capsys.readouterr().out)["runs"][0]
     read = read_run(out)
-    assert len(read) == written["rows"] == 401
+    assert len(read) == written["samples"] == 401
     assert read.groups == ("active", "passive")
     assert np.isfinite(read["motor_speed"]).all()
 
@@ -33,7 +33,7 @@ def test_a_scenario_becomes_a_run_that_reads_back(short, tmp_path, suffix, capsy
 def test_hidden_effects_and_truth(short, tmp_path):
     for name, extra in (("a", []), ("b", ["--hide", "brake_drag=2"])):
         assert run(["simulate", short, "--out", str(tmp_path / f"{name}.csv"), "--truth", *extra]) == 0
-    plain, hidden = (read_run(tmp_path / f"{name}_truth.csv", complete=False) for name in "ab")
+    plain, hidden = (read_run(tmp_path / "truth" / f"{name}_truth.csv", complete=False) for name in "ab")
     assert np.abs(hidden.aside["friction_torque"]).max() > 50.0 + np.abs(plain.aside["friction_torque"]).max()
 
 

@@ -15,15 +15,18 @@ def run_paths(paths: Sequence[Path]) -> list[Path]:
     """Run files named one by one or by folder; a folder with metadata.yaml is a bag, truth files are no runs."""
     found: list[Path] = []
     for path in map(Path, paths):
-        if path.is_dir() and not (path / "metadata.yaml").is_file():
-            inside = [each for each in sorted(path.iterdir()) if _is_run(each)]
-            if not inside:
-                kinds = ", ".join(RUN_SUFFIXES)
-                raise InputError(f"{path}: the folder holds no run ({kinds} or a rosbag2 folder)")
-            found += inside
-        else:
-            found.append(path)
+        found += _runs_in(path) if path.is_dir() and not (path / "metadata.yaml").is_file() else [path]
+    if not found and paths:
+        kinds = ", ".join(RUN_SUFFIXES)
+        raise InputError(f"{', '.join(map(str, paths))}: no run in there ({kinds} or a rosbag2 folder)")
     return found
+
+
+def _runs_in(folder: Path) -> list[Path]:
+    """A folder's runs; a folder of bag files whose recorder was killed before it wrote metadata.yaml is one bag."""
+    inside = [each for each in sorted(folder.iterdir()) if _is_run(each)]
+    storage = [each for each in inside if each.suffix in (".mcap", ".db3")]
+    return [folder] if len(storage) == len(inside) == 1 else inside
 
 
 def _is_run(path: Path) -> bool:

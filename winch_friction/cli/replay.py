@@ -1,13 +1,18 @@
 """`winch-friction replay`: a recording through the nodes' own step."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
 from winch_friction.cli.optional import OptionalPath, OptionalTexts
+
+SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
+MOSTLY = 0.5  # share of active samples below which the reasons are told
 
 
 def command(
@@ -37,7 +42,7 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.inputs import crane_of
+    from winch_friction.cli.inputs import crane_of, refuse_implausible
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.mapping import bag_options_of
@@ -53,7 +58,9 @@ def command(
     seed = load_model(model)
     winch = crane_of(crane, seed, [recording])
     refuse_other_crane(seed, winch)
-    forced = _refuse_implausible(recording, winch, seed, force, options)
+    run = _run_of(recording, winch, options)
+    forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}
+    settings = _settings_for(recording, run, settings)
     with stderr.status("replaying"):
         result = replay_recording(recording, winch, seed, settings, learn=learn, **options)
     show_warnings(result.warnings)
@@ -66,26 +73,59 @@ def command(
         said_of = {"recording": recording, "crane": winch.name, "model": model, "learned": learn, **forced}
         _draw(picture, result, seed, said_of)
     content = {**summary(result), **forced}
+    if content["active_share"] < MOSTLY:
+        show_warnings([_why_silent(result.compensator.aside["state"], run, settings)])
     if as_json:
         show_json(content)
         return
     _show(content)
 
 
-def _refuse_implausible(
-    recording: Path, crane: Any, model: Any, force: bool, options: dict[str, Any]
-) -> dict[str, Any]:
-    """As `inputs.refuse_implausible`; a recording that lacks what the torque balance needs is replayed unasked."""
-    from winch_friction.cli.inputs import refuse_implausible
+def _run_of(recording: Path, crane: Any, options: dict[str, Any]) -> Any:
+    """The recording as a run, or None where it lacks what a run needs: a replay needs less, and says what it lacks."""
     from winch_friction.physics.errors import InputError
     from winch_friction.records.runs import read_run
 
     is_bag = recording.is_dir() or recording.suffix in (".mcap", ".db3")
     try:
-        run = read_run(recording, crane, **(options if is_bag else {}))
+        return read_run(recording, crane, **(options if is_bag else {}))
     except InputError:
-        return {}  # the replay needs less than a run does, and says itself what it lacks
-    return refuse_implausible([run], crane, model, force, [recording])
+        return None
+
+
+def _settings_for(recording: Path, run: Any, settings: Any) -> Any:
+    """Settings whose age limits a slow log can meet; those of a file or of the recording itself are only questioned."""
+    from winch_friction.replay.settings import ReplaySettings, settings_for_rate
+
+    if run is None:
+        return settings
+    step = float(np.median(np.diff(run.time)))
+    known = settings or (ReplaySettings() if not run.metadata.get("phases") else None)
+    limit = min((phase.config.max_age for phase in known.phases), default=math.inf) if known else math.inf
+    if step * SLACK <= limit:
+        return settings
+    said = f"{recording.name}: logged at {1.0 / step:.3g} Hz; inputs count as lost after {limit:.3g} s"
+    if settings is not None:
+        show_warnings([f"{said}, as --params-file says: raise max_age there if the compensator falls silent"])
+        return settings
+    show_warnings([f"{said} by default: replayed with {SLACK * step:.3g} s instead (max_age in --params-file)"])
+    return settings_for_rate(SLACK * step)
+
+
+def _why_silent(states: Any, run: Any, settings: Any) -> str:
+    names, counts = np.unique(np.asarray(states, str), return_counts=True)
+    shares = ", ".join(
+        f"{name} {100.0 * count / len(states):.0f} %"
+        for name, count in sorted(zip(names, counts, strict=True), key=lambda pair: -pair[1])
+    )
+    said = f"the compensator was active in less than {100 * MOSTLY:.0f} % of the samples; its states: {shares}"
+    source = settings.phases[0].config.velocity_source if settings else "reference"
+    if run is not None and "speed_reference" not in run and source == "reference":
+        said += (
+            "; the recording has no speed_reference, which velocity_source 'reference' needs: set velocity_source: "
+            "measured (and acceleration_filter) in a --params-file"
+        )
+    return said
 
 
 def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace: str) -> dict[str, Any]:

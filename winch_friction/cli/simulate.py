@@ -8,13 +8,18 @@ import typer
 from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
 
+LARGEST_EFFECT = 10.0  # times the typical size: ten times an effect of the catalogue is another machine
+FASTEST = 1000.0  # rad/s, 9500 rpm: no motor of a winch turns faster, so the load has run away
+TRUTH_FOLDER = "truth"  # below the runs', so that `gap runs/*` meets runs alone
+
 
 def command(
     scenario: Annotated[
         str, typer.Argument(help="Scenario file, shipped name, or a set: [bold]gap_campaign[/bold], paper_tests.")
     ] = "",
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "crane_150t",
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the scenario's or the model's.")] = "",
     model: Annotated[str, typer.Option(help="Model file or shipped name: the friction's truth.")] = "a6vm215_crane2",
+    plant: Annotated[str, typer.Option(help="Plant file or shipped name; none: the scenario's.")] = "",
     out: Annotated[Path, typer.Option(help="Folder for the runs, or the file of a single run.")] = Path("runs"),
     seed: Annotated[int, typer.Option(min=0, help="Seed of sea, sensors and campaign.")] = 0,
     hide: Annotated[
@@ -37,8 +42,10 @@ def command(
       winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
     """
     from winch_friction.cli.console import progress, show_json, show_table
-    from winch_friction.records.crane_file import load_crane
+    from winch_friction.cli.inputs import crane_of
+    from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.model_file import load_model
+    from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     hidden = [_effect(text) for text in hide or []]
     if effects:
@@ -48,7 +55,13 @@ def command(
         raise InputError("which scenario? Give a file, a shipped name, gap_campaign or paper_tests")
     plan = _plan(scenario, seed, out, kind)
     _refuse_overwriting([path for _, _, path in plan], force)
-    winch, friction = load_crane(crane), load_model(model)
+    friction = load_model(model)
+    winch = crane_of(crane or plan[0][0].crane, friction)
+    refuse_other_crane(friction, winch)
+    if plant:
+        plan = [(chosen.override({"plant": plant}), run_seed, path) for chosen, run_seed, path in plan]
+    for chosen, _, _ in plan:
+        refuse_other_plant(chosen, load_plant(chosen.plant), winch)
     rows = []
     for chosen, run_seed, path in progress(plan, "simulating", len(plan)):
         rows.append(_simulate_to(path, chosen, winch, friction, run_seed, hidden, truth))
@@ -65,15 +78,19 @@ def _effect(text: str) -> tuple[str, float]:
     if name not in effect_names():
         raise InputError(f"--hide {name}: not an effect; known effects are {', '.join(sorted(effect_names()))}")
     try:
-        return name, float(size) if size else 1.0
+        value = float(size) if size else 1.0
     except ValueError:
         raise InputError(f"--hide {text}: '{size}' is not a number; write EFFECT=SIZE, 1 = typical") from None
+    if not abs(value) <= LARGEST_EFFECT:
+        raise InputError(f"--hide {text}: the size must be {-LARGEST_EFFECT:g} ... {LARGEST_EFFECT:g} (1 = typical)")
+    return name, value
 
 
 def _list_effects(as_json: bool) -> None:
     from winch_friction.cli.console import show_json, show_table
-    from winch_friction.simulation.hidden.catalogue import EFFECTS
+    from winch_friction.simulation.hidden.catalogue import EFFECTS, effect_names
 
+    effect_names()  # registers them
     if as_json:
         show_json({name: effect.typical for name, effect in EFFECTS.items()})
     else:
@@ -108,15 +125,26 @@ def _simulate_to(
 
     result = simulate(scenario, crane, model, seed, hidden)
     path.parent.mkdir(parents=True, exist_ok=True)
+    _refuse_runaway(scenario, result.truth["motor_speed"])
     write_run(result.run, path)
     if truth:
         kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
-        write_run(result.truth, path.with_name(f"{path.stem}_truth{kind}"))
+        write_run(result.truth, path.parent / TRUTH_FOLDER / f"{path.stem}_truth{kind}")
     time, speed = result.run.time, result.truth["motor_speed"]
     return {
         "run": str(path),
-        "seconds": float(time[-1] - time[0]),
-        "rows": len(result.run),
+        "duration [s]": float(time[-1] - time[0]),
+        "samples": len(result.run),
         "largest speed [rpm]": float(max(abs(speed)) * 30.0 / 3.141592653589793),
         "position error [mm RMS]": float(1e3 * (result.truth["position_error"] ** 2).mean() ** 0.5),
     }
+
+
+def _refuse_runaway(scenario: Any, speed: Any) -> None:
+    largest = float(max(abs(speed)))
+    if not largest <= FASTEST:  # NaN too
+        rpm = largest * 30.0 / 3.141592653589793
+        raise InputError(
+            f"scenario '{scenario.name}': the winch runs away ({rpm:.3g} rpm): the drive "
+            "cannot hold this load with these effects; lower the load or the effects' sizes"
+        )

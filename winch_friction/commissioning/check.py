@@ -58,7 +58,8 @@ def _mistake(diagnosis: Diagnosis) -> list[Finding]:
     best, bad = diagnosis.best, diagnosis.contradicting
     if best is None:
         return [_unexplained(diagnosis)] if bad else []
-    harmless = best.mistake.cause == "companion" and not bad
+    # a channel that only tells the speed again is not used by the balance: the rest fits without it
+    harmless = best.mistake.cause == "companion" and max(best.scores) < CONTRADICTS
     rivals = [
         each
         for each in diagnosis.hypotheses

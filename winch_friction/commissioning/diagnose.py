@@ -15,6 +15,7 @@ from winch_friction.physics.winch.crane import Crane
 
 # score of a run above which it cannot be the crane's: ordinary friction and twice a catalogue effect stay below 75
 CONTRADICTS = 100.0
+COMPANION = 20.0  # prior cost of a wrong channel that only tells the speed again: above that of a mixed set of runs
 SURE = 60.0  # a mistake that lowers the score of all runs by this much is named even where each alone would pass
 NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes at least half away
 MIXED = 10.0  # for a mistake that only some of the runs hold
@@ -108,12 +109,16 @@ class _Bench:
 
         def quick(mistake: Mistake) -> float:
             views = whole if mistake.cause == "delay" else thin  # a shift of time needs the neighbours
-            return mistake.cost + sum(self._undone(mistake, view) for view in views)
+            undone = np.array([self._undone(mistake, view) for view in views])
+            some = float(np.minimum(undone, self.as_is[self.first]).sum()) + MIXED
+            return mistake.cost + min(float(undone.sum()), some)
 
         kept = sorted(mistakes, key=quick)[:FINALISTS]
         return sorted((self._tried(each) for each in kept), key=lambda each: each.score)
 
     def _undone(self, mistake: Mistake, view: RunView) -> float:
+        if mistake.cause == "delay":  # a shift must not pass for agreement by losing the likeness to other channels
+            return closure(mistake.undo(view), self.model).score + _beside_balance(view)
         return score_of(mistake.undo(view), self.model) + _shrinking(mistake, view)
 
     def _tried(self, mistake: Mistake) -> Hypothesis:
@@ -178,5 +183,5 @@ def _companions(views: Sequence[RunView]) -> list[Mistake]:
         ratios = [a.ratio for v in views for a in agreements(v) if a.channel == channel]
         ratio = float(np.median(ratios)) if ratios else 1.0
         words = f"{channel} contradicts motor_speed: it tells {ratio:.3g} times the speed"
-        found.append(Mistake("companion", channel, words, 8.0, undo, ratio))
+        found.append(Mistake("companion", channel, words, COMPANION, undo, ratio))
     return found

@@ -11,7 +11,7 @@ from winch_friction.physics.signals import FloatArray
 ORDINARY = {"shaft_angle": 0.03, "speed_reference": 0.12, "wire_out": 0.12, "heave_velocity": 0.15}
 IN_METRES = ("wire_out", "heave_velocity")  # these tell the wire's speed
 FOLLOWS = 0.8  # correlation below which a channel does not tell the speed (heave with the compensation off)
-MOST = 60.0  # score of one channel in one run: contradictions add up over channels and runs
+MOST = 150.0  # score of one channel in one run: one flat contradiction suffices
 FEWEST = 20  # blocks
 
 
@@ -50,4 +50,4 @@ def _compared(speed: FloatArray, told: FloatArray) -> tuple[float, float]:
 def _score(ratio: float, ordinary: float) -> float:
     if ratio <= 0.0:
         return MOST
-    return min((np.log(ratio) / ordinary) ** 2, MOST)
+    return min(float(np.log(ratio) / ordinary) ** 2, MOST)

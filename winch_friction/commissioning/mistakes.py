@@ -18,7 +18,7 @@ from winch_friction.physics.winch.crane import Crane
 
 Repair = Callable[[RunView], RunView]
 
-UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 5.0, 6.0, 12.0  # prior costs
+UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 12.0, 6.0, 12.0  # prior costs
 
 RARELY, RARE = ("deg/s", "1/s", "lb", "l/rev", "mm^3", "kPa", "kN under [kg]", "t under [kN]"), 4.0
 # channel -> factor to the true value, what is written in the log and under which unit it stands
@@ -62,6 +62,16 @@ class Mistake:
 def speed_times(factor: float) -> Repair:
     """The speed and what follows from it, times a factor."""
     return lambda view: replace(view, speed=view.speed * factor, acceleration=view.acceleration * factor)
+
+
+def speeds_times(factor: float, *also: str) -> Repair:
+    """The speed and other channels that tell it, times a factor: what one logger writes in one unit."""
+
+    def undo(view: RunView) -> RunView:
+        rates = {name: rate * factor if name in also else rate for name, rate in view.rates.items()}
+        return replace(speed_times(factor)(view), rates=rates)
+
+    return undo
 
 
 def load_times(factor: float) -> Repair:
@@ -118,6 +128,10 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
     if any(np.isfinite(view.load).any() for view in views):
         yield from each("hook_load", LOAD_UNITS, load_times)
     yield from each("motor_speed", SPEED_UNITS, speed_times)
+    if any("speed_reference" in view.rates for view in views):
+        for factor, words in SPEED_UNITS[:2]:
+            said = f"motor_speed and speed_reference hold {words}"
+            yield Mistake("unit", "motor_speed", said, UNIT + 1.0, speeds_times(factor, "speed_reference"), factor)
     ratio = crane.gear_ratio
     if ratio > 1.5:
         yield Mistake(
@@ -158,6 +172,10 @@ def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
 def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> Iterator[Mistake]:
     said = "the sign of motor_speed is flipped: positive must mean hoisting"
     yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
+    if any(view.rates for view in views):
+        said = "the sign of motor_speed, speed_reference and shaft_angle is flipped: positive must mean hoisting"
+        undo = speeds_times(-1.0, "speed_reference", "shaft_angle")
+        yield Mistake("sign", "motor_speed", said, SIGN + 1.0, undo, -1.0)
     if any(_told_direction(view) is not None for view in views):
         said = "motor_speed has no sign: lowering must be negative"
         yield Mistake("sign", "motor_speed", said, SIGN, _signed)
@@ -286,7 +304,7 @@ def delayed(seconds: float) -> Mistake:
     )
     words = f"{which} by about {abs(seconds):.2g} s"
     return Mistake(
-        "delay", "motor_speed", words, DELAY * (1.0 + abs(seconds)), lambda view: _shifted(view, seconds), seconds
+        "delay", "motor_speed", words, DELAY * (1.0 + 0.5 * abs(seconds)), lambda view: _shifted(view, seconds), seconds
     )
 
 

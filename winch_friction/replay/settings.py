@@ -46,6 +46,12 @@ class ReplaySettings:
     stamp_window: float = 0.5
 
 
+def settings_for_rate(max_age: float) -> ReplaySettings:
+    """The nodes' defaults with another age limit (s), for a log that is slower than they allow."""
+    phase = Phase(config=CompensatorConfig(max_age=max_age))
+    return ReplaySettings((phase,), estimator_max_age=max_age)
+
+
 def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySettings | None:
     """What a recording says of itself under `phases`: each with name, enabled and the compensator node's parameters.
 

@@ -1,8 +1,10 @@
 """Plant files: what a simulation needs beyond the crane file (hydraulics, accumulator, pump), checked by pydantic."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import read_yaml
 from winch_friction.simulation.pydantic_v1 import Field, StrictStr
@@ -55,6 +57,7 @@ class PlantFile(Strict):
 
     schema_: Literal["winch_friction.plant/1"] = Field(alias="schema")
     name: StrictStr
+    crane: StrictStr = ""
     description: StrictStr = ""
     pump: Pump
     active_loop: ActiveLoop
@@ -70,3 +73,35 @@ def load_plant(name: str | Path) -> PlantFile:
     """A plant by path or shipped name; raises `InputError` in one line."""
     path = shipped("plants", name)
     return validated(PlantFile, read_yaml(path), str(path))
+
+
+def refuse_other_plant(scenario: Any, plant: PlantFile, crane: Crane) -> None:
+    """Raise `InputError` where a scenario or a plant says that it is of another crane, or cannot hold its load."""
+    found = [
+        f"{kind} '{each.name}' is of crane '{each.crane}'"
+        for kind, each in (("scenario", scenario), ("plant", plant))
+        if each.crane and each.crane != crane.name
+    ]
+    if found:
+        raise InputError(
+            f"{' and '.join(found)}, not of '{crane.name}': give that crane, or a plant of this one "
+            "(winch-friction init plant --crane ...; simulate --plant)"
+        )
+    _refuse_load(scenario, plant, crane)
+
+
+def _refuse_load(scenario: Any, plant: PlantFile, crane: Crane) -> None:
+    """Raise `InputError` where the drive cannot hold the load at its relief pressure."""
+    gas, loop = plant.accumulator, plant.active_loop
+    driven = crane.motor_count("active" if scenario.mode == "ahc" else "main") * scenario.displacement
+    holds = driven * (loop.relief_pressure - loop.boost_pressure)
+    if scenario.mode == "ahc":
+        setting = scenario.passive_displacement or crane.max_displacement
+        holds += crane.motor_count("passive") * setting * (gas.pressure - gas.low_pressure)
+    needed = crane.drum_torque(scenario.load, scenario.wire_layer) / crane.gear_ratio
+    if needed > holds:
+        load = scenario.load / 1e3
+        raise InputError(
+            f"scenario '{scenario.name}': load {load:.4g} t is more than crane '{crane.name}' with plant "
+            f"'{plant.name}' holds here, 0 ... {load * holds / needed:.4g} t"
+        )

@@ -148,6 +148,7 @@ class Scenario(Strict):
 
     schema_: Literal["winch_friction.scenario/1"] = Field("winch_friction.scenario/1", alias="schema")
     name: StrictStr
+    crane: StrictStr = ""
     description: StrictStr = ""
     duration: Seconds = limited(gt=0.0, le=14400.0)
     mode: Literal["normal", "ahc"]

@@ -1,0 +1,122 @@
+"""The commissioning check: ordinary runs pass, mistakes are named, on drawn cranes of a generator of its own."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from spoils import spoils
+
+from campaign import rig
+from winch_friction.commissioning.check import quick_check, shipped_cranes
+from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.finding import first_contradiction
+from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+LENGTH = 0.3  # of a campaign's runs, to be quick
+WORLDS = ((0, rig.DRAWN), (3, rig.DRAWN), (1, "rough"))
+RIGHT = 0.9  # share of first causes that must be right; the docs say what the campaign gives
+
+
+@cache
+def world(seed, flavour, tmp):
+    folder = tmp / f"{flavour}_{seed}"
+    crane, model = rig.write_world(folder, rig.world_of(seed, flavour))
+    return load_crane(crane), load_model(model)
+
+
+@cache
+def columns_of(seed, flavour, *effects):
+    return rig.make_dataset(seed, flavour, effects, length=LENGTH)
+
+
+def runs_of(columns):
+    return [Run(f"run_{k + 1:02d}", each) for k, each in enumerate(columns)]
+
+
+@pytest.fixture(scope="session")
+def tmp(tmp_path_factory):
+    return tmp_path_factory.mktemp("worlds")
+
+
+@pytest.mark.parametrize(("seed", "flavour"), WORLDS)
+@pytest.mark.parametrize("effect", ["", "tare_load", "stribeck", "layer_radius", "case_pressure"])
+def test_friction_and_hidden_effects_are_no_mistakes(seed, flavour, effect, tmp):
+    crane, model = world(seed, flavour, tmp)
+    runs = runs_of(columns_of(seed, flavour, *([(effect, 2.0)] if effect else [])))
+    for share in (0.6, 1.0, 1.4):
+        wrong = model.with_values([share * value for value in model.values])
+        assert first_contradiction(quick_check(runs, crane, wrong)) is None
+    assert first_contradiction(quick_check(runs, crane)) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "flavour"), WORLDS)
+def test_the_first_cause_is_the_true_one(seed, flavour, tmp):
+    crane, model = world(seed, flavour, tmp)
+    plain = columns_of(seed, flavour)
+    wrong = []
+    chosen = spoils(crane.max_displacement, crane.gear_ratio)
+    for each in chosen:
+        spoilt = [each.apply(columns) if not each.needs or each.needs in columns else columns for columns in plain]
+        found = first_contradiction(quick_check(runs_of(spoilt), crane, model))
+        if found is None or found.cause != each.cause or found.channel not in each.channels:
+            wrong.append((each.name, found.sentence if found else "nothing"))
+    assert len(wrong) <= (1.0 - RIGHT) * len(chosen), wrong
+
+
+def test_another_crane_is_named(tmp):
+    crane, _ = world(0, rig.DRAWN, tmp)
+    runs = runs_of(columns_of(0, rig.DRAWN))
+    big = load_crane("crane_150t")
+    found = first_contradiction(quick_check(runs, big, None, {**shipped_cranes(), crane.name: crane}))
+    assert found is not None
+    assert found.cause == "crane"
+    assert crane.name in found.sentence
+
+
+def test_one_bad_run_among_good_ones_is_pointed_at(tmp):
+    crane, model = world(1, "rough", tmp)
+    runs = runs_of(columns_of(1, "rough"))
+    runs[2] = replace(runs[2], columns={**runs[2].columns, "hook_load": 1e3 * runs[2]["hook_load"]})
+    found = first_contradiction(quick_check(runs, crane, model))
+    assert found is not None
+    assert (found.cause, found.channel, found.runs) == ("unit", "hook_load", ("run_03",))
+
+
+def test_what_a_recording_says_of_its_crane_is_believed(tmp):
+    crane, model = world(1, "rough", tmp)
+    run = replace(runs_of(columns_of(1, "rough"))[0], metadata={"crane": "emps"})
+    found = first_contradiction(quick_check([run], crane, model))
+    assert found is not None
+    assert "emps" in found.sentence
+
+
+def test_a_clock_that_jumps_is_an_error_and_a_slow_one_a_warning(tmp):
+    crane, model = world(1, "rough", tmp)
+    run = runs_of(columns_of(1, "rough"))[0]
+    time = run.time.copy()
+    time[-1] = 1e30
+    found = quick_check([replace(run, columns={**run.columns, "time": time})], crane, model)
+    assert [each.cause for each in found if each.contradicts] == ["clock"]
+    slow = {name: values[::25] for name, values in run.columns.items()}
+    assert "rate" in [each.cause for each in quick_check([Run("slow", slow)], crane, model)]
+
+
+def test_the_whole_check_says_what_the_runs_teach_and_what_is_missing(tmp):
+    crane, model = world(1, "rough", tmp)
+    runs = [
+        Run(each.name, {name: v for name, v in each.columns.items() if name != "oil_temperature"})
+        for each in runs_of(columns_of(1, "rough"))
+    ]
+    result = check(runs, crane, model)
+    assert result.plausible
+    assert {each.name for each in result.identifiable} == set(model.parameter_names)
+    assert all(each.after <= each.before * 1.0001 for each in result.identifiable)
+    assert any(each.words == "much" for each in result.identifiable)
+    assert any("oil_temperature" in line for line in result.log_next)
+    content = result.content()
+    assert set(content["channels"]) == {run.name for run in runs}
+    assert np.isfinite([each["score"] for each in content["balance"]]).all()

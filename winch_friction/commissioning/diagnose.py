@@ -20,7 +20,7 @@ SURE = 60.0  # a mistake that lowers the score of all runs by this much is named
 NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes at least half away
 MIXED = 10.0  # for a mistake that only some of the runs hold
 HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
-DELAYS = (0.4, 0.7, 1.0, 1.5, 2.5, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
+DELAYS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 2.8, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
 FIRST_RUNS, FIRST_BLOCKS, FINALISTS = 4, 200, 8  # every mistake is tried on these, the best of them on all runs
 
 
@@ -118,7 +118,10 @@ class _Bench:
 
     def _undone(self, mistake: Mistake, view: RunView) -> float:
         if mistake.cause == "delay":  # a shift must not pass for agreement by losing the likeness to other channels
-            return closure(mistake.undo(view), self.model).score + _beside_balance(view)
+            follow = [each.channel for each in agreements(view)]
+            shifted = mistake.undo(view)
+            agreed = sum(each.score for each in agreements(shifted, follow))
+            return closure(shifted, self.model).score + agreed + range_score(view)
         return score_of(mistake.undo(view), self.model) + _shrinking(mistake, view)
 
     def _tried(self, mistake: Mistake) -> Hypothesis:

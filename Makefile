@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet campaign-import clean
+.PHONY: docs demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet campaign-import clean
 
 setup: $(READY)
 
@@ -43,6 +43,10 @@ browser:
 	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || \
 	  { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && { apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium; } >/dev/null 2>&1; } || \
 	  echo "no Chromium and no right to install it: the browser tests will skip"
+
+# the site: reference from the code, tutorials executed, no warnings; open out/site/index.html
+docs: $(READY)
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs out/site
 
 bench: $(READY)
 	$(BIN)/winch-friction bench

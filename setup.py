@@ -56,6 +56,7 @@ EXTRAS = {
         "rich>=13",
     ],
     "fmu": ["fmpy>=0.3.20"],
+    "docs": ["sphinx>=8", "furo>=2024.8", "myst-nb>=1.2"],
     "test": [
         "pytest>=7.4",
         "pytest-timeout>=2.2",
@@ -75,7 +76,7 @@ EXTRAS = {
 }
 EXTRAS["all"] = [
     requirement
-    for extra in ("desk", "import", "fmu", "xarray", "ros", "fleet", "test")
+    for extra in ("desk", "import", "fmu", "xarray", "ros", "fleet", "docs", "test")
     for requirement in EXTRAS[extra]
 ]
 

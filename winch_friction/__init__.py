@@ -4,6 +4,8 @@
 loaded when they are first used, so that a node pays for nothing it does not need. Everything else is private.
 """
 
+import sys
+from types import ModuleType
 from typing import Any
 
 __version__ = "0.1.0"
@@ -13,7 +15,7 @@ _PUBLIC = {
     **dict.fromkeys(("from_frame", "read_run", "write_run"), "winch_friction.api.runs"),
     **dict.fromkeys(("load_crane", "load_model", "save_model"), "winch_friction.api.files"),
     **dict.fromkeys(("torque", "contributions", "jacobian", "friction_curve"), "winch_friction.api.evaluate"),
-    **dict.fromkeys(("fit", "gap", "replay", "simulate"), "winch_friction.api.work"),
+    **dict.fromkeys(("check", "fit", "gap", "replay", "simulate"), "winch_friction.api.work"),
     "Run": "winch_friction.physics.signals",
     "Sample": "winch_friction.physics.signals",
     "GroupSample": "winch_friction.physics.signals",
@@ -36,6 +38,18 @@ def __getattr__(name: str) -> Any:
     value = getattr(import_module(_PUBLIC[name]), name) if _PUBLIC[name] else import_module(f"winch_friction.{name}")
     globals()[name] = value
     return value
+
+
+class _Surface(ModuleType):
+    """The package as a module whose public names stay what they are: `replay` is also the name of a subpackage, which
+    the import system would put in the function's place."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _PUBLIC and _PUBLIC[name] and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Surface
 
 
 def __dir__() -> list[str]:

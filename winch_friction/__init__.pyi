@@ -10,6 +10,7 @@ from winch_friction.api.files import save_model as save_model
 from winch_friction.api.runs import from_frame as from_frame
 from winch_friction.api.runs import read_run as read_run
 from winch_friction.api.runs import write_run as write_run
+from winch_friction.api.work import check as check
 from winch_friction.api.work import fit as fit
 from winch_friction.api.work import gap as gap
 from winch_friction.api.work import replay as replay

@@ -14,7 +14,8 @@ import winch_friction as wf
 
 PUBLIC = {
     "Crane", "FeedforwardCompensator", "FrictionEstimator", "FrictionModel", "GroupSample", "InputError", "Run",
-    "Sample", "contributions", "fit", "friction_curve", "from_frame", "gap", "jacobian", "load_crane", "load_model",
+    "Sample", "check", "contributions",
+    "fit", "friction_curve", "from_frame", "gap", "jacobian", "load_crane", "load_model",
     "read_run", "replay", "save_model", "simulate", "terms", "torque", "write_run",
 }  # fmt: skip
 NO_LOAD = {"time": [0, 1], "motor_speed": [1, 1], "motor_torque": [0, 0]}
@@ -33,6 +34,11 @@ def test_the_surface_is_what_was_promised():
 def test_every_public_name_is_there_and_documented(name):
     assert (getattr(wf, name).__doc__ or "").strip()
     assert name in dir(wf)
+
+
+def test_a_subpackage_does_not_take_a_public_name_away():
+    importlib.import_module("winch_friction.replay.recording")
+    assert callable(wf.replay)
 
 
 def test_a_private_name_is_refused_with_the_public_ones():

@@ -84,6 +84,34 @@ class Replay:
         return html_table(repr(self), ["parameter", *frame.columns], frame.reset_index().values.tolist())
 
 
+class Check:
+    """Whether runs can be a crane's: the sentence, the findings, what to log next."""
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+
+    @property
+    def plausible(self) -> bool:
+        """Whether the runs can be the crane's."""
+        return self.result.plausible
+
+    @property
+    def findings(self) -> Any:
+        """One row per finding, the gravest first."""
+        return library("pandas", "desk").DataFrame([each.content() for each in self.result.findings])
+
+    def summary(self) -> str:
+        """The verdict in one line: the most likely mistake, or that there is none."""
+        return self.result.sentence
+
+    def __repr__(self) -> str:
+        return f"Check: {self.summary()}"
+
+    def _repr_html_(self) -> str:
+        rows = [(each.severity, each.sentence) for each in self.result.findings]
+        return html_table(self.summary(), ("severity", "finding"), rows)
+
+
 class Gap:
     """What the discrepancy workflow found: the verdict, the effects, the repaired model and the proof."""
 

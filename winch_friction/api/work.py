@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from winch_friction.api.results import Fit, Gap, Replay
+from winch_friction.api.results import Check, Fit, Gap, Replay
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import Run
@@ -119,6 +119,22 @@ def _fit_tests(tests: list[Any], crane: Crane, motor: FrictionModel | str, held_
     return Fit(winch_seed(found, crane, "fitted", {}), float(np.sqrt(np.mean(squares))), found)
 
 
+def check(runs: Runs, crane: Crane, model: FrictionModel | None = None) -> Check:
+    """Whether runs can be this crane's, and which mistake would explain why not; a model judges more sharply.
+
+    Returns `plausible`, `findings` (gravest first) and `summary()`. Raises `InputError`.
+
+    >>> import winch_friction as wf
+    >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    >>> run = wf.simulate("ahc_55t_215", crane, model, duration=30.0).run
+    >>> wf.check([run], crane, model).plausible
+    True
+    """
+    from winch_friction.commissioning.commissioning import check as checked
+
+    return Check(checked(_read(list(runs), crane), crane, model))
+
+
 def gap(runs: Runs, crane: Crane, model: FrictionModel, *, holdout: float = 0.25, seed: int = 0) -> Gap:
     """Where runs and model disagree, which effect is missing, and the proof on runs that were locked away.
 
@@ -126,19 +142,18 @@ def gap(runs: Runs, crane: Crane, model: FrictionModel, *, holdout: float = 0.25
     verdict with `effects`, the repaired `model`, `summary()`, `plot()`, `to_html()`. Raises `InputError`.
 
     >>> import numpy as np, winch_friction as wf
-    >>> crane, model = wf.load_crane("emps"), wf.load_model("emps_symmetric")
+    >>> crane, model = wf.load_crane("emps"), wf.load_model("emps_viscous")
+    >>> truth = wf.load_model("emps_symmetric").with_values({"T_0": 0.0})  # has Coulomb friction, which the model lacks
     >>> def logged(k):
     ...     noise = np.random.default_rng(k).normal(0.0, 0.3, 3000)
     ...     time = 0.02 * np.arange(3000)
     ...     speed = 0.15 * np.sin(2 * np.pi * time / (6 + k)) * np.sin(2 * np.pi * time / 37 + k)
     ...     columns = {"time": time, "motor_speed": speed, "motor_torque": 0 * time, "hook_load": 0 * time}
-    ...     missing = 8.0 * np.sign(speed) * np.exp(-((speed / 0.02) ** 2))  # a Stribeck peak that the model lacks
-    ...     friction = wf.torque(model, wf.from_frame(columns), crane) + missing
-    ...     drive = crane.inertia * np.gradient(speed, time) + friction + noise
+    ...     drive = crane.inertia * np.gradient(speed, time) + wf.torque(truth, wf.from_frame(columns), crane) + noise
     ...     return wf.from_frame({**columns, "motor_torque": drive}, f"run {k}")
     >>> found = wf.gap([logged(k) for k in range(5)], crane, model)
     >>> found.verdict, found.effects.index.tolist()
-    ('missing_effect', ['stribeck'])
+    ('missing_effect', ['coulomb'])
     """
     from winch_friction.discrepancy.options import GapOptions
     from winch_friction.discrepancy.workflow import find_gap

@@ -1,0 +1,64 @@
+"""What the pages tell people to type works: commands of the start page, Python snippets, names in every page."""
+
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import pytest
+
+from winch_friction.cli.main import run
+from winch_friction.cli.verbs import VERBS
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs/tutorials").glob("*.md"))]
+
+
+def fenced(path, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", path.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def test_the_start_page_can_be_typed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    commands = [line for block in fenced(ROOT / "docs/start.md", "sh") for line in block.splitlines()]
+    assert len(commands) > 5
+    for line in commands:
+        assert run(shlex.split(line)[1:]) == 0, f"{line}: {capsys.readouterr().err}"
+    for block in fenced(ROOT / "docs/start.md", "python"):
+        exec(compile(block, "docs/start.md", "exec"), {})
+    assert "feedforward active" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_every_verb_and_option_that_a_page_names_exists(page):
+    known = {verb.name: verb for verb in VERBS}
+    for line in re.findall(r"winch-friction ([a-z]+[^`\n]*)", page.read_text()):
+        words = line.split()
+        assert words[0] in known, f"{page.name}: winch-friction {line}"
+        command = known[words[0]].load()
+        for sub in words[1:2]:
+            command = getattr(command, "commands", {}).get(sub, command)
+        options = {option for each in command.params for option in (*each.opts, *each.secondary_opts)} | {"--help"}
+        for option in re.findall(r"(?<=\s)--[a-z][a-z-]*", line.split("#")[0]):
+            assert option in options or words[0] == "fleet", f"{page.name}: winch-friction {line}: {option}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_links_between_pages_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text()):
+        generated = "reference/" in target and target.endswith(".md")
+        assert generated or (page.parent / target).exists(), f"{page.name} -> {target}"
+
+
+def test_the_generated_reference_holds_every_verb_and_public_name(tmp_path, monkeypatch):
+    import winch_friction as wf
+
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    generate = __import__("generate")
+    generate.write_reference(tmp_path / "reference")
+    pages = {path.stem: path.read_text() for path in (tmp_path / "reference").iterdir()}
+    assert all(f"## `{verb.name}`" in pages["cli"] for verb in VERBS)
+    assert all(name in pages["api"] for name in wf.__all__)
+    assert "reversal_time" in pages["parameters"]
+    assert "stribeck" in pages["effects"]
+    sys.modules.pop("generate")

@@ -89,8 +89,7 @@ def _pooled(logs: Sequence[Log]) -> Log:
 def _settle_time(draft: Draft) -> None:
     best: tuple[float, tuple[LogColumn, ...], TimeGuess] | None = None
     for columns in _time_candidates(draft.logs[0]):
-        bare, unit = header_readings(columns[0].name)[0]
-        unit = unit or columns[0].unit
+        bare, unit = _time_reading(columns[0])
         if unit and fitting_si_unit("time", unit) is None:
             continue
         named = name_score("time", name_concepts(bare))
@@ -115,6 +114,12 @@ def _settle_time(draft: Draft) -> None:
     )  # fmt: skip
     if guess.question:
         draft.questions.append(f"time: {guess.question}")
+
+
+def _time_reading(column: LogColumn) -> tuple[str, str]:
+    """Name and unit of a column, the unit one of time where the header has several readings."""
+    readings = [(bare, unit or column.unit) for bare, unit in header_readings(column.name)]
+    return next((r for r in readings if not r[1] or fitting_si_unit("time", r[1]) is not None), readings[0])
 
 
 def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:

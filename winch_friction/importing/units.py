@@ -37,7 +37,7 @@ CHANNEL_UNITS: dict[str, tuple[str, ...]] = {
 }
 _BRACKETED = re.compile(r"^(.*?)\s*[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\))?[^\[\](){}<>]*)\s*[\])}>]\s*(.*)$")
 _AFTER_MARK = re.compile(r"^(.*\S)\s+(?:in|/)\s*([^\s]+)$|^(.*\S)\s*[,;:]\s*([^\s,;:]+)$", re.IGNORECASE)
-_SUFFIX = re.compile(r"^(.+?)[_\s.\-]+([^\s_]{1,9}(?:_per_[a-z]+)?)$")
+_SUFFIX = re.compile(r"^(.+?)[_\s\-]+([^\s_]{1,9}(?:_per_[a-z]+)?)$")
 _WORDED = (("_per_", "/"), (" per ", "/"), (" pro ", "/"))
 
 

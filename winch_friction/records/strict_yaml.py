@@ -101,6 +101,8 @@ def parse_yaml(text: str, where: str) -> Any:
     """The content of a YAML text."""
     try:
         return yaml.safe_load(text)
+    except RecursionError:
+        raise InputError(f"{where}: nested too deeply to be a configuration") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f" line {mark.line + 1}" if mark else ""

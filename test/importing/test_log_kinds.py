@@ -1,0 +1,125 @@
+"""Every kind of log that the import reads, written here by the library that reads it, comes back as the run it was."""
+
+import gzip
+import zipfile
+
+import numpy as np
+import pytest
+from importing.logs import GERMAN, example, rows_of, same, write_text
+
+from winch_friction.importing.carry_out import import_log
+from winch_friction.importing.propose import propose
+from winch_friction.importing.reading import read_log
+from winch_friction.physics.errors import InputError
+
+RUN = "test_08"
+
+
+def named(run):
+    """Times and columns under a crane maker's names, in his units."""
+    return {GERMAN[c][0]: v * GERMAN[c][1] for c, v in run.columns.items() if c in GERMAN}
+
+
+def write_mat(path, run):
+    from scipy.io import savemat
+
+    names = {"n_motor": "motor_speed", "p_A": "main.pressure_a", "p_B": "main.pressure_b", "Vg": "main.displacement"}
+    log = {name: run[channel] * GERMAN[channel][1] for name, channel in names.items()}
+    log |= {"t": run.time, "hook_load": run["hook_load"] * 1e-3, "wire_out": run["wire_out"], "gain": 3.0}
+    savemat(path, {"log": log})
+
+
+def write_mat73(path, run):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w", userblock_size=512) as file:
+        group = file.create_group("log")
+        group["time"] = run.time[None, :]
+        for name, channel in {
+            "motor_speed_rpm": "motor_speed", "druck_A_bar": "main.pressure_a", "druck_B_bar": "main.pressure_b",
+            "verdraengung_ccm": "main.displacement", "last_t": "hook_load", "seillaenge_m": "wire_out",
+        }.items():  # fmt: skip
+            group[name] = (run[channel] * GERMAN[channel][1])[None, :]
+    with path.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
+
+
+def write_tdms(path, run):
+    nptdms = pytest.importorskip("nptdms")
+    step = float(np.median(np.diff(run.time)))
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment([
+            nptdms.ChannelObject("Winde", "Zeit", run.time, properties={"unit_string": "s"}),
+            *(
+                nptdms.ChannelObject("Winde", name.partition(" [")[0], values,
+                                     properties={"unit_string": name.partition("[")[2].rstrip("]")})
+                for name, values in named(run).items()
+            ),
+        ])  # fmt: skip
+    return step
+
+
+def write_mf4(path, run):
+    asammdf = pytest.importorskip("asammdf")
+    with asammdf.MDF(version="4.10") as file:
+        for name, values in named(run).items():
+            bare, _, unit = name.partition(" [")
+            slow = slice(None, None, 10) if "last" in name.lower() else slice(None)
+            file.append([asammdf.Signal(values[slow], run.time[slow], name=bare, unit=unit.rstrip("]"))])
+        file.save(path, overwrite=True)
+
+
+def write_parquet(path, run):
+    import pandas as pd
+
+    pd.DataFrame({"Zeit [s]": run.time, **named(run)}).to_parquet(path)
+
+
+def write_gz(path, run):
+    plain = write_text(path.with_suffix(""), rows_of(run))
+    path.write_bytes(gzip.compress(plain.read_bytes()))
+
+
+def write_zip(path, run):
+    plain = write_text(path.with_suffix(".csv"), rows_of(run))
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(plain, "export.csv")
+
+
+KINDS = {
+    "v5.mat": write_mat, "v73.mat": write_mat73, "log.tdms": write_tdms, "log.mf4": write_mf4,
+    "log.parquet": write_parquet, "log.csv.gz": write_gz, "log.zip": write_zip,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_log_of_this_kind(tmp_path, crane_150t, name):
+    run = example(RUN)
+    KINDS[name](tmp_path / name, run)
+    found = propose([tmp_path / name], crane_150t, "crane_150t")
+    assert found.problems == ()
+    back = import_log(tmp_path / name, found.log_map, crane_150t)
+    assert len(back) == len(run)
+    assert same(back, run, [c for c in run.columns if c in back and c not in ("time", "hook_load")])
+    assert np.max(np.abs(back["hook_load"] - run["hook_load"])) <= 100.0  # kg; held in .mf4, slowly logged
+    assert np.allclose(back.time - back.time[0], run.time - run.time[0], atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    "suffix", [".mat", ".tdms", ".mf4", ".parquet", ".xlsx", ".gz", ".zip", ".csv", ".xls", ".doc"]
+)
+def test_rubbish_of_this_kind_is_refused_in_one_line(tmp_path, suffix):
+    path = tmp_path / f"log{suffix}"
+    path.write_bytes(bytes(range(256)) * 40)
+    with pytest.raises(InputError) as refused:
+        read_log(path)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_library_that_is_absent_is_named_with_its_command(tmp_path, monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "nptdms", None)
+    (tmp_path / "log.tdms").write_bytes(b"TDSm")
+    with pytest.raises(InputError, match=r"pip install 'winch_friction\[import\]', or pip install nptdms"):
+        read_log(tmp_path / "log.tdms")

@@ -11,10 +11,11 @@ from winch_friction.cli.demo.legs import voyage_legs
 from winch_friction.cli.demo.measures import measure, near_reversal, of_leg, overall_share
 from winch_friction.cli.demo.plan import efficiency_model, make_plan
 from winch_friction.cli.demo.recording import Recording
-from winch_friction.cli.demo.tuning import search_efficiency
+from winch_friction.cli.demo.tuning import efficiency_compensator, search_efficiency
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.scaled import scaled_system
+from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch.operating_point import operating_point
 from winch_friction.records.crane_file import load_crane
@@ -158,6 +159,16 @@ def test_no_factor_beside_it_is_better_than_the_one_that_is_found(crane_150t, cr
     assert search.efficiencies[at + 1] == pytest.approx(search.best + 0.01)
     assert search.residuals[at] < min(search.residuals[at - 1], search.residuals[at + 1])
     assert search.residuals[at] < 0.3 * max(search.residuals)
+
+
+def test_the_factor_is_tuned_as_it_is_used(tmp_path: Path, crane_150t) -> None:
+    """In full, in the search as in the voyage: 55 t at 0.8 is a quarter of the load's torque."""
+    assert _plan(tmp_path).feedforwards[1].scale == 1.0
+    each = efficiency_compensator(crane_150t, 0.8)
+    groups = {"active": GroupSample(1e7, 2.5e6, 3.4e-5), "passive": GroupSample(2.7e7, 2.5e6, 1.1e-5)}
+    for k in range(200):
+        out = each.step(Sample(0.02 * k, 100.0, speed_reference=100.0, groups=groups, hook_load=55e3))
+    assert out.friction_torque == pytest.approx(0.25 * crane_150t.drum_torque(55e3) / crane_150t.gear_ratio, rel=1e-3)
 
 
 def test_learned_parameters_stand_beside_sigma_and_truth(crane2_model) -> None:

@@ -43,7 +43,8 @@ def draw(plan: DemoPlan, recording: Recording, rows: list[PhaseFigures]) -> Any:
 def _shown(part: Recording, rows: Any) -> tuple[Any, Any]:
     """Time since the leg's start and the rows inside the window."""
     time = rows[:, 0] - part.truth[0, 0]
-    inside = time >= part.truth[-1, 0] - part.truth[0, 0] - WINDOW
+    end = part.truth[-1, 0] - part.truth[0, 0]  # after it the compensator is switched off
+    inside = (time >= end - WINDOW) & (time <= end)
     return time[inside], rows[inside]
 
 

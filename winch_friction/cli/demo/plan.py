@@ -17,7 +17,8 @@ from winch_friction.records.model_file import load_model, save_model
 
 CRANE, SEED = "crane_150t", "a6vm215_crane2"
 GROUPS = ("active", "passive")
-SCALE = 0.9  # of the feedforward from a friction model; the factor is used in full, as people do
+SCALE = 0.9  # of the feedforward from a friction model
+IN_FULL = 1.0  # of that from an efficiency factor: whoever tunes it puts everything into the factor
 PATIENCE = 5.0  # s of steady time: a loaded machine may pause, the simulated sea does not mind
 
 
@@ -125,7 +126,7 @@ def make_plan(
     """The demo's plan: no feedforward, the tuned efficiency factor, the seed model, the learned model."""
     feedforwards = (
         Feedforward("none", "none", SEED, SCALE, enabled=False),
-        Feedforward("efficiency", f"efficiency {efficiency:.2f}", str(out / "efficiency.yaml"), 1.0),
+        Feedforward("efficiency", f"efficiency {efficiency:.2f}", str(out / "efficiency.yaml"), IN_FULL),
         Feedforward("seed", f"seed × {SCALE:g}", SEED, SCALE),
         Feedforward("learned", f"learned × {SCALE:g}", SEED, SCALE, follow=True),
     )

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.cli.demo.measures import SETTLING, rms
-from winch_friction.cli.demo.plan import efficiency_model
-from winch_friction.compensation import FeedforwardCompensator
+from winch_friction.cli.demo.plan import IN_FULL, efficiency_model
+from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
@@ -60,9 +60,14 @@ def _grid(found: dict[float, float]) -> Iterator[float]:
     yield from (each for each in around if each not in found and LOWEST <= each <= HIGHEST)
 
 
+def efficiency_compensator(crane: Crane, efficiency: float) -> FeedforwardCompensator:
+    """The compensator of the demo's efficiency phases: the factor in full."""
+    return FeedforwardCompensator(crane, efficiency_model(crane, efficiency), CompensatorConfig(scale=IN_FULL))
+
+
 def _residual(crane: Crane, truth: FrictionModel, scenario: Scenario, sea: int, efficiency: float) -> float:
     """Residual heave RMS in m of the closed loop with this factor, its settling left out."""
-    compensator = FeedforwardCompensator(crane, efficiency_model(crane, efficiency))
+    compensator = efficiency_compensator(crane, efficiency)
     simulator, torque = Simulator(scenario, crane, truth, seed=sea), 0.0
     while not simulator.finished:
         if simulator.fresh:

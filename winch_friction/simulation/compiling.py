@@ -25,9 +25,9 @@ def compiled(function: Callable[..., Any]) -> Any:
     """`numba.njit`, cached between processes where a cache can be written."""
     with _cache_directory(_directory()):
         try:
-            return numba.njit(cache=True)(function)
+            return numba.njit(cache=True, error_model="numpy")(function)
         except RuntimeError:  # no place to write: compile anew in every process
-            return numba.njit(function)
+            return numba.njit(error_model="numpy")(function)
 
 
 def in_order(function: Any, *given: str, **named: Any) -> tuple[Any, ...]:

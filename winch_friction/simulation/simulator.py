@@ -101,7 +101,7 @@ class Simulator:
         self.history = np.zeros((self.periods + 1, len(COLUMNS)))
         self._arguments = in_order(
             run_periods, "first", "count",
-            plant=self._plant[0], hidden=self._torque[0], controller=self._control[0],
+            plant=self._plant, effects=self._torque, controller=self._control,
             addresses=np.array([kernel.torque_address, kernel.rates_address], np.int64),
             nominal=nominal, viscous=viscous_parameters(self.model), theta=nominal.copy(),
             z=terms, gains=np.zeros(2 * len(terms)), memory=self._memory, x=self._x,

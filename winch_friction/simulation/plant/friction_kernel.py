@@ -7,16 +7,14 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-import numba
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.simulation.generated import c_function, python_source
 from winch_friction.simulation.plant.point import GROUPS, POINT_LENGTH
-
-_POINTER = types.CPointer(types.float64)
 
 
 @dataclass(frozen=True)
@@ -48,16 +46,18 @@ def _kernel(functions: CompiledTerms) -> FrictionKernel:
 
 
 def _torque_function(functions: CompiledTerms, sizes: tuple[int, int, int]) -> Any:
-    source = f"def torque(x, theta, z):\n    return 1.0 * kernel({_tuples(sizes)})\n"
-    function = _define(source, "torque", functions.kernel)
-    return numba.cfunc(types.float64(_POINTER, _POINTER, _POINTER), error_model="numpy")(function)
+    """The torque as a C function of pointers to x, theta and z."""
+    source = python_source(functions.scalar_torque, "kernel")
+    wrapper = f"def torque(x, theta, z):\n    return 1.0 * kernel({_tuples(sizes)})\n"
+    return c_function("torque", source + wrapper, 3)
 
 
 def _rates_function(functions: CompiledTerms, sizes: tuple[int, int, int]) -> Any:
+    """The states' gains and decays as a C function that fills its fourth pointer."""
+    source = python_source(functions.scalar_state_rates, "kernel")
     stores = "".join(f"    out[{k}] = r[{k}]\n" for k in range(2 * sizes[2]))
-    source = f"def rates(x, theta, z, out):\n    r = kernel({_tuples(sizes)})\n{stores}    return 0.0\n"
-    function = _define(source, "rates", numba.njit(functions.scalar_state_rates))
-    return numba.cfunc(types.float64(_POINTER, _POINTER, _POINTER, _POINTER), error_model="numpy")(function)
+    wrapper = f"def rates(x, theta, z, out):\n    r = kernel({_tuples(sizes)})\n{stores}    return 0.0\n"
+    return c_function("rates", source + wrapper, 4)
 
 
 def _tuples(sizes: tuple[int, int, int]) -> str:
@@ -66,12 +66,6 @@ def _tuples(sizes: tuple[int, int, int]) -> str:
         for name, size in zip(("x", "theta", "z"), sizes, strict=True)
     )
     return ", ".join(parts)
-
-
-def _define(source: str, name: str, kernel: Any) -> Any:
-    scope = {"kernel": kernel}
-    exec(source, scope)  # the source is made of indices alone
-    return scope[name]
 
 
 def _call_by_address(count: int) -> Any:

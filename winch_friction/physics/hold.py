@@ -11,10 +11,11 @@ from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS
-from winch_friction.physics.plausible import plausible
+from winch_friction.physics.plausible import limits, plausible
 from winch_friction.physics.signals import GroupSample, Run, Sample
 
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
@@ -39,7 +40,8 @@ class InputHold:
     def put(self, column: str, time: float, value: float) -> bool:
         """Take a value with its stamp in s; False when it is implausible or older than what is held, and so ignored."""
         held = self._held.get(column)
-        if not (plausible(column, value) and math.isfinite(time)) or (held and time < held[-1][0]):
+        lower, upper = limits(column)
+        if not (lower <= value <= upper and math.isfinite(time)) or (held and time < held[-1][0]):
             return False
         if held is None:
             held = self._held[column] = deque(maxlen=DEPTH)
@@ -60,8 +62,7 @@ class InputHold:
         """The winch at `time` s: every held value that is young enough, NaN elsewhere."""
         scalars = {name: self._value(name, time) for name in SAMPLE_SCALARS}
         members = {
-            group: GroupSample(*(self._value(f"{group}.{channel}", time) for channel in GROUP_CHANNELS))
-            for group in self.groups
+            group: GroupSample(*[self._value(column, time) for column in group_columns(group)]) for group in self.groups
         }
         return Sample(time=time, groups=members, **scalars)
 
@@ -78,6 +79,9 @@ class InputHold:
 
     def samples(self, run: Run) -> Iterator[Sample]:
         """A run's samples with NaN entries filled the same way."""
+        if self.groups in ((), run.groups) and _without_holes(run):
+            yield from run.samples()
+            return
         for sample in run.samples():
             yield self.fill(sample)
 
@@ -103,9 +107,23 @@ class InputHold:
 
     def limit(self, column: str) -> float:
         """Age in s beyond which a value of this column is lost."""
-        if column in self.max_ages:
-            return self.max_ages[column]
+        own = self.max_ages.get(column)
+        if own is not None:
+            return own
         return self.max_ages.get(column.rpartition(".")[2], self.max_age)
+
+
+@lru_cache(maxsize=256)
+def group_columns(group: str) -> tuple[str, ...]:
+    return tuple(f"{group}.{channel}" for channel in GROUP_CHANNELS)
+
+
+def _without_holes(run: Run) -> bool:
+    """Whether every channel of a run that is there says something plausible at every row: nothing is held then."""
+    names = [name for name in SAMPLE_SCALARS if name in run] + [c for g in run.groups for c in group_columns(g)]
+    return all(
+        name in run and bool(((run[name] >= limits(name)[0]) & (run[name] <= limits(name)[1])).all()) for name in names
+    )
 
 
 def _stamp(held: tuple[float, float]) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
 NANOSECOND = 1e-9
@@ -17,7 +18,7 @@ _LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a frac
 _CLOCKS_APART = 60.0  # s; header stamps and receipt times that differ by more are of different clocks
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Message:
     """One message of the winch: its contract topic, the message, and its receipt in s on the clock of the stamps."""
 
@@ -75,8 +76,12 @@ class Bag:
         if not connections:
             return
         for connection, receipt, raw in self._reader.messages(connections):
+            reader = READERS.get(connection.msgtype)
             try:
-                message = self._typestore.deserialize_cdr(raw, connection.msgtype)
+                if reader is not None and raw[:2] == LITTLE_ENDIAN:
+                    message = reader(raw)
+                else:
+                    message = self._typestore.deserialize_cdr(raw, connection.msgtype)
             except Exception:  # whatever the bytes of a broken message lead to
                 self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
                 continue

@@ -29,6 +29,7 @@ from winch_friction.records.model_file import load_model
 
 FORWARD_JUMP = 5.0  # s; a simulated clock that leaps further was restarted or skipped a piece of the recording
 OK, WARN, ERROR = 0, 1, 2
+URGENT_PERIOD = 0.2  # s; how often it is looked whether something must be said before the next report is due
 LAST_WORD = 0.05  # s that the last message gets before its publisher goes
 
 
@@ -59,6 +60,7 @@ class WinchNode(Guarded, LifecycleNode):
         self.check_settings({})
         self.crane: Crane
         self._activated = float("inf")
+        self._reported: object = None
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
@@ -89,6 +91,10 @@ class WinchNode(Guarded, LifecycleNode):
     def health(self) -> Sequence[Health]:
         """The node's parts, for diagnostics."""
         return ()
+
+    def urgent(self) -> object:
+        """What is reported at once when it changes."""
+        return None
 
     def check_settings(self, changes: Mapping[str, Any]) -> None:
         """Raise `InputError` when the settings with these changes do not fit; changes nothing."""
@@ -134,6 +140,7 @@ class WinchNode(Guarded, LifecycleNode):
         self.forget()
         self.start()
         self.every(self.options.diagnostics_period, self._publish_health)
+        self.every(min(URGENT_PERIOD, self.options.diagnostics_period), self._publish_what_is_urgent)
         return TransitionCallbackReturn.SUCCESS
 
     @said_aloud
@@ -260,7 +267,12 @@ class WinchNode(Guarded, LifecycleNode):
         except Exception:
             self.report_defect("jump of the clock")
 
+    def _publish_what_is_urgent(self) -> None:
+        if self.urgent() != self._reported:
+            self._publish_health()
+
     def _publish_health(self) -> None:
+        self._reported = self.urgent()
         name = self.get_fully_qualified_name().lstrip("/")
         statuses = [
             diagnostic_status(f"{name}: {each.part}", self.crane.name, each.level, each.summary, each.values)

@@ -166,6 +166,12 @@ class CompensatorNode(WinchNode):
         own = {topic for topic, source in topics.inputs.items() if channels & set(source.channels)}
         return {topics.speed_topic, *own}
 
+    def urgent(self) -> object:
+        """Whether anything is fed forward, and what is not there for it."""
+        status = self.service.status(self.service_now())
+        at_work = status["state"] in ("active", "fading", "disabled")
+        return at_work, status["contradictions"], self._input_health.silent()
+
     def health(self) -> Sequence[Health]:
         """The feedforward's state and the inputs' rates and ages."""
         now = self.service_now()

@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from winch_friction.estimation import Estimate, EstimatorConfig
-from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
+from winch_friction.nodes.base import ERROR, OK, URGENT_PERIOD, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import Inputs
 from winch_friction.nodes.messages import ROS
 from winch_friction.nodes.parameters import OptionParameters
@@ -77,7 +77,7 @@ class EstimatorNode(WinchNode):
     def start(self) -> None:
         """Let the inputs in."""
         self.inputs.open()
-        self.every(self.options.diagnostics_period, self._poll)
+        self.every(URGENT_PERIOD, self._poll)
         if self.own.checkpoint:
             self.every(self.own.checkpoint_period, self.save)
 
@@ -153,6 +153,11 @@ class EstimatorNode(WinchNode):
         if hasattr(self, "service"):
             self.own = self._own.read(self)
             self.service.model_period, self.service.inputs.hold.max_age = self.own.model_period, self.own.max_age
+
+    def urgent(self) -> object:
+        """Whether it waits, and for what."""
+        waiting = self.service.status(self.service_now())["state"] == "waiting"
+        return waiting, self.service.missing, self._input_health.silent()
 
     def health(self) -> Sequence[Health]:
         """The filter, every parameter with deviation and status, and the inputs."""

@@ -52,6 +52,11 @@ class InputHealth:
         said = "; ".join(text for each, text in sorted(problems, reverse=True))
         return Health("inputs", level, said or "inputs arrive", values)
 
+    def silent(self) -> frozenset[str]:
+        """Needed inputs that were heard and are not any more."""
+        now, arrivals = self._now(), self._gate.arrivals
+        return frozenset(t for t in self._needed() if now - arrivals[t].arrived > self._limit(t, True))
+
     def _problems(
         self, topic: str, arrivals: Arrivals, needed: bool, publishers: int, refused: int, now: float
     ) -> list[tuple[int, str]]:

@@ -42,6 +42,7 @@ class ChannelRanges:
         self.speed = self._speed()
         self.load = self._load(groups)
         self._ranges = {**LIMITS, **self._of_crane()}
+        self._changes = self._largest_changes()
 
     def _speed(self) -> float:
         if self.crane.rated_speed:
@@ -85,9 +86,9 @@ class ChannelRanges:
 
     def change(self, channel: str) -> Change | None:
         """The largest change of a channel; None where none is known."""
-        return self._changes().get(channel.rpartition(".")[2])
+        return self._changes.get(channel.rpartition(".")[2])
 
-    def _changes(self) -> dict[str, Change]:
+    def _largest_changes(self) -> dict[str, Change]:
         # speed: ten times what heave asks for (130 rad/s^2), and an encoder's step; a command may step, a pressure
         # rises at most as fast as relief valves and waves make it (1e4 bar/s); a swash plate needs 0.1 s for its stroke
         pressure = Change(1.0e4 * BAR, 0.1 * self.pressure)

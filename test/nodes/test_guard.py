@@ -1,0 +1,58 @@
+"""What a callback raises is said once and ends nothing; speeds that come too late are dropped."""
+
+import inspect
+from types import SimpleNamespace
+
+import pytest
+
+from winch_friction.nodes.guard import Guarded, answered
+from winch_friction.nodes.inputs import Inputs
+from winch_friction.nodes.messages import ROS
+from winch_friction.physics.errors import InputError
+from winch_friction.records.topics import TopicMap, joint_state, stamp_header
+
+
+class Node(Guarded):
+    def __init__(self) -> None:
+        self.logged: list[str] = []
+
+    def get_logger(self) -> SimpleNamespace:
+        return SimpleNamespace(error=self.logged.append)
+
+
+def test_an_exception_ends_nothing_and_does_not_fill_the_log() -> None:
+    node, called = Node(), []
+
+    def callback(message: int, info: int) -> None:
+        called.append(message)
+        raise ZeroDivisionError("a defect")
+
+    guarded = node.guarded(callback)
+    for k in range(100):
+        guarded(k, 0)
+    assert len(called) == 100
+    assert len(node.logged) == 1
+    assert "a defect" in node.logged[0]
+    assert list(inspect.signature(guarded).parameters) == ["message", "info"]
+
+
+@pytest.mark.parametrize("error", [InputError("no"), OSError("no"), KeyError("no")])
+def test_a_service_answers_whatever_happens(error: Exception) -> None:
+    def action() -> str:
+        raise error
+
+    response = answered(action, SimpleNamespace())
+    assert not response.success
+    assert "no" in response.message
+
+
+def test_of_speeds_that_waited_only_the_latest_are_obeyed() -> None:
+    topics = TopicMap(groups=())
+    source = topics.inputs[topics.speed_topic]
+    waiting = [
+        (joint_state(ROS, stamp_header(10.0 + 0.02 * k, ROS), "winch_motor", velocity=1.0), {}) for k in range(75)
+    ]
+    latest, every = (Inputs(None, SimpleNamespace(), print, age) for age in (0.1, float("inf")))
+    assert len(latest._in_time(source, waiting)) in (5, 6)
+    assert latest.late >= 69
+    assert len(every._in_time(source, waiting)) == 75

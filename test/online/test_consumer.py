@@ -1,0 +1,51 @@
+"""The consumer's duty: hold for a moment, let go, and take no nonsense."""
+
+import math
+
+import pytest
+
+from winch_friction.online.consumer import FADE_TIME, HOLD_TIME, RETURN_TIME, HeldTorque, mark, read_mark
+
+
+def test_a_torque_is_held_for_a_moment_and_let_go() -> None:
+    held = HeldTorque()
+    held.take(300.0, 10.0, mark(True, 1))
+    assert held.value(10.0 + 0.99 * HOLD_TIME) == 300.0
+    values = [held.value(10.0 + HOLD_TIME + 0.01 * k) for k in range(round(FADE_TIME / 0.01) + 2)]
+    assert values == sorted(values, reverse=True)
+    assert max(a - b for a, b in zip(values[:-1], values[1:], strict=True)) < 300.0 * 0.03
+    assert values[-1] == 0.0
+
+
+def test_after_a_silence_it_comes_back_without_a_step() -> None:
+    held = HeldTorque()
+    held.take(300.0, 10.0, mark(True, 1))
+    assert held.value(12.0) == 0.0
+    values = []
+    for k in range(30):
+        held.take(300.0, 12.0 + 0.02 * k, mark(True, 2 + k))
+        values.append(held.value(12.0 + 0.02 * k))
+    assert max(abs(b - a) for a, b in zip([0.0, *values], values, strict=False)) <= 300.0 * 0.021 / RETURN_TIME
+    assert values[-1] == 300.0
+
+
+@pytest.mark.parametrize("nonsense", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_no_message(nonsense: float) -> None:
+    held = HeldTorque()
+    held.take(300.0, 10.0)
+    assert not held.take(nonsense, 10.05)
+    assert held.value(10.05) == 300.0
+    assert held.value(11.0) == 0.0  # and does not keep the last one alive
+
+
+def test_an_old_number_is_an_old_message_but_not_for_ever() -> None:
+    held = HeldTorque()
+    assert held.take(300.0, 10.0, mark(True, 500))
+    assert not held.take(-300.0, 10.02, mark(True, 499))
+    assert not held.take(-300.0, 10.02, mark(True, 500))
+    assert held.take(10.0, 11.0, mark(True, 1))  # the compensator was started anew
+
+
+def test_the_mark_and_text_of_another_origin() -> None:
+    assert read_mark(mark(False, 17)) == (False, 17)
+    assert read_mark("") == read_mark("base_link") == read_mark("valid x") == (True, -1)

@@ -32,6 +32,8 @@ class Effect:
     gain: float
     selection_frequency: float
     where: str = "moving"
+    law_name: str = ""  # which member of the cause's family; empty: the catalogue's own law
+    free: bool = False
 
     def content(self) -> dict[str, Any]:
         """The entry of `effects` in gap.json."""
@@ -40,6 +42,8 @@ class Effect:
             "indistinguishable_from": list(self.rivals),
             "parameters": {k: {"value": e.value, "std": e.std, "unit": e.unit} for k, e in self.parameters.items()},
             "variant": self.variant,
+            "law": self.law_name or self.name,
+            "law_kind": "free" if self.free else "literature",
             "evidence": {
                 "p_value": self.p_value, "cv_gain": self.gain, "selection_frequency": self.selection_frequency,
                 "where": self.where,
@@ -82,6 +86,7 @@ class GapResult:
     next_experiment: Mapping[str, Any] | None = None
     next_scenario: str = ""  # its file's text
     notes: Sequence[str] = field(default_factory=tuple)
+    seed_refuted: Sequence[Any] = field(default_factory=tuple)  # the seed's uncertainty, where the data refute it
     proposals: Sequence[Any] = field(default_factory=tuple)  # laws for what has no name, the simplest first
 
     def content(self) -> dict[str, Any]:
@@ -117,6 +122,7 @@ class GapResult:
                  "outcome": c.verdict} for c in self.considered
             ],
             "notes": list(self.notes),
+            "seed_refuted": [each.content() for each in self.seed_refuted],
             "proposals": [each.content(f"proposal_{k}") for k, each in enumerate(self.proposals, start=1)],
         }  # fmt: skip
 

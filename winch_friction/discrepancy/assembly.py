@@ -88,6 +88,7 @@ def _effect(found: Finding, parameters: Mapping[str, Mapping[str, ParameterEstim
     return Effect(
         candidate.name, tuple(rival.name for rival in found.rivals), found.slot.label, candidate.law,
         parameters.get(candidate.name, {}), found.p_value, found.gain, found.selection_frequency,
+        law_name=candidate.law_name, free=candidate.free,
     )  # fmt: skip
 
 
@@ -95,7 +96,7 @@ def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[
     candidate = finding.slot.origin[0]
     return Effect(
         candidate.name, (), finding.slot.label, candidate.law, parameters[candidate.name], finding.p_value,
-        finding.gain, 1.0, "just after reversals",
+        finding.gain, 1.0, "just after reversals", candidate.law_name, candidate.free,
     )  # fmt: skip
 
 

@@ -51,6 +51,13 @@ class Thresholds:
     most_proposals: int = 3
     tuning_rounds: int = 3  # halving steps between the grid's constants
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
+    # -- the seed's claim
+    seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
+    seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand
+    seed_marginal: float = 2.5  # the same for one parameter
+    told: float = 0.3  # share of its prior variance that the data must take off a direction to have a say in it
+    ordinary_shift: float = 4.0  # stated deviations: further off it is more likely an effect than a careless seed
+    effect_price: float = 12.0  # twice the log-likelihood that a name must be worth: one of sixty, and its size
     # -- remainder
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves

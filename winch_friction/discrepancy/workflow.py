@@ -18,6 +18,7 @@ from winch_friction.discrepancy.preparation.own_simulation import against_simula
 from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
 from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
+from winch_friction.discrepancy.seed_claim import refuted_seed, widened
 from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -36,9 +37,15 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     runs = against_simulations(runs, model)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
-    search = search_runs(split, meet(split.runs, crane, model), options, rng)
+    given = meet(split.runs, crane, model)
+    search = search_runs(split, given, options, rng)
+    refuted = refuted_seed(search)
+    if refuted is not None:
+        search = search_runs(split, widened(given), options, rng)
     trial = _proven(split, crane, options, _replicated(search, split, rng), rng)
-    result = assemble(split, options, trial)
+    result = replace(
+        assemble(split, options, trial), seed_model=model, seed_refuted=() if refuted is None else (refuted,)
+    )
     if not options.proposals:
         return result
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from campaign.rig import CATALOGUE, FLAVOURS, OUTSIDE, suitable_flavours
+from campaign.rig import CATALOGUE, DRAWN, FLAVOURS, LAWS, OUTSIDE, suitable_flavours
 
+FAR = (2.0, 3.0)  # sigma
 # structurally the same trace (docs/physics.md §3), so not a pair of two
 _TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"}, {"brake_drag", "wear_drift"})
 
@@ -40,9 +41,18 @@ class Counts:
     pairs: int = 20
     pair_seeds: int = 5
     outside_seeds: int = 10
+    # over drawn cranes, seed models, test plans and rates
+    drawn_nulls: int = 300
+    far_seeds: int = 40  # nulls whose seed model is 2 to 3 sigma off in every parameter
+    law_seeds: int = 2  # of every law that the package has
+    held_seeds: int = 3  # of every law that it has not
+    drawn_outside: int = 5
 
 
-QUICK = Counts(nulls=2, seeds=1, small_seeds=0, tiny_seeds=0, pairs=1, pair_seeds=1, outside_seeds=0)
+QUICK = Counts(
+    nulls=2, seeds=1, small_seeds=0, tiny_seeds=0, pairs=1, pair_seeds=1, outside_seeds=0,
+    drawn_nulls=1, far_seeds=1, law_seeds=0, held_seeds=0, drawn_outside=0,
+)  # fmt: skip
 
 
 def all_cases(counts: Counts, first_seed: int) -> list[Case]:
@@ -55,8 +65,23 @@ def all_cases(counts: Counts, first_seed: int) -> list[Case]:
         _outside(counts.outside_seeds, seeds),
         _pairs(counts.pairs, counts.pair_seeds, seeds),
         _singles(0.1, counts.tiny_seeds, seeds),
+        _drawn(counts, seeds),
     )
     return [case for block in blocks for case in block]
+
+
+def _drawn(counts: Counts, seeds: Iterator[int]) -> list[Case]:
+    """What nobody has tuned to: cranes, seed models, plans and rates drawn, laws that the package has and has not."""
+    cases = [Case("drawn_null", (), DRAWN, next(seeds)) for _ in range(counts.drawn_nulls)]
+    cases += [Case("far_seed", (), DRAWN, next(seeds), FAR) for _ in range(counts.far_seeds)]
+    for cause, laws in LAWS.items():
+        for law in laws:
+            effects = ((f"{cause}:{law.name}", 1.0),)
+            kind, count = ("held_out", counts.held_seeds) if law.held_out else ("law", counts.law_seeds)
+            cases += [Case(kind, effects, DRAWN, next(seeds)) for _ in range(count)]
+    for effect in OUTSIDE:
+        cases += [Case("drawn_outside", ((effect, 1.0),), DRAWN, next(seeds)) for _ in range(counts.drawn_outside)]
+    return cases
 
 
 def _nulls(count: int, seeds: Iterator[int]) -> list[Case]:

@@ -8,6 +8,8 @@ from statistics import median
 from typing import Any
 
 from campaign.gap_cases import Counts
+from campaign.gap_report_drawn import drawn_worlds
+from campaign.rig import OUTSIDE
 
 Row = dict[str, Any]
 COST = Path("out/campaign_gap/cost.json")  # written by campaign.gap_cost
@@ -35,6 +37,7 @@ def write_table(path: Path, rows: Sequence[Row], counts: Counts, note: str = "")
         _effects(good),
         _outside(good),
         _pairs(good),
+        drawn_worlds(good, share),
         _wrong(good),
         READING,
     ]
@@ -65,7 +68,12 @@ def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts, note: str)
 
 
 def _planned(c: Counts) -> int:
-    return c.nulls + 27 * (c.seeds + c.small_seeds + c.tiny_seeds) + c.pairs * c.pair_seeds + 9 * c.outside_seeds
+    return (
+        c.nulls
+        + 27 * (c.seeds + c.small_seeds + c.tiny_seeds)
+        + c.pairs * c.pair_seeds
+        + len(OUTSIDE) * c.outside_seeds
+    )
 
 
 def share(rows: Sequence[Row], key: str) -> str:

@@ -26,8 +26,21 @@ def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
         "wrong_entry": any(not each & truth for each in sets),
         "signals": signals,
         "right_signal": bool(signals) and signals[0] in _right_signals(case),
+        "named": verdict in ("missing_effect", "ambiguous"),
+        "seed_refuted": bool(answer.get("seed_refuted")) and not sets,
+        **_proposed(case, answer),
         **_reduction(answer["gap"]),
     }
+
+
+def _proposed(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
+    """The first proposal: whether there is one, on the right signals, and what it closes of the locked gap."""
+    proposals = answer.get("proposals") or []
+    if not proposals:
+        return {"proposed": False, "proposed_right": False, "closed": None}
+    reads = {name.rpartition(".")[2] for name in proposals[0]["reads"]}
+    right = {name.rpartition(".")[2] for name in _right_signals(case)}
+    return {"proposed": True, "proposed_right": bool(reads & right), "closed": proposals[0]["holdout"]["closed"]}
 
 
 def _right_signals(case: Case) -> tuple[str, ...]:

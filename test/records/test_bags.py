@@ -95,6 +95,10 @@ def test_a_recorder_on_another_clock_does_not_matter(tmp_path):
                 writer.write(f"/crane_1/{topic}", message, 1.7e9 + sample.time)
     back = read_run(tmp_path / "x")
     assert same(run, back, rel=1e-6)
+    with open_bag(tmp_path / "x") as bag:
+        for each in bag.inputs():  # the receipt stands on the stamps' clock, also of a message without a stamp
+            assert run.time[0] - 0.1 <= each.receipt <= run.time[-1] + 0.1
+            assert each.receipt == pytest.approx(each.stamp, abs=1e-3)
 
 
 def speed_message(time, speed, joint="winch_motor"):

@@ -8,7 +8,8 @@ from clean_sensors import CLEAN
 
 from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.friction.registry import registered_terms
+from winch_friction.physics.friction.registry import registered_terms, term_named
+from winch_friction.physics.signals import Run
 from winch_friction.physics.units import BAR, GRAVITY
 from winch_friction.physics.winch.operating_point import operating_point, run_drum_torque, run_operating_points
 from winch_friction.physics.winch.torque_balance import run_drive_torque
@@ -103,6 +104,27 @@ def test_a_winch_without_passive_motors_has_a_group_of_none(model):
     one = operating_point(**common, groups=[(11.0, 90e5, 140e5, 3.4e-5)])
     two = operating_point(**common, groups=[(11.0, 90e5, 140e5, 3.4e-5), (0.0, 0.0, 0.0, 3.4e-5)])
     assert by_address(model, two, ()) == pytest.approx(float(model.torque(one)), rel=1e-12)
+
+
+def test_terms_read_the_sum_of_the_passive_sides_pressures(ahc, crane, model):
+    """case_pressure is c (p_A + p_B) per motor: what it adds to the friction, from the logged pressures of all."""
+    case = term_named("case_pressure")
+    with_case = FrictionModel(
+        "case", (*model.terms, case), (*model.values, 1e-6), constants=model.constants,
+    )  # fmt: skip
+    truth = simulate(ahc.override({**CLEAN, "duration": 30.0}), crane, with_case, seed=3).truth
+    active = truth["pressure_a"] + truth["pressure_b"]
+    passive = truth["passive_pressure_a"] + truth["passive_pressure_b"]
+    columns = {"time": truth.time, "motor_speed": truth["motor_speed"], "hook_load": truth["hook_load"]}
+    columns |= {"active.pressure_a": truth["pressure_a"], "active.pressure_b": truth["pressure_b"]}
+    columns |= {f"passive.{p}": truth[f"passive_{p}"] for p in ("pressure_a", "pressure_b", "displacement")}
+    columns["active.displacement"] = truth["displacement"]
+    moving = np.abs(truth["motor_speed"]) > 20.0
+    x = run_operating_points(Run("x", columns), crane, drum_torque=truth["drum_torque"])
+    base = np.asarray(model.torque(x))
+    added = truth["direction"] * 1e-6 * (3 * active + 8 * passive)
+    assert np.abs(added[moving]).min() > 150.0
+    np.testing.assert_allclose((truth["friction_torque"] - base)[moving][5:], added[moving][5:], atol=8.0)
 
 
 def test_memory_of_the_models_own_terms_is_carried(ahc, crane, model):

@@ -1,0 +1,42 @@
+"""The drum torque without a load cell: from the torque balance, with the signs of inertia and friction."""
+
+import math
+
+import pytest
+
+from winch_friction.compensation.load import DrumTorque
+from winch_friction.physics.signals import GroupSample, Sample
+
+FULL = 3 * 3.4e-5 + 8 * 1.1e-5  # m^3/rad of both groups
+
+
+def balanced(crane, load, acceleration, friction):
+    """A sample whose motors carry a load at rest on the wire, the shaft's inertia and friction."""
+    torque = crane.drum_torque(load) / crane.gear_ratio + crane.inertia * acceleration + friction
+    drop = torque / FULL
+    groups = {"active": GroupSample(drop + 25e5, 25e5, 3.4e-5), "passive": GroupSample(drop + 25e5, 25e5, 1.1e-5)}
+    return Sample(0.0, 100.0, groups=groups)
+
+
+@pytest.mark.parametrize("acceleration", [-130.0, 0.0, 130.0])
+@pytest.mark.parametrize("friction", [-500.0, 0.0, 500.0])
+def test_the_balance_gives_the_load_back(crane_150t, acceleration, friction):
+    each = DrumTorque(crane_150t, math.nan, 5.0)
+    each.learn(balanced(crane_150t, 55e3, acceleration, friction), friction, acceleration, 0.02)
+    assert each.value(Sample(0.0, 0.0)) == pytest.approx(crane_150t.drum_torque(55e3), rel=1e-9)
+
+
+def test_the_estimate_follows_slowly(crane_150t):
+    each = DrumTorque(crane_150t, math.nan, 5.0)
+    each.learn(balanced(crane_150t, 50e3, 0.0, 0.0), 0.0, 0.0, 0.02)
+    for _ in range(250):  # one time constant
+        each.learn(balanced(crane_150t, 60e3, 0.0, 0.0), 0.0, 0.0, 0.02)
+    reached = each.value(Sample(0.0, 0.0)) / crane_150t.drum_torque(1e3)
+    assert reached == pytest.approx(60.0 - 10.0 / math.e, abs=0.1)
+
+
+def test_a_load_cell_comes_first_then_the_setting(crane_150t):
+    each = DrumTorque(crane_150t, 40e3, 5.0)
+    each.learn(balanced(crane_150t, 55e3, 0.0, 0.0), 0.0, 0.0, 0.02)
+    assert each.value(Sample(0.0, 0.0, hook_load=30e3)) == crane_150t.drum_torque(30e3)
+    assert each.value(Sample(0.0, 0.0)) == crane_150t.drum_torque(40e3)

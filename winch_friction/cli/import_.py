@@ -119,7 +119,7 @@ def import_logs(
 ) -> None:  # fmt: skip
     """Write one run file per log, all or none."""
     from winch_friction.importing.carry_out import import_log
-    from winch_friction.importing.contradiction import contradictions
+    from winch_friction.importing.contradiction import run_contradictions
     from winch_friction.importing.mapping import load_map, with_settings
     from winch_friction.importing.propose import refuse_if_open
     from winch_friction.records.crane_file import load_crane
@@ -138,10 +138,12 @@ def import_logs(
         except InputError as error:
             problems.append(str(error))
             continue
-        against = contradictions(run.columns, loaded) if loaded is not None else []
-        problems += [f"{path.name}: {text}" for text in against if not force]
-        forced = {"forced": against} if against else {}
-        runs.append(replace(run, name=target.name, metadata={**run.metadata, **forced}))
+        runs.append(replace(run, name=target.name))
+    against = run_contradictions(runs, loaded) if loaded is not None and not problems else []
+    if force:
+        runs = [replace(run, metadata={**run.metadata, "forced": against}) for run in runs] if against else runs
+    else:
+        problems += against
     if problems:
         hint = "" if force else " (nothing written; --force imports what contradicts the crane)"
         raise InputError(" | ".join(problems) + hint)

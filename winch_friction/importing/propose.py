@@ -222,11 +222,8 @@ def _settle_contradictions(draft: Draft) -> None:
     assert draft.crane is not None
     if draft.questions or draft.problems:
         return  # what is open already may be the cause
-    said: dict[str, list[str]] = {}
-    for log, done in zip(draft.logs, draft.converted(), strict=True):
-        for text in contradictions(done.columns, draft.crane):
-            said.setdefault(text.rpartition(":")[2] or text, []).append(f"{log.path.name}: {text}")
-    draft.questions += [f"crane: {texts[0]}" for texts in said.values()]
+    logs = {log.path.name: done.columns for log, done in zip(draft.logs, draft.converted(), strict=True)}
+    draft.questions += [f"crane: {text}" for text in contradictions(logs, draft.crane)]
 
 
 def _bad_cells(logs: Sequence[Log], log_map: LogMap) -> list[str]:

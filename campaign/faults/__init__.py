@@ -1,0 +1,1 @@
+"""What goes wrong beside a machine, drawn at random, and whether the services stay safe (`make campaign-faults`)."""

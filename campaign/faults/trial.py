@@ -1,5 +1,6 @@
 """One trial: a voyage through both services with one fault after the other, watched at every published torque."""
 
+import contextlib
 import math
 from collections import defaultdict
 from collections.abc import Iterable
@@ -201,10 +202,8 @@ class Trial:
         return seed.with_values(values)
 
     def _offer(self, text: str) -> None:
-        try:
+        with contextlib.suppress(InputError):
             self.service.load_model(parse(text, "topic"))
-        except InputError:
-            pass
 
     def _end(self) -> None:
         """Deactivation: the ramp is published to its end."""

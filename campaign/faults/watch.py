@@ -26,7 +26,7 @@ class Row:
 
 @dataclass
 class OutputWatch:
-    """Follows what is published; `bound` N m, `slew` N m/s. `violated(row)` counts into the row of the fault at hand."""
+    """Follows what is published; `bound` N m, `slew` N m/s. Violations count into the row of the fault at hand."""
 
     bound: float
     slew: float

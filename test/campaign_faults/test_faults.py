@@ -1,0 +1,67 @@
+"""A small seeded draw of the fault campaign, and proof that it notices what it is there to notice."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from campaign.faults.kinds import KINDS
+from campaign.faults.trial import Trial, violations
+from campaign.faults.voyages import voyage
+from campaign.faults.watch import OutputWatch, Row
+
+
+def said(torque, stamp, speed=10.0):
+    return SimpleNamespace(friction_torque=torque, speed=speed, time=stamp)
+
+
+def test_a_draw_of_every_kind_is_safe():
+    sailing = voyage("ahc_irregular", 77)
+    trial = Trial(sailing, 7, learn=True)
+    trial.run(90.0)
+    assert trial.draws > 60
+    assert violations(trial.rows.values()) == 0, {k: dict(r.violations) for k, r in trial.rows.items()} | {
+        "notes": trial.notes
+    }
+    assert max(row.largest for row in trial.rows.values()) > 100.0  # it did feed forward in between
+
+
+def test_every_kind_can_be_drawn_and_spoils_something():
+    rng = np.random.default_rng(0)
+    for name, kind in KINDS.items():
+        fault = kind(rng)
+        assert fault.kind
+        assert callable(fault.spoil), name
+
+
+@pytest.mark.parametrize(
+    ("messages", "wrong"),
+    [
+        ([(0.0, 0.0, 50.0), (0.02, 0.02, 900.0)], "faster than the slew limit"),
+        ([(0.0, 0.0, 50.0), (0.02, 0.02, float("nan"))], "not finite"),
+        ([(0.0, 0.0, 2500.0)], "beyond the bound"),
+    ],
+)
+def test_the_watch_sees_what_is_wrong(messages, wrong):
+    watch, row = OutputWatch(2000.0, 1.5e4), Row()
+    for now, stamp, torque in messages:
+        watch.published(said(torque, stamp), now, 10.0, row)
+    assert list(row.violations) == [wrong]
+
+
+def test_a_torque_against_the_motion_is_timed():
+    watch, row = OutputWatch(2000.0, 1.5e4), Row()
+    for k in range(50):
+        watch.published(said(-100.0, 0.02 * k), 0.02 * k, 20.0, row)
+    assert row.against == pytest.approx(0.98)
+
+
+def test_an_output_that_is_obeyed_without_its_input_is_seen():
+    """The same trial with a compensator whose age limit does not work."""
+    sailing = voyage("ahc_irregular", 77)
+    trial = Trial(sailing, 7)
+    trial.service.inputs.hold.max_age = 1e9
+    trial.service.law.output.hold = 1e9
+    trial.service.options = type(trial.service.options)(watchdog_timeout=600.0)
+    trial.run(60.0)
+    assert any("obeyed although an input is gone" in row.violations for row in trial.rows.values())

@@ -9,7 +9,9 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: docs demo test test-ubuntu24.04 lint bench setup browser colcon campaign campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet campaign-import clean
+CAMPAIGNS := loop identification gap rates fleet faults soak
+
+.PHONY: docs demo test test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 
 setup: $(READY)
 
@@ -54,13 +56,17 @@ bench: $(READY)
 colcon: $(READY)
 	$(BIN)/python -m pytest test/test_colcon.py
 
-campaign: campaign-loop campaign-identification campaign-gap campaign-rates
+campaign: $(addprefix campaign-,$(CAMPAIGNS)) campaign-import
 
-campaign-loop campaign-identification campaign-gap campaign-rates campaign-fleet: $(READY)
+$(addprefix campaign-,$(CAMPAIGNS)): $(READY)
 	$(BIN)/python -m campaign.$(subst campaign-,,$@) $(ARGS)
 
 campaign-import: $(READY)
 	$(BIN)/python -m campaign.import_logs $(ARGS)
+
+# small semantic faults in a copy of the package: do the tests notice?
+mutants: $(READY)
+	$(BIN)/python -m campaign.mutants $(ARGS)
 
 clean:
 	rm -rf out build install log

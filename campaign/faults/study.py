@@ -102,9 +102,9 @@ def page(rows: Mapping[str, Row], draws: int, options: argparse.Namespace, over_
 ## In process: {draws} draws, {sum(wrong.values())} violations
 
 Voyages of five scenarios (regular, irregular, calming and swell seas, harsh sensors) through `CompensatorService`,
-every {LEARNING}th with `EstimatorService` learning beside it, at 50 Hz with jitter; one fault after the other, a quarter
-of them two at once, while somebody resets, disables, reconfigures, swaps models (good, far off, hostile) and deactivates. Ramp time
-0.5 s, age limit 0.1 s. A draw is one fault.
+every {LEARNING}th with `EstimatorService` learning beside it, at 50 Hz with jitter; one fault after the other, a
+quarter of them two at once, while somebody resets, disables, reconfigures, swaps models (good, far off, hostile) and
+deactivates. Ramp time 0.5 s, age limit 0.1 s. A draw is one fault.
 
 Checked at every published torque: finite; within the absolute limit and 1.3 times the seed's friction at the worst
 corner of what the crane's channels can show; no faster than the slew limit, resets and the end included; zero within

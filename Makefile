@@ -51,7 +51,7 @@ docs: $(READY)
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs out/site
 
 bench: $(READY)
-	$(BIN)/winch-friction bench
+	$(BIN)/winch-friction bench --page docs/benchmarks.md $(ARGS)
 
 colcon: $(READY)
 	$(BIN)/python -m pytest test/test_colcon.py

@@ -1,6 +1,7 @@
 """`winch-friction bench`: the figures of bench/ as one table."""
 
 import importlib
+import subprocess
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -16,6 +17,7 @@ from winch_friction.physics.errors import InputError
 def command(
     names: Annotated[OptionalTexts, typer.Argument(help="Which benchmarks; all without a name.")] = None,
     smoke: Annotated[bool, typer.Option("--smoke", help="Only show that every benchmark runs.")] = False,
+    page: Annotated[Path | None, typer.Option("--page", help="Write the table as a Markdown page, too.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
 ) -> None:
     """Measure speed as ratios against what one would use instead, side by side in one process.
@@ -29,6 +31,9 @@ def command(
     rows: list[Any] = []
     for name in progress(_chosen(names or []), "measuring"):
         rows += importlib.import_module(f"bench.{name}").measure(smoke)
+    if page is not None:
+        command_line = " ".join(["winch-friction bench", *(names or [])])
+        importlib.import_module("bench.page").write_page(page, rows, command_line, _commit())
     if as_json:
         show_json({row.name: asdict(row) | {"goal": row.goal, "met": row.met} for row in rows})
         return
@@ -42,6 +47,15 @@ def _cells(row: Any) -> list[Any]:
     spread = f"{row.spread[0]:.3g} ... {row.spread[1]:.3g}" if row.spread else ""
     met = {True: "yes", False: "no", None: ""}[row.met]
     return [row.name, f"{row.value:.4g}", row.unit, against, ratio, spread, row.goal, met]
+
+
+def _commit() -> str:
+    """Short name of the checkout's commit."""
+    root = Path(__file__).resolve().parents[2]
+    found = subprocess.run(
+        ["git", "-C", str(root), "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    )
+    return found.stdout.strip() or "unknown"
 
 
 def _chosen(names: list[str]) -> list[str]:

@@ -75,7 +75,7 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
         swing = _swing(view)
         drive = view.drive_torque
         expected = load + friction + inertial + swing
-        rated = view.rated_torque
+        rated = view.error_torque
         sign = np.sign(view.speed)
         relative = np.abs(view.speed) / np.nanpercentile(np.abs(view.speed), 99)
         swings = HEAVE_SHARE if view.heave is not None else NO_HEAVE_SHARE

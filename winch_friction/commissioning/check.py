@@ -6,7 +6,7 @@ from pathlib import Path
 from winch_friction.commissioning.channels import cell_findings, clock_findings
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
 from winch_friction.commissioning.finding import Finding, first_contradiction, run_words
-from winch_friction.commissioning.view import view_of
+from winch_friction.commissioning.view import views_of
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -39,10 +39,8 @@ def diagnosed(
     known = {name: each for name, each in others.items() if each != crane}
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
-    views = []
-    for run in runs:
-        if run.name not in jumped:
-            views.append(view_of(*(corrected(run, crane, model) if model is not None else (run, crane))))
+    usable = [run for run in runs if run.name not in jumped]
+    views = views_of([corrected(run, crane, model) if model is not None else (run, crane) for run in usable])
     diagnosis = diagnose(views, crane, model, known)
     findings = [
         *_named_crane(runs, crane, others),

@@ -11,7 +11,7 @@ from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.finding import Finding, first_contradiction
 from winch_friction.commissioning.kinematics import Agreement, agreements
-from winch_friction.commissioning.view import view_of
+from winch_friction.commissioning.view import views_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
@@ -88,7 +88,7 @@ def check(
     order = {"error": 0, "warning": 1, "note": 2}
     # a stable sort: the diagnosis stays first among what is equally grave
     findings = sorted([*findings, *per_channel], key=lambda finding: order[finding.severity])
-    views = [view_of(run, crane) for run in runs if run.name in diagnosis.names]
+    views = views_of([(run, crane) for run in runs if run.name in diagnosis.names])
     balance = [
         RunBalance(c.run, s, c.before, c.after, c.level, c.needed, tuple(agreements(view)))
         for c, s, view in zip(diagnosis.closures, diagnosis.scores, views, strict=True)

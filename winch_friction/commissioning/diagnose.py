@@ -91,7 +91,7 @@ def _is_sure(mistake: Mistake) -> bool:
     """Mistakes that no friction, no catalogue effect and no scale can look like; asked even where every run passes."""
     if mistake.channel == "motor_speed":
         return mistake.cause in ("unit", "sign")
-    return mistake.cause in ("sign", "groups", "ports", "delay")
+    return mistake.cause in ("sign", "groups", "ports", "delay", "crane")
 
 
 class _Bench:

@@ -1,6 +1,6 @@
 """A run in blocks of a fifth of a second: what the balance and the comparison of speeds are reckoned on."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from winch_friction.physics.winch.crane import Crane
 BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an encoder's steps
 MOST_BLOCKS = 600  # per run; evenly thinned beyond, so that a dozen runs are checked within a second
 BROKEN_SHARE = 0.02  # of a channel's samples beyond what a sensor can say: broken cells; more: a wrong unit
+SEEN_SHARE, LEAST_SHARE = 1.5, 0.3  # a winch tested at half its load errs by half; an empty hook's errors stay
 MOVING = 0.03  # of the run's largest speed: slower blocks have no certain direction
 MOST_NUMBER = 1e12  # in any SI unit: channels without a limit of their own (a Unix time, a shaft angle) stay below
 WRAPS = 2.05 * np.pi  # rad; an angle that stays within one turn wraps around and tells no rate
@@ -59,6 +60,7 @@ class RunView:
     load_torque: FloatArray | None = None
     oil: FloatArray | None = None
     rates: Mapping[str, FloatArray] = field(default_factory=dict)
+    seen_torque: float = np.inf  # N m, the largest of all runs
 
     @property
     def lever(self) -> FloatArray:
@@ -73,8 +75,13 @@ class RunView:
         return np.asarray(sum(group.torque for group in self.groups.values()))
 
     @property
+    def error_torque(self) -> float:
+        """The scale of ordinary errors, N m: what the runs made of the rated torque, but never a small part of it."""
+        return float(np.clip(SEEN_SHARE * self.seen_torque, LEAST_SHARE * self.rated_torque, self.rated_torque))
+
+    @property
     def rated_torque(self) -> float:
-        """What all motors give at 300 bar, or what was seen where the drive is electric; N m. The scale of errors."""
+        """What all motors give at 300 bar, or what was seen where the drive is electric; N m."""
         if self.groups and self.max_displacement > 0.0:
             return sum(group.count for group in self.groups.values()) * self.max_displacement * 300e5
         seen = np.abs(self.drive_torque)
@@ -134,6 +141,15 @@ def view_of(run: Run, crane: Crane) -> RunView:
         rates=_rates(blocks, heave),
     )
     return _thinned(view)
+
+
+def views_of(runs: Sequence[tuple[Run, Crane]]) -> list[RunView]:
+    """The runs in blocks, each knowing the largest torque of all of them."""
+    views = [view_of(run, crane) for run, crane in runs]
+    with np.errstate(all="ignore"):
+        seen = [float(np.nanpercentile(np.abs(v.drive_torque), 98)) for v in views if np.isfinite(v.drive_torque).any()]
+    largest = max(seen, default=np.inf)
+    return [replace(view, seen_torque=largest) for view in views]
 
 
 class _Blocks:

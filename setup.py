@@ -20,6 +20,7 @@ IDENTIFICATION = [
     "pyarrow>=14",
     "matplotlib>=3.6",
     "jinja2>=3.1",
+    "jsonschema>=4.10",
     "plotly>=5.18",
     "latex2mathml>=3.77",
 ]

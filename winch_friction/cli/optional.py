@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Optional
 
+OptionalFloat = Optional[float]  # noqa: UP045
 OptionalInt = Optional[int]  # noqa: UP045
 OptionalPath = Optional[Path]  # noqa: UP045
 OptionalPaths = Optional[list[Path]]  # noqa: UP045

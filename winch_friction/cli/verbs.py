@@ -32,6 +32,7 @@ class Verb:
 
 VERBS = (
     Verb("demo", "demo", "The whole loop on a simulated sea: three nodes over DDS, a bag, a report."),
+    Verb("init", "init", "Commented crane, plant, model, scenario and map files to begin with; JSON Schemas."),
     Verb("simulate", "simulate", "A scenario becomes run files."),
     Verb("check", "check", "Can these runs be this crane's? Names the most likely mistake; commissioning page."),
     Verb("identify", "identify", "Supplier tables and logged tests become a friction model."),

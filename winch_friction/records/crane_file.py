@@ -8,6 +8,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane, Drum
 from winch_friction.physics.winch.drive import SLOWEST_FOR_POWER, Drive
 from winch_friction.records.paths import shipped
+from winch_friction.records.schemas import with_all_problems
 from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
 
 SCHEMA = "winch_friction.crane/1"
@@ -17,7 +18,11 @@ RATINGS = {"rated_pressure": "Pa", "rated_speed": "rad/s", "rated_load": "kg"}  
 def load_crane(name: str | Path) -> Crane:
     """A crane by path or shipped name; raises `InputError` for anything that is not a complete crane file."""
     path = shipped("cranes", name)
-    return crane_from_content(read_yaml(path), str(path))
+    content = read_yaml(path)
+    try:
+        return crane_from_content(content, str(path))
+    except InputError as error:
+        raise InputError(with_all_problems(str(error), content, "crane", path.name)) from None
 
 
 def crane_from_content(content: Any, where: str) -> Crane:

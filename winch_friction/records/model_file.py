@@ -16,6 +16,7 @@ from winch_friction.physics.units import factor_to_si
 from winch_friction.records.atomic import write_text
 from winch_friction.records.corrections import corrections_content, read_corrections
 from winch_friction.records.paths import shipped
+from winch_friction.records.schemas import with_all_problems
 from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml
 from winch_friction.records.tables import read_tables, tables_content
 
@@ -25,7 +26,11 @@ SCHEMA = "winch_friction.model/1"
 def load_model(name: str | Path) -> FrictionModel:
     """A model by path or shipped name; raises `InputError` for anything that is not a complete model file."""
     path = shipped("models", name)
-    return model_from_content(read_yaml(path), str(path))
+    content = read_yaml(path)
+    try:
+        return model_from_content(content, str(path))
+    except InputError as error:
+        raise InputError(with_all_problems(str(error), content, "model", path.name)) from None
 
 
 def model_from_text(text: str, where: str = "model text") -> FrictionModel:

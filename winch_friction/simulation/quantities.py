@@ -149,17 +149,20 @@ def _mapping(content: Any) -> Any:
 
 
 def validated(kind: type[Any], content: Any, where: str) -> Any:
-    """A checked object, or `InputError` with the first complaint in one line."""
+    """A checked object, or `InputError` with all complaints in one line."""
     try:
         return kind(**_mapping(content))
     except ValidationError as error:
-        raise InputError(f"{where}: {_first_complaint(error, content)}") from None
+        raise InputError(f"{where}: {_complaints(error, content)}") from None
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
 
 
-def _first_complaint(error: ValidationError, content: Any) -> str:
-    first = error.errors()[0]
+def _complaints(error: ValidationError, content: Any) -> str:
+    return "; ".join(dict.fromkeys(_complaint(each, content) for each in error.errors()))
+
+
+def _complaint(first: Any, content: Any) -> str:
     place, found = _found(content, first["loc"])
     if first["type"] == "value_error.extra":
         return f"unknown key '{place}'; remove it or correct its name"

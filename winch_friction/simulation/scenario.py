@@ -210,7 +210,9 @@ def _set(content: dict[str, Any], path: list[str], value: Any) -> None:
 def load_scenario(name: str | Path) -> Scenario:
     """A scenario by path or shipped name; raises `InputError` in one line for anything wrong."""
     path = shipped("scenarios", name)
-    return scenario_from_content(read_yaml(path), str(path))
+    scenario = scenario_from_content(read_yaml(path), str(path))
+    beside = path.parent / scenario.plant  # a scenario travels with its plant
+    return scenario.override({"plant": str(beside)}) if beside.is_file() else scenario
 
 
 def scenario_from_content(content: Any, where: str = "scenario") -> Scenario:

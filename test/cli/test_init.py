@@ -1,0 +1,129 @@
+"""`winch-friction init`: a stranger's 50 t crane, from nothing to a checked simulation, without an editor."""
+
+import pytest
+import yaml
+
+from winch_friction.cli.main import run
+from winch_friction.importing.mapping import load_map
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.identity import refuse_other_crane
+from winch_friction.records.crane_file import crane_from_content, load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.records.paths import config_directory
+from winch_friction.records.schemas import problems
+from winch_friction.simulation.file_schemas import all_schemas
+from winch_friction.simulation.plant_file import load_plant
+from winch_friction.simulation.scenario import load_scenario
+
+CRANE = ["--name", "crane_50t", "--load", "50", "--motors", "5", "--displacement", "160", "--gear-ratio", "180",
+         "--radius", "0.6", "--layers", "5", "--active", "2", "--wire", "44"]  # fmt: skip
+KINDS = {"cranes": "crane", "models": "model", "plants": "plant", "scenarios": "scenario"}
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for arguments in (
+        ["crane", *CRANE],
+        ["plant", "--crane", "crane_50t.yaml"],
+        ["model", "--crane", "crane_50t.yaml"],
+        ["scenario", "--crane", "crane_50t.yaml"],
+        ["scenario", "--crane", "crane_50t.yaml", "--mode", "normal"],
+        ["map", "--crane", "crane_50t.yaml"],
+    ):
+        assert run(["init", *arguments]) == 0
+    capsys.readouterr()
+    return tmp_path
+
+
+def test_what_is_written_is_read(own):
+    crane, plant = load_crane("crane_50t.yaml"), load_plant("plant_crane_50t.yaml")
+    assert crane.groups == {"main": 5, "active": 2, "passive": 3}
+    assert plant.crane == crane.name
+    refuse_other_crane(load_model("seed_crane_50t.yaml"), crane)
+    assert load_scenario("ahc_crane_50t.yaml").crane == crane.name
+    assert load_map(own / "log_map.yaml").crane == crane.name
+    schemas = all_schemas()
+    written = {"crane_50t": "crane", "plant_crane_50t": "plant", "seed_crane_50t": "model", "log_map": "map"}
+    for name, kind in {**written, "ahc_crane_50t": "scenario", "normal_crane_50t": "scenario"}.items():
+        assert problems(yaml.safe_load((own / f"{name}.yaml").read_text()), schemas[kind]) == []
+
+
+def test_an_own_crane_is_simulated_and_checked(own, capsys):
+    machine = ["--crane", "crane_50t.yaml", "--model", "seed_crane_50t.yaml"]
+    for scenario in ("ahc_crane_50t.yaml", "normal_crane_50t.yaml"):
+        assert run(["simulate", scenario, *machine, "--out", "runs", "--truth"]) == 0
+    assert run(["check", "runs", *machine]) == 0
+    shown = capsys.readouterr()
+    assert "plausible: 2 runs" in shown.out
+    # the same runs with the wrong crane: refused, and the right one named
+    assert run(["check", "runs", "--crane", "crane_150t"]) == 2
+    assert "crane 'crane_50t'" in capsys.readouterr().out.splitlines()[0]
+
+
+def test_another_crane_s_plant_model_or_load_is_refused(own, capsys):
+    machine = ["--crane", "crane_50t.yaml", "--model", "seed_crane_50t.yaml", "--out", "x.csv"]
+    assert run(["simulate", "ahc_55t_215", *machine]) == 2
+    assert "plant 'winch_150t' is of crane 'crane_150t'" in capsys.readouterr().err
+    assert run(["simulate", "ahc_crane_50t.yaml", "--crane", "crane_50t.yaml", "--out", "x.csv"]) == 2
+    assert "does not belong to crane 'crane_50t'" in capsys.readouterr().err
+    assert run(["init", "scenario", "--crane", "crane_50t.yaml", "--load", "300", "--name", "heavy"]) == 0
+    assert run(["simulate", "heavy.yaml", *machine]) == 2
+    assert "load 300 t is more than crane 'crane_50t'" in capsys.readouterr().err
+    assert not (own / "x.csv").exists()
+
+
+def test_missing_answers_are_told_at_once_and_files_are_kept(own, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stdin", open("/dev/null"))  # noqa: SIM115  nobody to ask
+    assert run(["init", "crane", "--name", "x"]) == 2
+    said = capsys.readouterr().err
+    assert "--gear-ratio" in said
+    assert "--wire" in said
+    assert run(["init", "plant", "--crane", "crane_50t.yaml"]) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert run(["init", "crane", *CRANE[:4], "--motors", "-1", *CRANE[6:], "--out", "y.yaml"]) == 2
+    assert "--motors -1 must be above 0" in capsys.readouterr().err
+
+
+def test_all_problems_of_a_file_are_told_at_once(own):
+    content = yaml.safe_load((own / "crane_50t.yaml").read_text())
+    del content["gear_ratio"], content["inertia"]
+    content.update(colour="red", groups={"main": "five"})
+    (own / "bad.yaml").write_text(yaml.safe_dump(content))
+    with pytest.raises(InputError) as caught:
+        load_crane(own / "bad.yaml")
+    assert all(word in str(caught.value) for word in ("gear_ratio", "inertia", "colour", "main"))
+    content = yaml.safe_load((own / "ahc_crane_50t.yaml").read_text())
+    content.update(lode=3, duration=-1, mode="sideways")
+    (own / "bad.yaml").write_text(yaml.safe_dump(content))
+    with pytest.raises(InputError) as caught:
+        load_scenario(own / "bad.yaml")
+    assert all(word in str(caught.value) for word in ("lode", "duration", "mode"))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("folder", KINDS)
+def test_shipped_files_fit_their_schema(folder):
+    schema = all_schemas()[KINDS[folder]]
+    for path in sorted((config_directory() / folder).glob("*.yaml")):
+        assert problems(yaml.safe_load(path.read_text()), schema) == [], path
+
+
+def test_published_schemas_are_the_readers(tmp_path):
+    assert run(["init", "schemas", "--out", str(tmp_path)]) == 0
+    published = config_directory() / "schemas"
+    for path in tmp_path.iterdir():
+        assert (published / path.name).read_text() == path.read_text(), (
+            f"run: winch-friction init schemas --out {published}"
+        )
+    assert {path.name for path in published.iterdir()} == {path.name for path in tmp_path.iterdir()}
+
+
+def test_what_a_schema_allows_the_reader_asks_for():
+    """Every key of a declared schema is one that the strict reader knows, and the other way round."""
+    content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
+    with pytest.raises(InputError, match="known keys are") as caught:
+        crane_from_content({**content, "unknown": 1}, "crane")
+    known = set(str(caught.value).partition("known keys are ")[2].split(", "))
+    optional = {"max_displacement", "wire_mass", "wire_stiffness"}
+    assert known <= set(all_schemas()["crane"]["properties"]) <= known | optional

@@ -1,0 +1,168 @@
+"""`winch-friction init crane | plant | model | scenario | map`: commented files, from flags or questions."""
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
+from winch_friction.physics.errors import InputError
+
+app = typer.Typer(help="Commented files to begin with, from flags or questions.", no_args_is_help=True)
+
+Out = Annotated[OptionalPath, typer.Option(help="File to write; NAME.yaml without it.")]
+Force = Annotated[bool, typer.Option(help="Overwrite a file that exists.")]
+OfCrane = Annotated[str, typer.Option(help="Crane file or shipped name that it belongs to.")]
+FileName = Annotated[str, typer.Option(help="Name in the file.")]
+
+
+@app.command()
+def crane(
+    name: Annotated[str, typer.Option(help="Name of the crane.")] = "",
+    load: Annotated[OptionalFloat, typer.Option(help="Rated load in t.")] = None,
+    motors: Annotated[OptionalInt, typer.Option(help="Motors on the winch.")] = None,
+    displacement: Annotated[OptionalFloat, typer.Option(help="Largest displacement per motor, cm^3/rev.")] = None,
+    gear_ratio: Annotated[OptionalFloat, typer.Option(help="Motor revolutions per drum revolution.")] = None,
+    radius: Annotated[OptionalFloat, typer.Option(help="Rope radius of the innermost layer, m.")] = None,
+    layers: Annotated[OptionalInt, typer.Option(help="Wire layers.")] = None,
+    active: Annotated[OptionalInt, typer.Option(help="Active motors in heave compensation; 0: none.")] = None,
+    wire: Annotated[OptionalFloat, typer.Option(help="Wire diameter in mm.")] = None,
+    inertia: Annotated[
+        OptionalFloat, typer.Option(help="Inertia at the motor shaft, kg m^2; estimated if absent.")
+    ] = None,
+    out: Out = None,
+    force: Force = False,
+) -> None:
+    """A crane file.
+
+    Example: winch-friction init crane --name crane_50t --load 50 --motors 5 --displacement 160 --gear-ratio 180
+    --radius 0.6 --layers 5 --active 2 --wire 44
+    """
+    from winch_friction.cli.init_texts import CraneFacts, crane_text
+
+    asked = {
+        "name": (name or None, str, "name of the crane"),
+        "load": (load, float, "rated load, t"),
+        "motors": (motors, int, "motors on the winch"),
+        "displacement": (displacement, float, "largest displacement per motor, cm^3/rev"),
+        "gear_ratio": (gear_ratio, float, "gear ratio, motor revolutions per drum revolution"),
+        "radius": (radius, float, "rope radius of the innermost layer, m"),
+        "layers": (layers, int, "wire layers"),
+        "active": (active, int, "active motors in heave compensation (0: none)"),
+        "wire": (wire, float, "wire diameter, mm"),
+    }
+    facts = CraneFacts(**_answered(asked), inertia=inertia)
+    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), force)
+
+
+@app.command()
+def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False) -> None:
+    """A plant file (pump, loop, accumulator), sized for a crane.
+
+    Example: winch-friction init plant --crane crane_50t.yaml
+    """
+    from winch_friction.cli.init_texts import plant_text
+
+    known = _hydraulic(crane)
+    name = name or f"plant_{known.name}"
+    _write(out or Path(f"{name}.yaml"), plant_text(known, name), force)
+
+
+@app.command()
+def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False) -> None:
+    """A rough seed model, scaled from paper 2's cranes to this one; identify replaces it.
+
+    Example: winch-friction init model --crane crane_50t.yaml
+    """
+    from winch_friction.cli.init_texts import model_text
+
+    known = _hydraulic(crane)
+    name = name or f"seed_{known.name}"
+    _write(out or Path(f"{name}.yaml"), model_text(known, name), force)
+
+
+@app.command()
+def scenario(
+    crane: OfCrane,
+    plant: Annotated[str, typer.Option(help="Plant file or shipped name.")] = "",
+    mode: Annotated[str, typer.Option(help="normal or ahc (heave compensation).")] = "ahc",
+    load: Annotated[
+        OptionalFloat, typer.Option(help="Hanging mass in t; a third of the rated load without it.")
+    ] = None,
+    name: FileName = "",
+    out: Out = None,
+    force: Force = False,
+) -> None:
+    """A scenario for the simulator, for a crane and its plant.
+
+    Example: winch-friction init scenario --crane crane_50t.yaml --plant plant_crane_50t.yaml
+    """
+    from winch_friction.cli.init_texts import scenario_text
+
+    known = _hydraulic(crane)
+    if mode not in ("normal", "ahc"):
+        raise InputError(f"--mode {mode}: use normal or ahc")
+    if mode == "ahc" and not {"active", "passive"} <= set(known.groups):
+        raise InputError(f"--mode ahc: crane '{known.name}' has no groups active and passive; use --mode normal")
+    name = name or f"{mode}_{known.name}"
+    text = scenario_text(known, name, plant or f"plant_{known.name}.yaml", mode, load)
+    _write(out or Path(f"{name}.yaml"), text, force)
+
+
+@app.command("map")
+def map_(crane: OfCrane = "", out: Out = None, force: Force = False) -> None:
+    """A map for `import`, to be filled in by hand; better: let `import LOG --propose` write it from the log.
+
+    Example: winch-friction init map --crane crane_50t.yaml --out log_map.yaml
+    """
+    from winch_friction.cli.init_texts import map_text
+
+    known = _hydraulic(crane) if crane else None
+    _write(out or Path("log_map.yaml"), map_text(known), force)
+
+
+@app.command()
+def schemas(
+    out: Annotated[Path, typer.Option(help="Folder for the JSON Schemas.")] = Path("schemas"), force: Force = False
+) -> None:
+    """The JSON Schemas of all files, for an editor's completion.
+
+    Example: winch-friction init schemas --out .vscode/schemas
+    """
+    import json
+
+    from winch_friction.simulation.file_schemas import all_schemas
+
+    for name, schema in all_schemas().items():
+        _write(out / f"{name}.schema.json", json.dumps(schema, indent=2) + "\n", force)
+
+
+def _answered(asked: dict[str, tuple[Any, type, str]]) -> dict[str, Any]:
+    """The given answers, and those to questions where a person sits there; else all missing flags in one line."""
+    missing = [name for name, (value, _, _) in asked.items() if value is None]
+    if missing and not sys.stdin.isatty():
+        words = ", ".join(f"--{name.replace('_', '-')} ({asked[name][2]})" for name in missing)
+        raise InputError(f"init crane needs {words}")
+    return {
+        name: typer.prompt(words, type=kind) if value is None else value for name, (value, kind, words) in asked.items()
+    }
+
+
+def _hydraulic(name: str) -> Any:
+    from winch_friction.records.crane_file import load_crane
+
+    crane = load_crane(name)
+    if not crane.drive.hydraulic:
+        raise InputError(
+            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; templates are for hydraulic ones"
+        )
+    return crane
+
+
+def _write(path: Path, text: str, force: bool) -> None:
+    from winch_friction.records.atomic import write_text
+
+    if path.exists() and not force:
+        raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
+    print(f"written: {write_text(path, text)}")

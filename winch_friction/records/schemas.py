@@ -1,0 +1,163 @@
+"""JSON Schemas of the files that the strict reader takes apart: crane, model, practice, map; and their use.
+
+The readers decide; a schema serves an editor's completion, and tells all problems of a file where a reader, which
+stops at the first, has refused it.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+Schema = dict[str, Any]
+
+TEXT: Schema = {"type": "string"}
+# YAML 1.1 reads 1e-3 as a string, so a number may be one
+NUMBER: Schema = {"type": ["number", "string"], "pattern": r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$"}
+MAPPING_OF: Schema = {"type": "object"}
+MOST_TOLD = 12  # problems of one file in one line
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def quantity(unit: str, bounds: Mapping[str, float] | None = None) -> Schema:
+    """A number in SI, or a mapping with value and unit; bounds are those of the number in SI."""
+    spelled = {
+        "type": "object",
+        "properties": {"value": NUMBER, "unit": TEXT},
+        "required": ["value"],
+        "additionalProperties": False,
+    }
+    return {"description": f"in {unit}, or {{value, unit}}", "anyOf": [{**NUMBER, **(bounds or {})}, spelled]}
+
+
+def _object(required: Mapping[str, Schema], optional: Mapping[str, Schema] | None = None, **more: Any) -> Schema:
+    optional = optional or {}
+    return {
+        "type": "object",
+        "properties": {**required, **optional},
+        "required": list(required),
+        "additionalProperties": False,
+        **more,
+    }
+
+
+def _tag(name: str) -> Schema:
+    return {"const": f"winch_friction.{name}/1"}
+
+
+_DRIVES = ["hydraulic", "electric", "power", "current"]
+_DRIVE = _object(
+    {"kind": {"enum": _DRIVES}}, {"torque_constant": quantity("N*m/A"), "slowest_speed": quantity("rad/s")}
+)
+_VALUE = _object({"value": NUMBER, "unit": TEXT}, {"std": NUMBER, "lower": NUMBER, "upper": NUMBER})
+_CORRECTION = _object(
+    {"value": NUMBER, "unit": TEXT},
+    {"std": NUMBER, "lower": NUMBER, "upper": NUMBER, "source": TEXT, "groups": {"type": "array", "items": TEXT}},
+)
+_NAMES: Schema = {"type": "array", "items": TEXT}
+_CONSTANTS = {
+    "max_displacement": quantity("m^3/rad"), "density": quantity("kg/m^3"), "viscosity": quantity("Pa*s"),
+    "gear_ratio": quantity("1"),
+}  # fmt: skip
+_ENTRY = _object(
+    {"from": TEXT},
+    {
+        "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "of": TEXT,
+        "at": {"enum": ["motor", "drum", "rope"]}, "differentiate": NUMBER, "confidence": NUMBER, "because": TEXT,
+    },
+)  # fmt: skip
+
+DECLARED: dict[str, Schema] = {
+    "crane": _object(
+        {
+            "schema": _tag("crane"),
+            "name": TEXT,
+            "drive": {"anyOf": [{"enum": _DRIVES[:3]}, _DRIVE]},
+            "gear_ratio": quantity("1", {"exclusiveMinimum": 0}),
+            "drum": _object({"layer_radii": {"type": "array", "minItems": 1, "items": quantity("m")}}),
+            "groups": {**MAPPING_OF, "additionalProperties": {"type": "integer", "minimum": 1}},
+            "inertia": quantity("kg*m^2", {"exclusiveMinimum": 0}),
+            "absolute_torque_limit": quantity("N*m", {"exclusiveMinimum": 0}),
+        },
+        {
+            "max_displacement": quantity("m^3/rad", {"exclusiveMinimum": 0}),
+            "wire_mass": quantity("kg/m"),
+            "wire_stiffness": quantity("N", {"exclusiveMinimum": 0}),
+            "rated_pressure": quantity("Pa", {"exclusiveMinimum": 0}),
+            "rated_speed": quantity("rad/s", {"exclusiveMinimum": 0}),
+            "rated_load": quantity("kg", {"exclusiveMinimum": 0}),
+            "description": TEXT,
+        },
+    ),
+    "model": _object(
+        {
+            "schema": _tag("model"),
+            "name": TEXT,
+            "terms": {"type": "array", "items": TEXT, "uniqueItems": True},
+            "parameters": {**MAPPING_OF, "additionalProperties": _VALUE},
+        },
+        {
+            "crane": TEXT,
+            "constants": {**MAPPING_OF, "properties": _CONSTANTS},
+            "corrections": {
+                **MAPPING_OF,
+                "additionalProperties": {"anyOf": [_CORRECTION, {"type": "array", "items": _CORRECTION}]},
+            },
+            "correlation": {"type": "array", "items": {"type": "array"}},
+            "tables": {},
+            "provenance": {"type": ["object", "null"]},
+            "description": TEXT,
+        },
+    ),
+    "practice": _object(
+        {"schema": _tag("practice"), "name": TEXT, "crane": TEXT, "supplier_table": TEXT,
+         "tests": {**_NAMES, "minItems": 1}},
+        {"held_out_tests": _NAMES, "ahc_tests": _NAMES, "motor_model": TEXT, "note": TEXT},
+    ),
+    "map": _object(
+        {"schema": _tag("map"), "columns": {**MAPPING_OF, "minProperties": 1, "additionalProperties": _ENTRY}},
+        {"crane": TEXT, "time": MAPPING_OF, "log": MAPPING_OF, "bad_cells": {"enum": ["missing", "refuse"]},
+         "unused": _NAMES, "questions": _NAMES},
+    ),
+}  # fmt: skip
+
+
+def titled(name: str, schema: Schema) -> Schema:
+    """The schema as a file of its own."""
+    return {"$schema": _DRAFT, "$id": f"winch_friction.{name}/1", "title": f"winch_friction {name} file", **schema}
+
+
+def problems(content: Any, schema: Schema) -> list[str]:
+    """What of a file's content breaks its schema, each with its place; empty without the library jsonschema."""
+    try:
+        from jsonschema import Draft202012Validator
+    except ModuleNotFoundError:  # the nodes need none; the reader's own first complaint stands
+        return []
+    found = sorted(Draft202012Validator(schema).iter_errors(content), key=lambda each: [str(p) for p in each.path])
+    return [_said(each) for each in found]
+
+
+def _said(error: Any) -> str:
+    place = ".".join(str(part) for part in error.absolute_path)
+    words = error.message
+    if error.validator in ("anyOf", "pattern", "type"):
+        words = f"{error.instance!r} is not {error.schema.get('description', 'what belongs here')}"
+    elif error.validator == "additionalProperties":
+        known = ", ".join(error.schema.get("properties", {}))
+        words = f"{words.partition(' (')[2].rstrip(')')}; known keys are {known}"
+    return f"{place}: {words}" if place else words
+
+
+def with_all_problems(first: str, content: Any, name: str, where: str) -> str:
+    """A reader's complaint, followed by whatever else the schema finds wrong; one line."""
+    others = [each for each in problems(content, DECLARED[name]) if not _same(each, first)]
+    if not others:
+        return first
+    more = f" ... and {len(others) - MOST_TOLD} more" if len(others) > MOST_TOLD else ""
+    return f"{first}; also in {where}: {'; '.join(others[:MOST_TOLD])}{more}"
+
+
+def _same(problem: str, first: str) -> bool:
+    """Whether a problem's place and key are those of the reader's own complaint."""
+    place, _, words = problem.partition(": ")
+    quoted = words.split("'")[1::2]
+    last = place.rpartition(".")[2] if words else ""
+    return (bool(last) and last in first) or any(f"'{each}'" in first for each in quoted[:1])

@@ -61,7 +61,7 @@ class Replay:
     def summary(self) -> str:
         """Length, share of time in action, level of the torque and what was learned, in words."""
         content = self._content()
-        learned = [p for p in content["parameters"] if p["status"] == "estimated"]
+        learned = [p for p in content["parameters"] if p["status"] in ("learning", "learned", "frozen")]
         names = ", ".join(f"{p['parameter']} {p['seed']:.3g} -> {p['learned']:.3g} {p['unit']}" for p in learned)
         return (
             f"{content['duration_s']:.0f} s, feedforward active {content['active_share']:.0%} of the time, "

@@ -29,7 +29,7 @@ def show_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]
 
 def show_json(content: Any) -> None:
     """JSON on stdout; not-a-number becomes null."""
-    print(json.dumps(_finite(content), indent=2, default=str))
+    print(json.dumps(finite(content), indent=2, default=str))
 
 
 def show_warnings(warnings: Iterable[str]) -> None:
@@ -57,11 +57,12 @@ def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else escape(str(value))  # [s] is a unit, no markup
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
+    """Plain content with null for what JSON has no number for: not-a-number and infinity."""
     if isinstance(value, dict):
-        return {str(key): _finite(each) for key, each in value.items()}
+        return {str(key): finite(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(each) for each in value]
+        return [finite(each) for each in value]
     if hasattr(value, "tolist"):
-        return _finite(value.tolist())
+        return finite(value.tolist())
     return None if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))) else value

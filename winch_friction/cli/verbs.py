@@ -45,6 +45,8 @@ VERBS = (
     Verb("plot", "plot", "Runs as a page: every channel, zoomed together."),
     Verb("compare", "compare", "Two models against each other, on a grid or on runs."),
     Verb("doctor", "doctor", "Whether this machine has what it takes: libraries, ROS, DDS, clock, configuration."),
+    Verb("watch", "watch", "The running nodes in the terminal: state, torque, estimates, rates, faults."),
+    Verb("dashboard", "dashboard", "The running nodes, or a bag, as a live page on this machine."),
     Verb("terms", "terms", "The declared friction terms: equations, parameters, sources."),
     Verb("import", "import_", "Logs of any origin become run files, by a map that is proposed and read."),
     Verb("convert", "convert", "Run files from one format to another; the EMPS benchmark to a run."),

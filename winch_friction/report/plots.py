@@ -113,11 +113,12 @@ def has_plots(html: str) -> bool:
 def plot_scripts() -> str:
     """The page's scripts, once: plotly (packed, so that a page stays small) and what draws the figures."""
     drawing = (_TEMPLATES / "plots.js").read_text(encoding="utf-8")
-    return f'<script type="text/plain" id="plotly">{_packed_plotly()}</script>\n<script>\n{drawing}\n</script>'
+    return f'<script type="text/plain" id="plotly">{packed_plotly()}</script>\n<script>\n{drawing}\n</script>'
 
 
 @lru_cache(maxsize=1)
-def _packed_plotly() -> str:
+def packed_plotly() -> str:
+    """plotly's script, gzipped and in base64."""
     try:
         import plotly
     except ModuleNotFoundError as error:

@@ -18,6 +18,7 @@ from winch_friction.report.replay_picture import most_learned
 from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
 
 TIME = "time [s]"
+TAUGHT = ("learning", "learned", "frozen")  # statuses of parameters that the recording told something about
 
 
 def write_replay_page(path: Path, result: Replayed, seed: FrictionModel, provenance: Mapping[str, Any]) -> Path:
@@ -41,7 +42,7 @@ def sentence(content: Mapping[str, Any]) -> str:
     """What came out, in one sentence."""
     if content["active_share"] == 0.0:
         return "The feedforward was never active: an input that it needs is missing (see what to do next)."
-    learned = [each for each in content["parameters"] if each["status"] == "estimated"]
+    learned = [each for each in content["parameters"] if each["status"] in TAUGHT]
     said = (
         f"{len(learned)} of {len(content['parameters'])} parameters were learned" if learned else "nothing was learned"
     )
@@ -67,7 +68,7 @@ def next_steps(content: Mapping[str, Any]) -> list[str]:
         return ["Log speed_reference, or set velocity_source: measured for the compensator in a --params-file."]
     if any(each["status"] == "invalid" for each in content["parameters"]):
         return ["A parameter ran to its bound: compare runs and model with `winch-friction gap`, something is missing."]
-    if not any(each["status"] == "estimated" for each in content["parameters"]):
+    if not any(each["status"] in TAUGHT for each in content["parameters"]):
         return [
             "Replay a longer recording, or one with more speeds and loads: these samples excite no parameter enough."
         ]
@@ -103,7 +104,10 @@ def learned_html(result: Replayed, seed: FrictionModel) -> str:
     ]  # fmt: skip
     columns = ("what", "symbol", "seed", "learned", "σ", "unit", "status")
     shown = most_learned(result.estimator, seed)
-    words = "estimated: the data said it; unestimated: they did not, it stays at the seed; invalid: at its bound."
+    words = (
+        "seed: the data did not say, it stays there; learning, learned: they did; frozen: learning rests; invalid: at "
+        "the edge of its range around the seed."
+    )
     plot = plot_html(parameter_plot(result.estimator, seed, shown)) if shown else ""
     return table_html(columns, rows, "Parameters at the end") + paragraph(words, "faint") + plot
 

@@ -1,0 +1,31 @@
+"""Watch on a bag."""
+
+import json
+
+import pytest
+
+import winch_friction as wf
+from winch_friction.cli.main import run
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory):
+    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    log = wf.simulate("ahc_55t_215", crane, model, duration=6.0).run
+    return wf.write_run(log, tmp_path_factory.mktemp("bags") / "sea")
+
+
+def test_a_bag_is_watched_as_tables_and_as_json(bag, capsys):
+    assert run(["watch", "--bag", str(bag), "--rate", "0"]) == 0
+    assert "motor speed" in capsys.readouterr().out
+    assert run(["watch", "--bag", str(bag), "--rate", "0", "--json"]) == 0
+    frames = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert sum(len(frame["points"].get("speed", [])) for frame in frames) == pytest.approx(
+        100, abs=5
+    )  # 50 Hz thinned to every third
+
+
+@pytest.mark.parametrize("name", ["nothing", "pyproject.toml"])
+def test_what_is_no_bag_is_one_line(name, capsys):
+    assert run(["watch", "--bag", name]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

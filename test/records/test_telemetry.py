@@ -1,0 +1,49 @@
+"""Frames for watch and dashboard: what comes in, in which unit, and what is said of it."""
+
+from types import SimpleNamespace as Message
+
+import pytest
+
+from winch_friction.records.telemetry import Telemetry, estimates, faults, inputs, state
+
+
+def joint(time, **values):
+    header = Message(stamp=Message(sec=int(time), nanosec=int(1e9 * (time % 1))))
+    return Message(header=header, name=values.pop("name", ["winch_motor"]), **{"position": [], "effort": [], **values})
+
+
+def diagnostics(name, level, **values):
+    pairs = [Message(key=key.replace("_", " "), value=value) for key, value in values.items()]
+    return Message(status=[Message(name=name, level=level, message="said", hardware_id="c", values=pairs)])
+
+
+def test_points_are_spaced_and_in_the_units_that_people_read():
+    telemetry = Telemetry()
+    for k in range(100):
+        telemetry.take("winch/joint_states", joint(0.01 * k, velocity=[104.7198]))
+    points = telemetry.frame()["points"]["speed"]
+    assert len(points) == pytest.approx(20, abs=1)
+    assert points[0][1] == pytest.approx(1000.0, rel=1e-4)
+    assert telemetry.frame()["points"] == {}
+
+
+def test_the_truth_carries_friction_and_tracking_error():
+    telemetry = Telemetry()
+    message = joint(1.0, name=["winch_motor", "load"], position=[0.0, 0.004], velocity=[0.0, 0.0], effort=[350.0, 1.0])
+    telemetry.take("simulator/truth", message)
+    points = telemetry.frame()["points"]
+    assert points["truth"][0][1] == 350.0
+    assert points["error"][0][1] == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize("level", [2, b"\x02"])
+def test_diagnostics_become_state_estimates_inputs_and_faults(level):
+    telemetry = Telemetry()
+    telemetry.take("/diagnostics", diagnostics("estimator: parameters", 0, C1="2", C1_std="0.5", C1_status="learned"))
+    telemetry.take("/diagnostics", diagnostics("compensator: inputs", level, speed_rate="50", speed_age="0.01"))
+    telemetry.take("/diagnostics", diagnostics("compensator: feedforward", 0, state="active"))
+    status = telemetry.frame()["status"]
+    assert estimates(status) == [{"parameter": "C1", "value": 2.0, "std": 0.5, "status": "learned"}]
+    assert inputs(status) == [{"input": "speed", "rate": 50.0, "age": 0.01}]
+    assert faults(status) == ["error: compensator: inputs: said"]
+    assert state(status) == [("compensator: feedforward", "said")]

@@ -1,0 +1,78 @@
+"""`winch-friction watch`: the running nodes in the terminal."""
+
+import itertools
+import json
+from typing import Annotated, Any
+
+import typer
+
+from winch_friction.cli.console import finite, stdout
+from winch_friction.cli.optional import OptionalPath
+
+
+def command(
+    bag: Annotated[OptionalPath, typer.Option(help="Watch a bag instead of running nodes.")] = None,
+    namespace: Annotated[str, typer.Option(help="Namespace of the winch's nodes.")] = "",
+    rate: Annotated[float, typer.Option(min=0.0, help="Pace of a bag: 1 as it was, 0 at once.")] = 1.0,
+    frames: Annotated[int, typer.Option(min=0, help="End after this many frames (5 a second); 0: never.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Frames as JSON lines.")] = False,
+) -> None:
+    """Watch the winch: state, rates and ages of inputs, torque, estimates with sigma and status, faults.
+
+    Examples:
+
+      winch-friction watch
+
+      winch-friction watch --bag out/demo/bag --rate 5
+    """
+    from rich.live import Live
+
+    from winch_friction.cli.live import frames as source
+
+    found = source(bag, namespace, rate)
+    chosen = itertools.islice(found, frames) if frames else found
+    if as_json:
+        for frame in chosen:
+            print(json.dumps(finite(frame)), flush=True)
+        return
+    latest: dict[str, float] = {}
+    with Live(view({"time": None, "status": {}}, latest), console=stdout, refresh_per_second=5) as live:
+        for frame in chosen:
+            latest.update({name: points[-1][1] for name, points in frame["points"].items()})
+            live.update(view(frame, latest))
+
+
+def view(frame: dict[str, Any], latest: dict[str, float]) -> Any:
+    """The frame as tables side by side; what is not there yet is said."""
+    from rich.console import Group
+    from rich.markup import escape
+
+    from winch_friction.records.telemetry import SIGNALS, estimates, faults, inputs, state
+
+    status = frame["status"]
+    if frame["time"] is None and not status:
+        return "nothing heard yet: are the nodes running, and in this ROS_DOMAIN_ID?"
+    wrong = faults(status)
+    said = "\n".join(f"[bold red]{escape(each)}[/]" for each in wrong) if wrong else "[green]no fault[/]"
+    return Group(
+        f"time {frame['time']:.1f} s" if frame["time"] is not None else "no samples yet",
+        said,
+        _table("state", ("part", "says"), state(status)),
+        _table("now", ("signal", "value"), [(text, f"{latest[n]:.4g}") for n, text in SIGNALS.items() if n in latest]),
+        _table("estimates, SI", ("parameter", "value", "sigma", "status"),
+               [(e["parameter"], f"{e['value']:.5g}", f"{e['std']:.2g}", e["status"]) for e in estimates(status)]),
+        _table("inputs", ("input", "rate [Hz]", "age [s]"),
+               [(e["input"], f"{e['rate']:.1f}", f"{e['age']:.3f}") for e in inputs(status)]),
+    )  # fmt: skip
+
+
+def _table(title: str, columns: tuple[str, ...], rows: list[Any]) -> Any:
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left")
+    for column in columns:
+        table.add_column(escape(column), overflow="fold")
+    for row in rows:
+        table.add_row(*(escape(str(cell)) for cell in row))
+    return table if rows else f"{title}: nothing yet"

@@ -1,0 +1,106 @@
+"""What is going on at the winch, from the topics of running nodes or of a bag, for `watch` and `dashboard`.
+
+A frame is plain data: new points of each signal, [time s, value] in the unit that people read, and the latest
+diagnostics.
+"""
+
+from typing import Any
+
+from winch_friction.physics.units import RPM
+
+JOINT = "sensor_msgs/msg/JointState"
+# topic below the winch's namespace -> its type; /diagnostics is shared by all
+TOPICS = {
+    "winch/joint_states": JOINT, "winch/reference": JOINT, "compensator/friction_torque": JOINT,
+    "estimator/friction_torque": JOINT, "simulator/truth": JOINT, "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+}  # fmt: skip
+# signal -> what it is and its unit
+SIGNALS = {
+    "speed": "motor speed [rpm]", "reference": "commanded speed [rpm]", "feedforward": "feedforward [N·m]",
+    "learned": "friction by the learned model [N·m]", "truth": "true friction, simulated [N·m]",
+    "error": "position error of the load [mm]",
+}  # fmt: skip
+SPACING = 0.05  # s between the points of a signal: 20 Hz is more than an eye follows
+
+
+class Telemetry:
+    """Takes messages as they come, gives frames."""
+
+    def __init__(self) -> None:
+        self._points: dict[str, list[list[float]]] = {name: [] for name in SIGNALS}
+        self._last: dict[str, float] = {}
+        self._status: dict[str, dict[str, Any]] = {}
+        self.time = float("nan")
+
+    def take(self, topic: str, message: Any) -> None:
+        """One message of a topic of `TOPICS`, from rclpy or from a bag."""
+        if topic == "/diagnostics":
+            for each in message.status:
+                self._status[each.name] = {
+                    "level": each.level[0] if isinstance(each.level, bytes) else int(each.level),
+                    "message": each.message,
+                    "hardware": each.hardware_id,
+                    "values": {pair.key: pair.value for pair in each.values},
+                }  # fmt: skip
+            return
+        stamp = message.header.stamp
+        self.time = stamp.sec + 1e-9 * stamp.nanosec
+        for signal, value in _values(topic, message):
+            self._add(signal, value)
+
+    def _add(self, signal: str, value: float) -> None:
+        last = self._last.get(signal, float("-inf"))
+        if value == value and (self.time - last >= SPACING or self.time < last):
+            self._last[signal] = self.time
+            self._points[signal].append([round(self.time, 4), float(f"{value:.6g}")])
+
+    def frame(self) -> dict[str, Any]:
+        """What came since the last frame, and the latest diagnostics."""
+        points = {name: values for name, values in self._points.items() if values}
+        self._points = {name: [] for name in SIGNALS}
+        return {"time": self.time if self.time == self.time else None, "points": points, "status": self._status}
+
+
+def _values(topic: str, message: Any) -> list[tuple[str, float]]:
+    first = lambda values: float(values[0]) if len(values) else float("nan")
+    if topic == "winch/joint_states":
+        return [("speed", first(message.velocity) / RPM)]
+    if topic == "winch/reference":
+        return [("reference", first(message.velocity) / RPM)]
+    if topic == "simulator/truth":
+        load = list(message.name).index("load") if "load" in message.name else None
+        error = [("error", 1e3 * float(message.position[load]))] if load is not None else []
+        return [("truth", first(message.effort)), *error]
+    return [("feedforward" if topic.startswith("compensator") else "learned", first(message.effort))]
+
+
+def estimates(status: dict[str, Any]) -> list[dict[str, Any]]:
+    """The estimator's parameters from its diagnostics: name, value, std, status."""
+    values: dict[str, str] = next(
+        (s["values"] for name, s in status.items() if name.endswith("estimator: parameters")), {}
+    )
+    names = [key for key in values if f"{key} std" in values]
+    return [
+        {"parameter": n, "value": float(values[n]), "std": float(values[f"{n} std"]),
+         "status": values.get(f"{n} status", "")}
+        for n in names
+    ]  # fmt: skip
+
+
+def faults(status: dict[str, Any]) -> list[str]:
+    """Every diagnostic that is not in order, in words."""
+    levels = {1: "warning", 2: "error", 3: "stale"}
+    return [f"{levels[s['level']]}: {name}: {s['message']}" for name, s in status.items() if s["level"] in levels]
+
+
+def inputs(status: dict[str, Any]) -> list[dict[str, Any]]:
+    """Rate and age of every input, as the compensator (else the estimator) says."""
+    found: dict[str, str] = next((s["values"] for node in ("compensator", "estimator") for name, s in status.items()
+                  if name.endswith(f"{node}: inputs")), {})  # fmt: skip
+    topics = [key.removesuffix(" rate") for key in found if key.endswith(" rate")]
+    return [{"input": t, "rate": float(found[f"{t} rate"]), "age": float(found.get(f"{t} age", "nan"))} for t in topics]
+
+
+def state(status: dict[str, Any]) -> list[tuple[str, str]]:
+    """One line per part of every node that has a state: its name and what it says."""
+    return [(name, s["message"]) for name, s in status.items() if not name.endswith(("inputs", "parameters"))]

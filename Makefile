@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-CAMPAIGNS := loop identification gap rates fleet faults soak
+CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak
 
 .PHONY: docs demo test test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 
@@ -59,7 +59,7 @@ colcon: $(READY)
 campaign: $(addprefix campaign-,$(CAMPAIGNS)) campaign-import
 
 $(addprefix campaign-,$(CAMPAIGNS)): $(READY)
-	$(BIN)/python -m campaign.$(subst campaign-,,$@) $(ARGS)
+	$(BIN)/python -m campaign.$(subst -,_,$(subst campaign-,,$@)) $(ARGS)
 
 campaign-import: $(READY)
 	$(BIN)/python -m campaign.import_logs $(ARGS)

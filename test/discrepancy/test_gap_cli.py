@@ -37,7 +37,7 @@ def folder(tmp_path_factory):
 
 def test_gap_json_has_the_fields_of_the_design(folder):
     content = json.loads((folder / "out" / "gap.json").read_text())
-    assert content["schema"] == "winch_friction.gap/1"
+    assert content["schema"] == "winch_friction.gap/2"
     assert content["verdict"] in ("missing_effect", "ambiguous")
     effect = content["effects"][0]
     assert "gear_asymmetry" in (effect["name"], *effect["indistinguishable_from"])

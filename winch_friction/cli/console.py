@@ -2,7 +2,8 @@
 
 import json
 import sys
-from collections.abc import Iterable, Iterator, Sequence, Sized
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from rich.console import Console
@@ -51,6 +52,28 @@ def progress(items: Iterable[T], description: str, total: int | None = None) -> 
         total = len(items)
     with Progress(*columns, console=stderr, transient=True, disable=not stderr.is_terminal) as bar:
         yield from bar.track(items, total=total, description=description)
+
+
+@contextmanager
+def stepping(description: str, total: int) -> Iterator[Callable[[str], None]]:
+    """A bar that moves by one each time the yielded function is told what begins."""
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=stderr, transient=True, disable=not stderr.is_terminal) as bar:
+        task = bar.add_task(description, total=total)
+        begun = 0
+
+        def tell(what: str) -> None:
+            nonlocal begun
+            bar.update(task, description=f"{description}: {what}", completed=begun)
+            begun += 1
+
+        yield tell
 
 
 def _cell(value: Any) -> str:

@@ -1,13 +1,17 @@
 """`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
 
+import hashlib
 import json
+import shlex
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.console import progress, show_json, show_table, show_warnings, stepping
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.physics.errors import InputError
 
@@ -78,7 +82,7 @@ def run_gap(
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
     from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
-    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.options import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane
@@ -102,14 +106,14 @@ def run_gap(
         show_warnings(run.warnings)
     read = _simulated(read, fmu, fmu_map)
     forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
-    steps = progress(["searching"], "comparing with the model")
-    for _ in steps:
-        result = find_gap(read, loaded_crane, seed_model, options)
+    with stepping("comparing with the model", STEPS) as tell:
+        result = find_gap(read, loaded_crane, seed_model, replace(options, told=tell))
+    made = provenance_of(paths, loaded_crane.name, model, seed) | forced
+    noted = replace(result.model, provenance={**result.model.provenance, **forced})
+    result = replace(result, provenance=made, model=noted)
     content = result.content()
     _write_addition(out, result, read)
-    if forced:
-        content["provenance"] = {**content.get("provenance", {}), **forced}
-    save_model(replace(result.model, provenance={**result.model.provenance, **forced}), out / "model.yaml")
+    save_model(result.model, out / "model.yaml")
     if content["next_experiment"] and result.next_scenario:
         write_text(out / content["next_experiment"]["scenario"], result.next_scenario)
     _write_proposals(out, result)
@@ -118,6 +122,8 @@ def run_gap(
         from winch_friction.report.gap import write_gap_report
 
         write_gap_report(out / "report.html", result)
+    else:
+        (out / "report.html").unlink(missing_ok=True)  # an old page beside new results would be read as theirs
     return content
 
 
@@ -131,6 +137,37 @@ def _write_proposals(out: Path, result: Any) -> None:
     for number, proposal in enumerate(result.proposals, start=1):
         write_text(out / f"proposal_{number}.py", proposal.text)
         save_model(proposal.model, out / f"proposal_{number}.yaml")
+
+
+def provenance_of(paths: list[Path], crane: str, model: str, seed: int) -> dict[str, Any]:
+    """What the result was made of: command, version, commit, crane, model, seed, and every file with its hash."""
+    from winch_friction import __version__
+
+    return {
+        "command": " ".join(["winch-friction", *map(shlex.quote, sys.argv[1:])]), "version": __version__,
+        "commit": _commit(), "crane": crane, "model": model, "seed": seed,
+        "files": [{"name": path.name, "sha256": _hash(path)} for path in paths],
+    }  # fmt: skip
+
+
+def _hash(path: Path) -> str:
+    """Of a file, or of all files of a bag's folder in order."""
+    digest = hashlib.sha256()
+    for each in sorted(path.rglob("*")) if path.is_dir() else [path]:
+        if each.is_file():
+            with each.open("rb") as content:
+                while chunk := content.read(1 << 20):
+                    digest.update(chunk)
+    return digest.hexdigest()
+
+
+def _commit() -> str:
+    """Of the package's own repository, '' where it was installed without one."""
+    here = Path(__file__).resolve().parents[2]
+    if not (here / ".git").exists():
+        return ""
+    said = subprocess.run(["git", "-C", str(here), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return said.stdout.strip()
 
 
 def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[Any]:
@@ -172,10 +209,14 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         show_table("missing effects", ["effect", "or", "parameters", "gain"], rows)
     if content["verdict"] == "unexplained":
         print(f"it depends on: {', '.join(content['unexplained']['depends_on'])} ({content['unexplained']['reason']})")
-    print(
-        f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
-        f"noise floor {gap['noise_floor']:.3g} {unit}"
-    )
+    for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
+        if not check["met"]:
+            print(f"lacking: {check['what']} {check['value']:.3g} {check['unit']}, needed {check['needed']:g}")
+    if gap["before"] is not None:
+        print(
+            f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
+            f"noise floor {gap['noise_floor']:.3g} {unit}"
+        )
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if content["next_experiment"]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Untestable
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks
@@ -16,7 +17,22 @@ from winch_friction.discrepancy.engine.selection import Considered
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import FrictionModel
 
-SCHEMA = "winch_friction.gap/1"
+SCHEMA = "winch_friction.gap/2"
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A combination of parameters that the runs determine where its members are tied, with its deviation."""
+
+    expression: str
+    value: float
+    std: float
+    unit: str
+    because: str
+
+    def content(self) -> dict[str, Any]:
+        """The entry of gap.json."""
+        return {**vars(self), "interval": [self.value - 1.96 * self.std, self.value + 1.96 * self.std]}
 
 
 @dataclass(frozen=True)
@@ -34,6 +50,7 @@ class Effect:
     where: str = "moving"
     law_name: str = ""  # which member of the cause's family; empty: the catalogue's own law
     free: bool = False
+    combination: Combination | None = None  # what of it, and of what is tied to it, is really known
 
     def content(self) -> dict[str, Any]:
         """The entry of `effects` in gap.json."""
@@ -44,6 +61,8 @@ class Effect:
             "variant": self.variant,
             "law": self.law_name or self.name,
             "law_kind": "free" if self.free else "literature",
+            "latex": self.law,
+            "identifiable_combination": self.combination.content() if self.combination else None,
             "evidence": {
                 "p_value": self.p_value, "cv_gain": self.gain, "selection_frequency": self.selection_frequency,
                 "where": self.where,
@@ -88,6 +107,8 @@ class GapResult:
     notes: Sequence[str] = field(default_factory=tuple)
     seed_refuted: Sequence[Any] = field(default_factory=tuple)  # the seed's uncertainty, where the data refute it
     proposals: Sequence[Any] = field(default_factory=tuple)  # laws for what has no name, the simplest first
+    adequacy: tuple[Check, ...] = ()
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def content(self) -> dict[str, Any]:
         """The JSON document of docs/interfaces.md; further keys only add."""
@@ -104,9 +125,9 @@ class GapResult:
                 "train": {**_before_after(self.train)},
                 "holdout": {
                     **_before_after(self.holdout),
-                    "noise_floor": self.holdout.noise_floor,
-                    "before_ci": list(self.holdout.size_before.interval),
-                    "after_ci": list(self.holdout.size_after.interval),
+                    "noise_floor": self.holdout.noise_floor if self.holdout.blocks.y.size else None,
+                    "before_ci": list(self.holdout.size_before.interval) if self.holdout.blocks.y.size else None,
+                    "after_ci": list(self.holdout.size_after.interval) if self.holdout.blocks.y.size else None,
                     "runs": [run.name for run in self.holdout.runs],
                 },
             },
@@ -123,11 +144,15 @@ class GapResult:
             ],
             "notes": list(self.notes),
             "seed_refuted": [each.content() for each in self.seed_refuted],
+            "adequacy": [vars(each) for each in self.adequacy],
             "proposals": [each.content(f"proposal_{k}") for k, each in enumerate(self.proposals, start=1)],
+            "provenance": dict(self.provenance),
         }  # fmt: skip
 
 
 def _before_after(side: Side) -> dict[str, Any]:
+    if not side.blocks.y.size:  # nothing that could be looked at
+        return dict.fromkeys(("before", "after", "relative_before", "relative_after"))
     return {
         "before": side.size_before.value,
         "after": side.size_after.value,

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.adequacy import Check, supplying
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
@@ -13,18 +14,20 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.omnibus import Dependence
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import Finding, Selection
-from winch_friction.discrepancy.expansion import meet
+from winch_friction.discrepancy.expansion import Given, meet
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.discrepancy.proof import compare, read_back
+from winch_friction.discrepancy.proof import compare, nothing_compared, read_back
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.verdict import AMBIGUOUS, INSUFFICIENT, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
+from winch_friction.records.paths import shipped
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,31 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
         notes=(*_notes(split.runs, given.loads), *repaired.cut),
+    )  # fmt: skip
+
+
+def insufficient(
+    checks: Sequence[Check], notes: Sequence[str], crane: Crane, model: FrictionModel,
+    looked_at: tuple[Given, Split] | None = None,
+) -> GapResult:  # fmt: skip
+    """The result of runs that cannot answer: what they lack in numbers, and a scenario that supplies it."""
+    sides = [nothing_compared(), nothing_compared()]
+    if looked_at is not None:
+        given, split = looked_at
+        rng = np.random.default_rng(0)
+        sides = [compare(given, given, names, rng) for names in (split.train, split.holdout)]
+    name = supplying(checks) if crane.drive.hydraulic else ""
+    lacking = "; ".join(check.sentence for check in checks if not check.met)
+    plan = {
+        "scenario": f"{name}.yaml", "separates": [], "expected_z": 0.0, "considered": {},
+        "note": f"supplies what the runs lack ({lacking})",
+    }  # fmt: skip
+    return GapResult(
+        verdict=INSUFFICIENT, refused=lacking, effects=(), regions=(), unit=crane.drive.unit, train=sides[0],
+        holdout=sides[1], depends=(), unexplained_share=0.0, considered=(), untestable=(), model=model,
+        seed_model=model, next_experiment=plan if name else None,
+        next_scenario=shipped("scenarios", name).read_text(encoding="utf-8") if name else "", notes=tuple(notes),
+        adequacy=tuple(checks),
     )  # fmt: skip
 
 

@@ -12,11 +12,11 @@ import numpy as np
 from winch_friction.discrepancy.answer import Side, relative_error
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks, segment_length
-from winch_friction.discrepancy.engine.interval import chance_of_no_gain, rms_with_interval
+from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.regressors import least_noise_of
+from winch_friction.discrepancy.regressors import block_size, least_noise_of
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.records.model_file import model_from_text, model_to_text
@@ -109,6 +109,13 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     )  # fmt: skip
 
 
+def nothing_compared() -> Side:
+    """Of runs that could not even be prepared."""
+    none, size = np.zeros(0), Size(0.0, (0.0, 0.0))
+    blocks = Blocks(none, np.zeros((0, 1)), np.zeros(0, int), np.zeros(0, int), none, {}, none, np.zeros(0, int))
+    return Side((), blocks, none, none, size, size, 0.0, 0.0, (0.0, 0.0))
+
+
 def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[no-untyped-def]
     at = old.time + old.start
     own = new.time + new.start
@@ -122,7 +129,7 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
         used,
         old.direction,
         old.channels,
-        LIMITS.block_samples,
+        block_size(old),
         length,
     )
 

@@ -21,6 +21,7 @@ from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.proof import prove
 from winch_friction.discrepancy.proposed_term import ProposedTerm, declare
+from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import MISSING, UNEXPLAINED, Verdict
@@ -170,9 +171,7 @@ def _signals(word: Word, run: PreparedRun) -> FloatArray:
     return np.array(own) if own else np.zeros((1, len(run.time)))
 
 
-def _evaluated(
-    wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int, size: int = LIMITS.block_samples
-) -> dict[Factor, FloatArray]:
+def _evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int) -> dict[Factor, FloatArray]:
     """Block means of factors over all runs, aligned with the problem's blocks."""
     length = segment_length(sum(run.time[-1] for run in runs))
     single = [f for f in wanted if BY_NAME[f.signal].of_run is not None]
@@ -185,6 +184,7 @@ def _evaluated(
             own = [shape(f.kind, row, dict(f.constants), run.dt) for row in signals[f.signal]]
             columns += own + [np.zeros(len(run.time))] * (most - len(own))
         if columns:
+            size = block_size(run)
             table = run_blocks(run.time, run.gap, np.column_stack(columns), run.used, run.direction, {}, size, length)
             tables.append(table.x)
     if not tables:

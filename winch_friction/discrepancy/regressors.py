@@ -17,6 +17,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import GRAVITY
 
+SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
@@ -98,7 +99,7 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration
-    timing = delay_columns(run, SMALL_DELAY)[:, 0] * run.dt
+    timing = delay_columns(run, SMALL_DELAY)[:, 0] * max(run.dt, SHORTEST_PERIOD)
     return np.column_stack([weight, inertia, timing, run.corrections])
 
 
@@ -115,12 +116,18 @@ def regressors(run: PreparedRun, layout: Layout) -> FloatArray:
     return np.column_stack(parts)
 
 
+def block_size(run: PreparedRun) -> int:
+    """Samples per block."""
+    return max(round(LIMITS.block_time / run.dt), 1)
+
+
 def build_problem(
-    runs: Sequence[PreparedRun], layout: Layout, size: int = LIMITS.block_samples, known: Sequence[Slot] = ()
+    runs: Sequence[PreparedRun], layout: Layout, by_sample: bool = False, known: Sequence[Slot] = ()
 ) -> Problem:
-    """The regression over these runs' usable samples, in the gap's unit."""
+    """The regression over these runs' usable samples, in blocks or, where time is short, one by one, in the gap's
+    unit."""
     length = segment_length(sum(run.time[-1] for run in runs))
-    tables = [_blocks(run, layout, size, length) for run in runs]
+    tables = [_blocks(run, layout, 1 if by_sample else block_size(run), length) for run in runs]
     return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known)
 
 

@@ -7,8 +7,18 @@ from dataclasses import dataclass
 class Thresholds:
     """Where a line of comment names the gap campaign, `make campaign-gap` on null data is what calibrates the value."""
 
+    # -- adequacy, before anything is searched
+    no_record: float = 1.0  # s; less is no record of a winch at work
+    shortest_record: float = 5.0  # s; shorter than one hoist and lower
+    lowest_rate: float = 5.0  # Hz; acceleration and reversals are lost below two samples per smoothing time
+    least_usable: float = 20.0  # s of records: a few times what one speed takes
+    least_moving: float = 15.0  # s of training samples that move, away from reversals
+    least_each_way: float = 3.0  # s hoisting and lowering: one way alone, load and friction are one
+    least_locked: float = 4.0  # s that move in what is locked: twenty blocks
+    least_speed_spread: float = 1.3  # decile ratio; at one speed every loss is a constant
+    least_share_moving: float = 0.0  # said, not asked for: a long idle log may hold enough
     # -- blocks and segments
-    block_samples: int = 10  # 0.2 s at 50 Hz: the fast noise averages out, friction does not
+    block_time: float = 0.2  # s: the fast noise averages out, friction does not
     fullest_block: float = 0.6  # share of a block's samples that must be usable
     segments_wanted: int = 100  # enough for sign flips at 0.1 %
     longest_segment: float = 20.0  # s; longer would leave too few segments

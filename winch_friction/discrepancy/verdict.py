@@ -1,4 +1,4 @@
-"""From the selection and what it leaves to one of four verdicts."""
+"""From the selection and what it leaves to a verdict; a fifth, `insufficient`, is given before any search."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.thresholds import LIMITS
 
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
+INSUFFICIENT = "insufficient"
 
 
 @dataclass(frozen=True)

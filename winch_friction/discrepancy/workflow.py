@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.answer import GapResult
-from winch_friction.discrepancy.assembly import Trial, assemble, tried
+from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
@@ -14,6 +15,7 @@ from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.expansion import Expansion, expand_around, meet
 from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
 from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
 from winch_friction.discrepancy.proposals import propose
@@ -34,18 +36,31 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     """
     options = options or GapOptions()
     _check(runs, options)
-    runs = against_simulations(runs, model)
+    every = [thinned(run) for run in against_simulations(runs, model)]
+    runs, notes = adequacy.long_enough(every)
+    checks = adequacy.of_records(every, runs)
+    if not all(check.met for check in checks):
+        return insufficient(checks, notes, crane, model)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     rng = np.random.default_rng(options.seed + 1)
+    options.told("closing the balance")
     given = meet(split.runs, crane, model)
+    checks += adequacy.of_prepared(given, split.train, split.holdout)
+    if not all(check.met for check in checks):
+        return insufficient(checks, notes, crane, model, (given, split))
+    options.told("searching")
     search = search_runs(split, given, options, rng)
     refuted = refuted_seed(search)
     if refuted is not None:
         search = search_runs(split, widened(given), options, rng)
+    options.told("proving on the locked runs")
     trial = _proven(split, crane, options, _replicated(search, split, rng), rng)
+    options.told("planning")
+    result = assemble(split, options, trial)
     result = replace(
-        assemble(split, options, trial), seed_model=model, seed_refuted=() if refuted is None else (refuted,)
-    )
+        result, seed_model=model, seed_refuted=() if refuted is None else (refuted,), adequacy=tuple(checks),
+        notes=(*notes, *result.notes),
+    )  # fmt: skip
     if not options.proposals:
         return result
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import BAR, RPM
@@ -25,8 +26,8 @@ def run_plots(result: "GapResult", side: "Side", link: str = "runs") -> list[Plo
 
 def _run_plot(result: "GapResult", side: "Side", number: int, link: str) -> Plot:
     run, own = side.runs[number], side.blocks.run == number
-    place = side.blocks.position[own] * LIMITS.block_samples
-    middle = np.minimum(place + LIMITS.block_samples // 2, len(run.time) - 1)
+    place = side.blocks.position[own] * block_size(run)
+    middle = np.minimum(place + block_size(run) // 2, len(run.time) - 1)
     measured, before, after = _measured(run)[middle], side.before[own], side.after[own]
     unit = shown_unit(result)
     columns = {
@@ -46,14 +47,14 @@ def _run_plot(result: "GapResult", side: "Side", number: int, link: str) -> Plot
     return Plot(
         f"Run {run.name}", [Frame(run.name, _with_breaks(columns, x, run.dt))], lines, x,
         ["motor speed [rpm]", f"{drive} [{unit}]", f"gap [{unit}]"],
-        f"{run.name}, while moving (means over {LIMITS.block_samples * run.dt:.2g} s); reversals and rest left out.",
+        f"{run.name}, while moving (means over {block_size(run) * run.dt:.2g} s); reversals and rest left out.",
         link, height=150,
     )  # fmt: skip
 
 
 def _with_breaks(columns: dict[str, FloatArray], x: str, dt: float) -> dict[str, FloatArray]:
     """The columns with an empty row wherever the run pauses."""
-    pauses = np.flatnonzero(np.diff(columns[x]) > _BREAK * LIMITS.block_samples * dt) + 1
+    pauses = np.flatnonzero(np.diff(columns[x]) > _BREAK * LIMITS.block_time) + 1
     broken = {name: np.insert(np.asarray(values, float), pauses, np.nan) for name, values in columns.items()}
     return broken | {x: np.insert(columns[x], pauses, columns[x][pauses - 1])}
 

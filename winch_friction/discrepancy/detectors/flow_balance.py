@@ -20,7 +20,7 @@ from winch_friction.physics.signals import FloatArray, Run
 
 REFERENCE = "speed_reference"
 SETTLED = 1.5  # s of constant command before a sample counts as a plateau
-STEADY_COMMAND = 0.02  # rad/s per sample
+STEADY_COMMAND = 1.0  # rad/s^2
 SEGMENT = 5.0  # s
 FEWEST_SEGMENTS = 20
 # leakage per motor that is ordinary for such motors and left to the pump command, m^3/s/Pa
@@ -108,7 +108,7 @@ def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FloatArray:
 def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:
     """Rows (lost speed, speed, speed lost per unit of leakage, run) of the steady stretches of one run."""
     command = np.interp(prepared.time + prepared.start, run.time, run[REFERENCE])
-    constant = np.abs(np.gradient(command)) < STEADY_COMMAND
+    constant = np.abs(np.gradient(command, prepared.dt)) < STEADY_COMMAND
     width = max(int(SETTLED / prepared.dt), 1)
     # only the past counts: the plateau must have lasted before the sample
     settled = minimum_filter1d(constant.astype(int), width, origin=(width - 1) // 2) > 0

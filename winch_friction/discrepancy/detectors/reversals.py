@@ -40,7 +40,7 @@ class ReversalFinding:
         chosen = [run for run in self.expansion.runs if run.name in names and run.used.any()]
         if not chosen:
             return False
-        blocks = build_problem(chosen, self.expansion.layout, 1).blocks
+        blocks = build_problem(chosen, self.expansion.layout, by_sample=True).blocks
         columns = self.cross.problem.columns
         without, with_it = (
             blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta for each in (self.base, self.fitted)
@@ -64,7 +64,7 @@ def detect(
     chosen = [run for run in turning.runs if run.name in train and run.used.any()]
     if sum(int(run.used.sum()) for run in chosen) < FEWEST_BLOCKS:
         return None
-    cross = CrossFit(build_problem(chosen, turning.layout, 1))
+    cross = CrossFit(build_problem(chosen, turning.layout, by_sample=True))
     kept = [turning.layout.slot_like(slot) for slot in explanation.slots]
     base = cross.explain(kept)
     trials = candidate_trials(cross, base, named)

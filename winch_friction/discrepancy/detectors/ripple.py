@@ -14,7 +14,7 @@ from scipy.stats import gamma
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
-from winch_friction.discrepancy.preparation.grid import smooth
+from winch_friction.discrepancy.preparation.grid import samples_of, smooth
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -27,7 +27,7 @@ BINS_PER_REVOLUTION = 64
 LOWEST_ORDER, HIGHEST_ORDER = 0.1, 20.0  # periods per revolution of the motor shaft
 LONGEST_SPECTRUM = 1 << 18
 NEIGHBOURHOOD = 401  # lines whose median is the background
-WINDOW = 15  # samples; slower than this is friction, not ripple
+WINDOW = 0.3  # s; slower than this is friction, not ripple
 SPEED_CLASSES = 3  # parts of a run
 MOST_OF_ONE_PART, MOST_OF_ONE_RUN = 5.0, 12.0  # of a line's power over its background
 # family-wise significance of a line in the whole runs, whose background is lumpy, and its own in their parts
@@ -178,7 +178,7 @@ def _moving(
     if with_inertia:
         inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
         torque = torque - inertia * np.gradient(_speed(run, crane)[good], time)
-    fast = torque - smooth(torque, WINDOW)
+    fast = torque - smooth(torque, samples_of(WINDOW, prepared.dt))
     return angle[moving], fast[moving], static[moving], np.interp(time, grid, prepared.speed)[moving]
 
 

@@ -124,6 +124,9 @@ def grams(blocks: Blocks) -> Grams:
     z = np.column_stack([blocks.x, blocks.y]) * blocks.weight[:, None]
     order = np.argsort(blocks.segment, kind="stable")
     z, segment = z[order], blocks.segment[order]
+    if not len(segment):
+        size = blocks.x.shape[1]
+        return Grams(np.zeros((0, size, size)), np.zeros((0, size)), np.zeros(0), np.zeros(0), np.zeros(0, int))
     _, starts = np.unique(segment, return_index=True)
     ends = np.append(starts[1:], len(segment))
     full = np.stack([z[a:b].T @ z[a:b] for a, b in zip(starts, ends, strict=True)])

@@ -1,6 +1,6 @@
 """A run's columns on one uniform grid of time: holes marked, channels smoothed without delay, spikes found."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -9,9 +9,12 @@ from scipy.signal import savgol_filter
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 
-MIN_SAMPLES = 100
+MIN_SAMPLES = 10  # below it not even a speed can be smoothed
+LONG_RECORD, FASTEST_PERIOD = 60_000, 0.01  # samples; s
 HOLE = 5.0  # sampling periods without a sample
-SMOOTHING_SAMPLES = 15  # 0.3 s at 50 Hz: short against a wave, long against an encoder's step
+SMOOTHING_TIME = 0.3  # s: short against a wave, long against an encoder's step
+FEWEST_SMOOTHED = 5  # samples: a parabola through fewer smooths nothing
+USUAL_PERIOD = 0.02  # s, at which the widening for noise was found
 MAX_WIDENING = 3.0
 FINE_NOISE = 2e-3  # share of the largest speed that the shortest window copes with
 SPIKE, SPIKE_WINDOW, MOST_SPIKES = 12.0, 2.0, 0.01  # robust deviations, s, share of the moving samples
@@ -66,18 +69,38 @@ def noise_level(values: FloatArray) -> float:
     return float(1.4826 * np.median(np.abs(third - np.median(third))) / np.sqrt(20.0))
 
 
-def smooth(values: FloatArray, window: int = SMOOTHING_SAMPLES, order: int = 2) -> FloatArray:
+def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:
     """Savitzky-Golay over a uniform grid; records shorter than the window get a shorter one."""
     window = min(window, len(values) - (1 - len(values) % 2))
     return savgol_filter(values, window | 1, min(order, (window | 1) - 1))
 
 
-def speed_window(speed: FloatArray) -> int:
+def thinned(run: Run) -> Run:
+    """A long and very fast record as means over hundredths of a second: friction knows nothing faster."""
+    count = len(run)
+    steps = np.diff(run.time)
+    if count < LONG_RECORD or not np.isfinite(steps).all() or steps.min() <= 0.0:
+        return run
+    factor = int(FASTEST_PERIOD / float(np.median(steps)) + 1e-6)
+    if factor < 2:
+        return run
+    whole = count // factor * factor
+    columns = {name: values[:whole].reshape(-1, factor).mean(axis=1) for name, values in run.columns.items()}
+    return replace(run, columns=columns, aside={})
+
+
+def samples_of(seconds: float, dt: float, fewest: int = FEWEST_SMOOTHED) -> int:
+    """An odd number of samples that lasts about so long."""
+    return max(int(seconds / dt + 1e-6), fewest) | 1
+
+
+def speed_window(speed: FloatArray, dt: float) -> int:
     """Window for a speed record in samples: longer where the encoder is coarse."""
     scale = float(np.percentile(np.abs(speed), 99)) or 1.0
-    relative = max(noise_level(speed), float(np.std(np.diff(speed, 2))) * 0.1) / scale
+    noise = max(noise_level(speed), float(np.std(np.diff(speed, 2))) * 0.1 if len(speed) > 3 else 0.0)
+    relative = noise / scale * np.sqrt(dt / USUAL_PERIOD)  # the more samples a window holds, the more it averages out
     widening = min(max((relative / FINE_NOISE) ** (2.0 / 3.0), 1.0), MAX_WIDENING)
-    return int(SMOOTHING_SAMPLES * widening) | 1
+    return samples_of(SMOOTHING_TIME * widening, dt)
 
 
 def dilated(mask: np.ndarray, samples: int) -> np.ndarray:

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth, speed_window
+from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, samples_of, smooth, speed_window
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 
 CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
-GUARD_SAMPLES = 4  # kept away from a reversal on both sides, beyond half a smoothing window
+GUARD_TIME = 0.08  # s kept away from a reversal on both sides, beyond half a smoothing window
+TOUCH_TIME = 0.1  # s: a touch of zero that short hides in the smoothed speed
 FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
 
 
@@ -37,7 +38,7 @@ class Motion:
 def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
     """The moving samples, or with `turning` those just after reversals; `InputError` without a speed column."""
     raw = _motor_speed(grid, crane, name)
-    window = speed_window(raw)
+    window = speed_window(raw, grid.dt)
     speed = smooth(raw, window)
     angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
     guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw) / np.sqrt(window / 3.0))
@@ -47,8 +48,8 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
         direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
         state_speed = np.where(direction != 0.0, speed, 0.0)
         # a short touch of zero hides in the smoothed speed
-        still = (np.abs(speed) <= guard) | (np.abs(smooth(raw, 5, 1)) <= guard)
-        used = ~dilated(still, window // 2 + GUARD_SAMPLES)
+        still = (np.abs(speed) <= guard) | (np.abs(smooth(raw, samples_of(TOUCH_TIME, grid.dt, 3), 1)) <= guard)
+        used = ~dilated(still, window // 2 + max(round(GUARD_TIME / grid.dt), 1))
     # the acceleration is that of the smoothed speed: the same kernel as the pressures'
     return Motion(window, speed, np.gradient(speed, grid.dt), angle, direction, state_speed, used)
 

@@ -1,0 +1,126 @@
+"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray, Run
+
+DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that a search needs: its value in these runs, and how much is needed."""
+
+    what: str
+    value: float
+    needed: float
+    unit: str
+    met: bool
+
+    @property
+    def sentence(self) -> str:
+        """What is lacking, in words."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.what}: {self.value:.3g}{unit}, needed {self.needed:g}{unit}"
+
+
+def _at_least(what: str, value: float, needed: float, unit: str = "1") -> Check:
+    return Check(what, float(value), needed, unit, bool(value >= needed))
+
+
+def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
+    """The records that can be looked at, and what is said of those that cannot: too short, or too sparse to tell a
+    speed from its change. A record of less than a second is no record and raises `InputError`.
+    """
+    kept, notes = [], []
+    for run in runs:
+        time = run.time[np.isfinite(run.time)]
+        lasts = float(time[-1] - time[0]) if len(time) > 1 else 0.0
+        if lasts < LIMITS.no_record:
+            raise InputError(f"{run.name}: lasts {lasts:.2g} s; that is no record of a winch at work")
+        rate = (len(time) - 1) / lasts
+        if lasts < LIMITS.shortest_record:
+            notes.append(f"{run.name} left out: it lasts {lasts:.3g} s, needed {LIMITS.shortest_record:g} s")
+        elif rate < LIMITS.lowest_rate:
+            notes.append(f"{run.name} left out: logged at {rate:.3g} Hz, needed {LIMITS.lowest_rate:g} Hz")
+        else:
+            kept.append(run)
+    return kept, notes
+
+
+def of_records(runs: Sequence[Run], kept: Sequence[Run]) -> list[Check]:
+    """What can be said before the balance is closed."""
+    lengths = [float(run.time[-1] - run.time[0]) for run in runs]
+    rates = [(len(run) - 1) / length for run, length in zip(runs, lengths, strict=True)]
+    usable = sum(float(run.time[-1] - run.time[0]) for run in kept)
+    return [
+        _at_least("longest record", max(lengths), LIMITS.shortest_record, "s"),
+        _at_least("fastest log", max(rates), LIMITS.lowest_rate, "Hz"),
+        _at_least("records that can be used", usable, LIMITS.least_usable, "s"),
+    ]
+
+
+def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> list[Check]:
+    """What the runs hold once the moving samples are known; numbers without a need are said for the reader."""
+    own = [run for run in given.prepared if run.name in train]
+    locked = [run for run in given.prepared if run.name in holdout]
+    speed = _joined(own, lambda run: np.abs(run.speed))
+    spread = float(np.percentile(speed, 90) / max(np.percentile(speed, 10), 1e-9)) if len(speed) else 0.0
+    total = sum(float(run.time[-1]) for run in own)
+    moving = _seconds(own)
+    return [
+        _at_least("moving time", moving, LIMITS.least_moving, "s"),
+        _at_least("hoisting", _seconds(own, 1.0), LIMITS.least_each_way, "s"),
+        _at_least("lowering", _seconds(own, -1.0), LIMITS.least_each_way, "s"),
+        _at_least("moving time of the locked runs", _seconds(locked), LIMITS.least_locked, "s"),
+        _at_least("speeds, upper over lower decile", spread, LIMITS.least_speed_spread),
+        _at_least("usable share of the samples", moving / max(total, 1e-9), LIMITS.least_share_moving),
+        _at_least("reversals", sum(_reversals(run) for run in own), 0.0),
+        _at_least("loads", _distinct([float(np.median(run.load)) for run in own]), 1.0),
+        _at_least("displacements", _distinct([_driving(run) for run in own]), 1.0),
+        _at_least("oil temperatures, span", _span(own, "oil_temperature"), 0.0, "K"),
+    ]
+
+
+def _joined(runs: Sequence[PreparedRun], values) -> FloatArray:  # type: ignore[no-untyped-def]
+    return np.concatenate([np.empty(0), *(values(run)[run.used] for run in runs)])
+
+
+def _seconds(runs: Sequence[PreparedRun], direction: float = 0.0) -> float:
+    counted = (run.used & (run.direction == direction) if direction else run.used for run in runs)
+    return float(sum(used.sum() * run.dt for used, run in zip(counted, runs, strict=True)))
+
+
+def _reversals(run: PreparedRun) -> int:
+    ways = run.direction[run.used]
+    return int(np.count_nonzero(np.diff(ways[ways != 0.0])))
+
+
+def _distinct(values: Sequence[float]) -> float:
+    """How many values differ by more than a tenth from the one before."""
+    ordered = sorted(values)
+    steps = [b > (1.0 + DISTINCT) * a + 1e-12 for a, b in zip(ordered, ordered[1:], strict=False)]
+    return float(1 + sum(steps)) if ordered else 0.0
+
+
+def _driving(run: PreparedRun) -> float:
+    own = next((group for group in run.groups if group.balances), None)
+    return float(np.median(own.displacement)) if own else 1.0
+
+
+def _span(runs: Sequence[PreparedRun], channel: str) -> float:
+    values = np.concatenate([np.empty(0), *(run.channels[channel] for run in runs if channel in run.channels)])
+    return float(np.ptp(values)) if len(values) else 0.0
+
+
+def supplying(checks: Sequence[Check]) -> str:
+    """The shipped scenario that supplies what is lacking: both directions, nine speeds, three minutes at 50 Hz."""
+    lacking = {check.what for check in checks if not check.met}
+    return "experiment_loads" if "loads" in lacking else "test_02"

@@ -69,6 +69,7 @@ EXTRAS = {
         "flask-cors>=5",
         "import-linter>=2",
         "mcap-ros2-support>=0.5",
+        "jsonschema>=4",
         "playwright>=1.49",
         "ruff==0.17.6",
         "mypy==2.4.1",

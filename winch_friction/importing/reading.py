@@ -30,7 +30,7 @@ def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
         from winch_friction.importing.workbook_log import read_workbook_log
 
         return read_workbook_log(path, settings)
-    if suffix in SIGNALS:
+    if suffix in SIGNALS or is_bag(path):
         from winch_friction.importing.signal_logs import read_signal_log
 
         return read_signal_log(path, settings)

@@ -33,7 +33,7 @@ class Signal:
 
 def read_signal_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     """A log of signals by the file's ending; raises `InputError` in one line for what cannot be read."""
-    kind = path.suffix.lower()
+    kind = "bag" if path.is_dir() else path.suffix.lower()
     try:
         signals, metadata = _READERS[kind](path)
     except InputError:
@@ -178,7 +178,16 @@ def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
     return signals, {"start": start}
 
 
+def _bag(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+    from winch_friction.importing.bag_log import bag_signals
+
+    return bag_signals(path), {}
+
+
 _READERS = {
+    "bag": _bag,
+    ".mcap": _bag,
+    ".db3": _bag,
     ".parquet": _parquet,
     ".pq": _parquet,
     ".mat": _mat,

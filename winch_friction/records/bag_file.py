@@ -124,6 +124,16 @@ def open_bag(
 
 
 @contextmanager
+def open_reader(path: Path) -> Iterator[tuple[Any, Any]]:
+    """Reader and types of any recording, whatever its topics; raises `InputError` for no bag and for an empty one."""
+    path = Path(path)
+    with _reader(path) as reader:
+        if reader.message_count == 0:
+            raise InputError(f"{path}: the bag holds no message; was the recorder started before the nodes?")
+        yield reader, _typestore()
+
+
+@contextmanager
 def _reader(path: Path) -> Iterator[Any]:
     from rosbags.rosbag2 import Reader
 

@@ -1,0 +1,47 @@
+"""A recording with topics, joints and types of somebody else becomes a run by the same map as any other log."""
+
+import numpy as np
+import pytest
+from importing.logs import example, same
+
+from winch_friction.importing.carry_out import import_log
+from winch_friction.importing.propose import propose
+
+
+def write_foreign_bag(path, run):
+    """Speeds in a JointState of several joints, pressures and load as plain Float64 in a PLC bridge's units."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    joint, plain = store.types["sensor_msgs/msg/JointState"], store.types["std_msgs/msg/Float64"]
+    header, stamp = store.types["std_msgs/msg/Header"], store.types["builtin_interfaces/msg/Time"]
+    floats = {
+        "/plc/winch/druck_A_bar": run["main.pressure_a"] * 1e-5,
+        "/plc/winch/druck_B_bar": run["main.pressure_b"] * 1e-5,
+        "/plc/winch/displacement_m3_per_rad": run["main.displacement"], "/plc/hook_load_t": run["hook_load"] * 1e-3,
+        "/plc/wire_out_m": run["wire_out"],
+    }  # fmt: skip
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        motion = writer.add_connection("/machine/joint_states", joint.__msgtype__, typestore=store)
+        topics = {name: writer.add_connection(name, plain.__msgtype__, typestore=store) for name in floats}
+        for k, time in enumerate(run.time + 1.7e9):
+            now = int(round(time * 1e9))
+            for name, values in floats.items():
+                writer.write(topics[name], now, store.serialize_cdr(plain(float(values[k])), plain.__msgtype__))
+            at = header(stamp(now // 10**9, now % 10**9), "")
+            speeds = np.array([0.3, run["motor_speed"][k]])
+            message = joint(at, ["boom", "winch_motor_7"], np.zeros(2), speeds, np.full(2, np.nan))
+            writer.write(motion, now, store.serialize_cdr(message, joint.__msgtype__))
+
+
+def test_a_foreign_recording_is_proposed_and_imported(tmp_path, crane_150t):
+    pytest.importorskip("rosbags")
+    run = example("test_08")
+    write_foreign_bag(tmp_path / "bag", run)
+    found = propose([tmp_path / "bag"], crane_150t, "crane_150t")
+    assert found.problems == ()
+    assert found.log_map.columns["motor_speed"].source == "/machine/joint_states:velocity[winch_motor_7]"
+    back = import_log(tmp_path / "bag", found.log_map, crane_150t)
+    assert len(back) == len(run)
+    assert same(back, run, ["motor_speed", "main.pressure_a", "main.pressure_b", "main.displacement", "hook_load"])

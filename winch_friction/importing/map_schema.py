@@ -1,0 +1,61 @@
+"""The JSON Schema of map files, for editors that check while one writes; the reader itself is `mapping`."""
+
+from typing import Any
+
+from winch_friction.importing.mapping import BAD_CELLS, PLACES, SCHEMA
+from winch_friction.importing.time_base import FORMS, ORDERS
+from winch_friction.importing.units import CHANNEL_UNITS
+
+_TEXT = {"type": "string"}
+_TEXTS = {"oneOf": [_TEXT, {"type": "array", "items": _TEXT}]}
+_SURE = {"type": "number", "minimum": 0, "maximum": 1}
+_ROW = {"type": "integer", "minimum": 0}
+
+
+def map_schema() -> dict[str, Any]:
+    """The schema as plain types, JSON Schema 2020-12."""
+    channels = "|".join(CHANNEL_UNITS)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "winch_friction map: how a log becomes run files",
+        "type": "object",
+        "required": ["schema", "columns"],
+        "additionalProperties": False,
+        "properties": {
+            "schema": {"const": SCHEMA},
+            "crane": _TEXT,
+            "questions": _TEXTS,
+            "log": _object({
+                **dict.fromkeys(("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace"), _TEXT),
+                **dict.fromkeys(("names_row", "unit_row", "first_row"), _ROW),
+            }),
+            "time": _object({
+                "from": _TEXTS, "form": {"enum": list(FORMS)}, "unit": _TEXT, "order": {"enum": ["", *ORDERS]},
+                "zone": _TEXT, "spread": {"type": "boolean"}, "confidence": _SURE, "because": _TEXT,
+            }),
+            "columns": {
+                "type": "object",
+                "minProperties": 1,
+                "additionalProperties": False,
+                "patternProperties": {rf"^([^.]+\.)?({channels})$": _entry()},
+            },
+            "bad_cells": {"enum": list(BAD_CELLS)},
+            "unused": _TEXTS,
+        },
+    }  # fmt: skip
+
+
+def _entry() -> dict[str, Any]:
+    return _object(
+        {
+            "from": _TEXT, "unit": _TEXT, "sign": {"enum": [1, -1]}, "factor": {"type": "number", "not": {"const": 0}},
+            "of": _TEXT, "at": {"enum": list(PLACES)}, "differentiate": {"type": "number", "minimum": 0},
+            "confidence": _SURE, "because": _TEXT,
+        },
+        ("from",),
+    )  # fmt: skip
+
+
+def _object(properties: dict[str, Any], required: tuple[str, ...] = ()) -> dict[str, Any]:
+    needed = {"required": list(required)} if required else {}
+    return {"type": "object", "additionalProperties": False, "properties": properties, **needed}

@@ -1,0 +1,120 @@
+"""What an estimator makes of data that lie: it stays around its seed, says so, and finds back."""
+
+import copy
+import itertools
+
+import numpy as np
+import pytest
+from driven_winch import rigid_samples
+
+from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.physics.friction.seed_range import seed_range
+from winch_friction.physics.signals import GroupSample
+from winch_friction.physics.units import BAR
+from winch_friction.physics.winch import sample_operating_point
+
+CONFIG = EstimatorConfig(speed_step=0.0, speed_noise=0.1, wire_length=5.0)
+DURATION = 40.0
+
+
+def samples(crane, truth, start=0.0, duration=DURATION, noise=3):
+    for sample in rigid_samples(crane, truth, amplitude=150.0, duration=duration, noise=noise, speed_noise=0.1):
+        sample.time += start
+        yield sample
+
+
+def drifting(each):
+    """A transducer that reads 1 bar more every second."""
+    for sample in each:
+        sample.groups["main"].pressure_a += 1.0 * BAR * sample.time
+        yield sample
+
+
+def stuck(each):
+    """A swash plate that stays where it is reported not to be: a quarter of the displacement is missing."""
+    for sample in each:
+        sample.groups["main"].displacement *= 1.33
+        yield sample
+
+
+def frozen_pressure(each):
+    """A gauge that has stopped, on the side that works."""
+    first = None
+    for sample in each:
+        first = first or copy.copy(sample.groups["main"])
+        sample.groups["main"] = GroupSample(
+            first.pressure_a, sample.groups["main"].pressure_b, sample.groups["main"].displacement
+        )
+        yield sample
+
+
+def twice(crane, seed):
+    return samples(crane, seed.with_values({n: 2.0 * seed.value(n) for n in seed.parameter_names if n != "C4"}))
+
+
+MISLED = {
+    "another crane": twice,
+    "drift": lambda crane, seed: drifting(samples(crane, seed)),
+    "stuck valve": lambda crane, seed: stuck(samples(crane, seed)),
+    "frozen pressure": lambda crane, seed: frozen_pressure(samples(crane, seed)),
+}
+
+
+def friction(model, crane, sample, speed):
+    x = sample_operating_point(sample, crane, drum_torque=crane.drum_torque(55e3), speed=speed)
+    return float(model.torque(x))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", MISLED)
+def test_the_published_model_stays_around_the_seed_and_the_seed_comes_back(crane, seed, how):
+    each = FrictionEstimator(crane, seed, CONFIG)
+    allowed = seed_range(seed, CONFIG.seed_range)
+    for count, sample in enumerate(MISLED[how](crane, seed)):
+        each.step(sample)
+        if count % 50 == 0:
+            for name, value in each.model().as_dict().items():
+                assert allowed[name][0] <= value <= allowed[name][1]
+    if how == "another crane":
+        assert "invalid" in {p.status for p in each.parameters()}
+        assert each.status()["seed"] == "refuted"
+    last = sample.time
+    for sample in samples(crane, seed, start=last + 0.02, duration=2.5 * DURATION, noise=5):
+        each.step(sample)
+    for speed in (40.0, 140.0, -140.0):
+        wanted = friction(seed, crane, sample, speed)
+        assert friction(each.model(), crane, sample, speed) == pytest.approx(wanted, rel=0.1)
+    each.reset()
+    assert each.model().values == seed.values
+    assert {p.status for p in each.parameters()} == {"seed"}
+
+
+@pytest.mark.parametrize("lost", ["pressure_a", "pressure_b", "displacement"])
+def test_nothing_is_learned_while_an_input_is_missing(crane, seed, lost):
+    each = FrictionEstimator(crane, seed, CONFIG)
+    whole = list(samples(crane, seed, duration=20.0))
+    for sample in whole[:500]:
+        each.step(sample)
+    before, learned_from = each.model(), each.counts["learned_from"]
+    for sample in whole[500:800]:
+        setattr(sample.groups["main"], lost, float("nan"))
+        assert each.step(sample).state == "rejected"
+    assert each.model().values == before.values
+    assert np.array_equal(each.model().covariance, before.covariance)
+    assert each.counts["learned_from"] == learned_from
+
+
+@pytest.mark.slow
+def test_the_covariance_stays_positive_definite_over_many_steps(crane, seed):
+    each = FrictionEstimator(crane, seed, CONFIG)
+    minute = list(samples(crane, seed, duration=60.0))
+    for number, sample in zip(range(30_000), itertools.cycle(minute), strict=False):
+        again = copy.copy(sample)
+        again.time = number * 0.02
+        each.step(again)
+        if number % 6000 == 0:
+            scale = np.sqrt(np.diag(each._filter.P))
+            kept = scale > 0.0
+            correlation = each._filter.P[np.ix_(kept, kept)] / np.outer(scale[kept], scale[kept])
+            assert np.linalg.eigvalsh(correlation).min() > 0.0
+    assert each.counts["accepted"] > 28_000

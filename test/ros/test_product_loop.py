@@ -78,7 +78,7 @@ def product(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Product]:
     bench = Bench(folder)
     try:
         cycles, seas = _start(bench, folder, "cycles", "main"), _start(bench, folder, "simulator", "active", "passive")
-        bench.start("compensator", autostart=False, scale=1.0, watchdog_timeout=5.0, diagnostics_period=0.2)
+        bench.start("compensator", autostart=False, scale=1.0, watchdog_timeout=60.0, diagnostics_period=0.2)
         logs = [_log(cycles, folder, k, plan) for k, plan in enumerate(CYCLES)]
         logs += [_log(seas, folder, k, plan) for k, plan in enumerate(COMPENSATIONS, len(CYCLES))]
         gap = _gap([each.bag for each in logs], folder / "gap")

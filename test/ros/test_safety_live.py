@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from winch_friction.nodes.qos import LATCHED, OUTPUT
+from winch_friction.nodes.qos import LATCHED, OUTPUT, SENSOR, fresh
 from winch_friction.online.consumer import read_mark
 from winch_friction.physics.errors import InputError
 from winch_friction.records.topics import crane_topics
@@ -149,10 +149,14 @@ def test_a_terms_file_cannot_end_the_process(bench: Bench, tmp_path: Path) -> No
 def test_quality_of_service_of_one_topic_stays_its_own(bench: Bench) -> None:
     override = "qos_overrides./winch/joint_states.subscription"
     bench.start("compensator", **{f"{override}.reliability": "reliable", f"{override}.depth": 7})
+    seen = bench.listen("/diagnostics", DiagnosticArray, 10)
     bench.announce()
     for topic in ("/winch/reference", "/winch/active/pressure_a"):
         (info,) = bench.node.get_subscriptions_info_by_topic(topic)
         assert info.qos_profile.reliability.name == "BEST_EFFORT", topic
+    bench.node.create_publisher(JointState, "winch/joint_states", fresh(SENSOR))
+    bench.spin(2.5)
+    assert "1 of 2 publishers do not match" in diagnostics(seen, "compensator: inputs")["message"]
 
 
 @pytest.mark.parametrize("after", [0.3, 1.0, 2.0])

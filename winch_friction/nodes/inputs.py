@@ -29,7 +29,7 @@ class Inputs:
     """
 
     def __init__(self, node: Any, service: Service, answer: Answer, latest: float = float("inf")) -> None:
-        self._node, self._service, self._answer, self.latest = node, service, answer, latest
+        self.node, self._service, self._answer, self.latest = node, service, answer, latest
         self._held: list[tuple[Input, Any]] = []
         self._speed: Any = None
         self.late = 0
@@ -40,12 +40,12 @@ class Inputs:
         for source in topics.inputs.values():
             if source.topic != topics.speed_topic:
                 self._held.append((source, self._subscribe(source, None, held)))
-        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self._node.guarded(self._on_speed))
+        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self.node.guarded(self._on_speed))
 
     def close(self) -> None:
         """Unsubscribe."""
         for subscription in self.subscriptions().values():
-            self._node.destroy_subscription(subscription)
+            self.node.destroy_subscription(subscription)
         self._speed, self._held = None, []
 
     def subscriptions(self) -> dict[str, Any]:
@@ -54,7 +54,7 @@ class Inputs:
         return {**speed, **{source.topic: subscription for source, subscription in self._held}}
 
     def _subscribe(self, source: Input, callback: Callable[..., None] | None, group: Any = None) -> Any:
-        return self._node.create_subscription(
+        return self.node.create_subscription(
             message_type(source.type_name),
             source.topic,
             callback or _never,
@@ -65,7 +65,7 @@ class Inputs:
 
     def poll(self) -> None:
         """Take in what waits while no speed comes, so that it is counted and does not pile up."""
-        receipt, now = self._node.ros_now(), self._node.service_now()
+        receipt, now = self.node.ros_now(), self.node.service_now()
         for source, subscription in self._held:
             for message, info in drain(subscription):
                 self._service.take(source, message, receipt, now, info["source_timestamp"])
@@ -76,7 +76,7 @@ class Inputs:
         source = topics.inputs[topics.speed_topic]
         waiting = [(message, info), *drain(self._speed)]
         self.poll()
-        receipt, now = self._node.ros_now(), self._node.service_now()
+        receipt, now = self.node.ros_now(), self.node.service_now()
         for each, sent in self._in_time(source, waiting):
             answer = self._service.take(source, each, receipt, now, sent["source_timestamp"])
             if answer is not None:

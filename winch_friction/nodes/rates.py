@@ -10,6 +10,7 @@ from winch_friction.nodes.inputs import Inputs
 from winch_friction.online.inputs import Arrivals, InputGate
 
 SELDOM = 0.5  # s
+MISMATCH = "publishers do not match its quality of service"
 
 
 class InputHealth:
@@ -34,23 +35,23 @@ class InputHealth:
         values: dict[str, Any] = {"silence": self._gate.silence(now), "late": self._inputs.late}
         problems: list[tuple[int, str]] = []
         for topic, arrivals in self._gate.arrivals.items():
-            publishers = _publishers(subscriptions.get(topic))
+            matched, publishers = self._publishers(subscriptions.get(topic))
             rate = (arrivals.messages - self._messages[topic]) / elapsed
             refused = arrivals.refused - self._refused[topic]
-            values |= {
-                f"{topic} rate": rate, f"{topic} age": now - arrivals.arrived, f"{topic} publishers": publishers,
-                f"{topic} messages": arrivals.messages, f"{topic} refused": arrivals.refused,
-                f"{topic} plausible": not refused,
+            said = {
+                "rate": rate, "age": now - arrivals.arrived, "publishers": publishers, "matched": matched,
+                "messages": arrivals.messages, "refused": arrivals.refused, "plausible": not refused,
             }  # fmt: skip
+            values |= {f"{topic} {key}": value for key, value in said.items()}
             if arrivals.reason:
                 values[f"{topic} reason"] = arrivals.reason
-            problems += self._problems(topic, arrivals, topic in needed, publishers, refused, now)
+            problems += self._problems(topic, arrivals, topic in needed, (matched, publishers), refused, now)
             self._messages[topic], self._refused[topic] = arrivals.messages, arrivals.refused
         values |= {f"{column} age": age for column, age in self._gate.ages().items()}
         self._time = now
         level = max((each for each, _ in problems), default=OK)
-        said = "; ".join(text for each, text in sorted(problems, reverse=True))
-        return Health("inputs", level, said or "inputs arrive", values)
+        summary = "; ".join(text for each, text in sorted(problems, reverse=True))
+        return Health("inputs", level, summary or "inputs arrive", values)
 
     def silent(self) -> frozenset[str]:
         """Needed inputs that were heard and are not any more."""
@@ -58,12 +59,18 @@ class InputHealth:
         return frozenset(t for t in self._needed() if now - arrivals[t].arrived > self._limit(t, True))
 
     def _problems(
-        self, topic: str, arrivals: Arrivals, needed: bool, publishers: int, refused: int, now: float
+        self, topic: str, arrivals: Arrivals, needed: bool, senders: tuple[int, int], refused: int, now: float
     ) -> list[tuple[int, str]]:
-        problems = []
+        problems, (matched, publishers) = [], senders
+        if publishers > matched:
+            problems.append(
+                (
+                    ERROR if needed else WARN,
+                    f"{topic}: {publishers - matched} of {publishers} publishers do not match its quality of service",
+                )
+            )
         if arrivals.messages == 0 and needed:
-            matched = "no publisher" if publishers == 0 else "nothing comes; does the quality of service match?"
-            problems.append((ERROR if self._gate_was_heard() else WARN, f"{topic}: never heard, {matched}"))
+            problems.append((ERROR if self._gate_was_heard() else WARN, f"{topic}: never heard, {matched} publishers"))
         elif arrivals.messages and now - arrivals.arrived > self._limit(topic, needed):
             problems.append((ERROR if needed else WARN, f"{topic}: silent for {now - arrivals.arrived:.1f} s"))
         elif refused:
@@ -80,6 +87,8 @@ class InputHealth:
         hold, channels = self._gate.hold, self._gate.topics.inputs[topic].channels
         return max(self._patience, 0.0 if needed else SELDOM, *(hold.limit(each) for each in channels))
 
-
-def _publishers(subscription: Any) -> int:
-    return 0 if subscription is None else int(subscription.get_publisher_count())
+    def _publishers(self, subscription: Any) -> tuple[int, int]:
+        """Publishers that match the subscription, and all that there are on its topic."""
+        if subscription is None:
+            return 0, 0
+        return int(subscription.get_publisher_count()), int(self._inputs.node.count_publishers(subscription.topic_name))

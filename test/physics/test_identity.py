@@ -5,8 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.identity import contradictions, refuse_other_crane, with_stated_std
+from winch_friction.physics.identity import (
+    ASSUMED_STD,
+    contradictions,
+    refuse_other_crane,
+    refuse_other_motor,
+    unstated,
+    with_stated_std,
+)
 from winch_friction.physics.units import CM3_PER_REV
 from winch_friction.physics.winch import Drive
 from winch_friction.records.crane_file import load_crane
@@ -40,6 +48,13 @@ def test_a_model_of_another_crane_is_refused(change, said, crane_150t):
     assert "\n" not in str(error.value)
 
 
+def test_motors_may_have_served_another_winch(crane_150t):
+    motors = load_model("a6vm215_crane2").only("motor")
+    refuse_other_motor(motors, replace(crane_150t, name="other", gear_ratio=90.0))
+    with pytest.raises(InputError, match="largest displacement"):
+        refuse_other_motor(motors, replace(crane_150t, max_displacement=170 * CM3_PER_REV))
+
+
 def test_all_contradictions_are_said_at_once(crane_150t):
     other = replace(crane_150t, name="x", gear_ratio=100.0, max_displacement=1e-5)
     assert len(contradictions(load_model("a6vm215_crane2"), other)) == 3
@@ -49,6 +64,10 @@ def test_a_model_that_names_no_crane_fits_any_of_its_motors(crane_150t):
     model = replace(load_model("a6vm215_crane2"), crane="")
     refuse_other_crane(model, replace(crane_150t, name="sister"))
     refuse_other_crane(load_model("emps_viscous"), load_crane("emps"))
+
+
+def test_what_the_discrepancy_workflow_assumes_is_what_is_said():
+    assert LIMITS.default_relative_std == ASSUMED_STD
 
 
 def test_a_model_without_std_says_what_is_assumed():
@@ -61,6 +80,8 @@ def test_a_model_without_std_says_what_is_assumed():
     assert "20 % of each value" in said
     assert model.name in said
     np.testing.assert_allclose(assumed.std, 0.2 * np.array(model.values))
+    assert unstated(bare) == [said]
+    assert unstated(model) == []
     zero = bare.with_values({"C3": 0.0})
     typical = {p.name: p.typical for p in zero.parameters}["C3"]
     assert with_stated_std(zero)[0].std[zero.parameter_names.index("C3")] == pytest.approx(0.02 * typical)

@@ -85,7 +85,7 @@ def run_gap(
     from winch_friction.discrepancy.options import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.physics.identity import refuse_other_crane, unstated
     from winch_friction.records.atomic import write_text
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
@@ -100,6 +100,7 @@ def run_gap(
     seed_model = load_model(model)
     loaded_crane = crane_of(crane, seed_model, paths)
     refuse_other_crane(seed_model, loaded_crane)
+    show_warnings(unstated(seed_model))
     mapping = bag_options_of(params_file)
     read = [read_run(path, loaded_crane, **mapping) for path in progress(paths, "reading runs")]
     for run in read:

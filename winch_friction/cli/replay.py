@@ -44,7 +44,7 @@ def command(
     """
     from winch_friction.cli.inputs import crane_of, refuse_implausible
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.physics.identity import ASSUMED_STD, refuse_other_crane, unstated
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model
     from winch_friction.replay.recording import replay_recording
@@ -58,6 +58,7 @@ def command(
     seed = load_model(model)
     winch = crane_of(crane, seed, [recording])
     refuse_other_crane(seed, winch)
+    show_warnings(unstated(seed, settings.estimator.default_std if settings else ASSUMED_STD))
     run = _run_of(recording, winch, options)
     forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}
     settings = _settings_for(recording, run, settings)

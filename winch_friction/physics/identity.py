@@ -24,6 +24,12 @@ def refuse_other_crane(model: FrictionModel, crane: Crane) -> None:
         )
 
 
+def refuse_other_motor(motor: FrictionModel, crane: Crane) -> None:
+    """`refuse_other_crane` for the motors alone, which may have served another winch: what counts is their size."""
+    own = {name: value for name, value in motor.constants.items() if name == "max_displacement"}
+    refuse_other_crane(replace(motor, crane="", constants=own), crane)
+
+
 def contradictions(model: FrictionModel, crane: Crane) -> list[str]:
     """What speaks against a model being of this crane, in words; empty where nothing does."""
     found = []
@@ -55,3 +61,9 @@ def with_stated_std(model: FrictionModel, share: float = ASSUMED_STD) -> tuple[F
         "give every parameter its 'std' to say otherwise"
     )
     return replace(model, covariance=np.diag((share * np.array(size)) ** 2)), said
+
+
+def unstated(model: FrictionModel, share: float = ASSUMED_STD) -> list[str]:
+    """What has to be assumed of a model, in words, one entry per assumption; for the verbs to say."""
+    said = with_stated_std(model, share)[1]
+    return [said] if said else []

@@ -112,7 +112,7 @@ def make_dataset(
     # a stream of its own, so that the same seed without the effect is the same crane in the same sea
     own = np.random.default_rng([seed, 7, 7])
     hidden = Hidden(**strengths(list(effects), own, truth, world))
-    hangs = own.permutation(12) < round(12 * hidden.brake_every)
+    hangs = own.permutation(12) < round(12 * min(hidden.brake_every, hidden.delay_every))
     return [
         _run(plan, style, world, truth, hidden, length, float(hangs[k]), rng)
         for k, plan in enumerate(_plans(style, rng))
@@ -206,7 +206,8 @@ def _log(
     _, angle, p_a, p_b, gas, gas_law = out
     reference, tip, celsius = wanted
     index, stamp = instruments.sampling(out.shape[1], 1.0 / style.rate, style.jitter, rng)
-    late, early = (hidden.delay, 0.0) if style.pressure_is_late else (0.0, hidden.delay)
+    delay = hidden.delay if hidden.delay_every == 1.0 else hidden.delay * plant.brake_hangs
+    late, early = (delay, 0.0) if style.pressure_is_late else (0.0, delay)
     at = np.clip(np.round(index - late / STEP).astype(int), 0, None)
     group = "active" if plan.ahc else "main"
     offset = hidden.pressure_offset + hidden.pressure_warm * (celsius[index] - 40.0) / 15.0

@@ -46,6 +46,7 @@ class Hidden(NamedTuple):
     motor_fade: float = 0.0  # rad/s of an exponential decay with speed, 0: none
     winch_amount: float = 0.0  # N m at the shaft under the largest load
     winch_load: float = 0.0  # exponent of the load
+    winch_load0: float = 0.0  # share of the largest load from which on it counts
     winch_w: float = 0.0  # exponent of speed over 2000 rpm
     winch_fade: float = 0.0  # rad/s of an exponential decay with speed, 0: none
     winch_side: float = 0.0  # 0: both directions, 1: hoisting alone, -1: lowering alone
@@ -86,6 +87,7 @@ class Hidden(NamedTuple):
     pressure_scale_passive: float = 0.0  # relative, port A of the passive motors
     pressure_curve: float = 0.0  # relative at 200 bar, growing with pressure, port A of the driving motors
     delay: float = 0.0  # s, of the speed signal
+    delay_every: float = 1.0  # share of the runs that it is in
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative

@@ -104,18 +104,19 @@ OTHER: dict[str, tuple[Law, ...]] = {
     "gear_asymmetry": (
         Law("hoisting_alone", _winch(45.0, load=1.0, side=1.0)),
         Law("lowering_alone", _winch(45.0, load=1.0, side=-1.0)),
-        Law("bends_the_frame", _winch(55.0, load=2.2, signed=1.0), held_out=True),
+        Law("bends_the_frame", _winch(110.0, load=1.0, load0=0.45, signed=1.0), held_out=True),
     ),
     "gear_load_loss": (
         Law("mixed_film", _winch(150.0, load=1.0, fade=110.0)),
-        Law("mesh_bends", _winch(90.0, load=1.8), held_out=True),
+        Law("mesh_bends", _winch(160.0, load=1.0, load0=0.4), held_out=True),
     ),
     "layer_radius": (
         Law("one_layer", lambda s, rng, f: {"radius_step": -0.04 * s}),
         Law("rope_sinks_in", _set(radius_load=0.03), held_out=True),
     ),
     "sheave_bending": (
-        Law("stiff_rope", _winch(70.0, load=0.0)), Law("hertz", _winch(70.0, load=0.4), held_out=True),
+        Law("stiff_rope", _winch(70.0, load=0.0)),
+        Law("leaves_its_groove", _winch(150.0, load=1.0, load0=0.5), held_out=True),
     ),
     "wear_drift": (
         Law("saturating", _drift(1.0)), Law("logarithmic", _drift(2.0)), Law("run_in", _drift(0.0, -0.25)),
@@ -124,7 +125,7 @@ OTHER: dict[str, tuple[Law, ...]] = {
     "low_displacement_loss": (
         Law("quadratic", _motor(40.0, p=1.0, rest=2.0)),
         Law("reads_displacement_alone", _motor(14.0, rest=1.0)),
-        Law("root_of_pressure", _motor(18.0, p=0.5, rest=1.6), held_out=True),
+        Law("above_a_pressure", _motor(40.0, p=1.0, p0=110 * BAR, rest=1.0), held_out=True),
     ),
     "port_turbulence": (
         Law("orifice", _motor(18.0, w=2.0, x=3.0)), Law("one_port", _motor(16.0, w=2.0, x=2.0)),
@@ -139,14 +140,15 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("foams", _motor(8.0, w=1.5, w0=70.0), held_out=True),
     ),
     "high_pressure_mixed": (
-        Law("cubic", _motor(3.6, p=3.0)), Law("beyond_a_pressure", _motor(9.0, p=1.0, p0=90 * BAR), held_out=True),
+        Law("cubic", _motor(3.6, p=3.0)), Law("film_builds_up", _motor(14.0, p=2.0, fade=60.0), held_out=True),
     ),
     "slip_leakage": (
         Law("cold_and_warm", _leak(1.0, 0.0)), Law("gap_opens", _leak(2.0, 1.0)),
         Law("orifice", _leak(0.5, 0.0), held_out=True),
     ),
     "line_pressure_drop": (
-        Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)), Law("filter", _line(1.2, 1.0), held_out=True),
+        Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)),
+        Law("cracking_valve", _line(0.15, 1.0), held_out=True),
     ),
     "case_pressure": (
         Law("port_b", _set(case_b=40 * BAR * MAX_DISPLACEMENT / (150 * BAR))),
@@ -168,7 +170,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("grows_with_pressure", _set(pressure_curve=0.008), held_out=True),
     ),
     "signal_delay": (
-        Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06), held_out=True),
+        Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06)),
+        Law("some_runs", lambda s, rng, f: {"delay": 0.08 * s, "delay_every": 0.5}, held_out=True),
     ),
     "swivel_offset": (
         Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV), held_out=True),

@@ -72,7 +72,7 @@ def extra_loss(h, w, speed, share):
     """A loss of the whole winch that depends on load (as a share of the largest), speed and direction, N m."""
     if h.winch_amount == 0.0 or h.winch_side * speed < 0.0:
         return 0.0
-    loss = h.winch_amount * _beyond(share, 0.0, 1.0, h.winch_load) * _beyond(w, 0.0, FULL_SPEED, h.winch_w)
+    loss = h.winch_amount * _beyond(share, h.winch_load0, 1.0, h.winch_load) * _beyond(w, 0.0, FULL_SPEED, h.winch_w)
     return loss * exp(-w / h.winch_fade) if h.winch_fade > 0.0 else loss
 
 

@@ -21,7 +21,7 @@ from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.friction.table import Table, tabulated
 
 TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
-STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0, 64.0)  # rad/s, octaves from 40 to 600 rpm
+STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 POWERS = (0.5, 1.5, 2.0, 3.0)

@@ -62,7 +62,13 @@ def literature() -> list[Candidate]:
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:
     member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
+    if cause == "viscosity_temperature":  # the term is a difference and has no sign, but thick oil never drags less
+        member = replace(member, shapes=partial(_positive, member.shapes))
     return replace(member, name=cause)
+
+
+def _positive(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
+    return [replace(shape, bounds=(0.0, FAR)) for shape in shapes(runs)]
 
 
 def _lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:

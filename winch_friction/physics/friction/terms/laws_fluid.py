@@ -15,7 +15,7 @@ _REFERENCE = "oil temperature at which the model's viscous terms hold"
 
 
 def _amount(name: str) -> Parameter:
-    return Parameter(name, "N*m*s/rad", 0.02, upper=1.0, doc=_VISCOUS)
+    return Parameter(name, "N*m*s/rad", 0.02, lower=-1.0, upper=1.0, doc=_VISCOUS)
 
 
 def _reference(name: str) -> Parameter:

@@ -203,24 +203,25 @@ class FeedforwardCompensator:
         )  # fmt: skip
         groups = len(sample.groups)
         torque = self.config.scale * self._law.torque(x, groups)
-        envelope = self.config.envelope * self._seed_law.magnitude(x, groups)
+        magnitude = self._seed_law.magnitude(x, groups)
+        envelope = self.config.envelope * magnitude
         if not (math.isfinite(torque) and math.isfinite(envelope)):
             self._lost = ("finite model",)
             return False
         bounded = self.output.limits.bound(torque, envelope)
         size = abs(bounded) / max(abs(x[0]), UNSURE)
         self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, _reversal(ahead))
-        self._steepest(x, groups)
+        self._steepest(x, groups, magnitude)
         self._pressure_per_torque = pressure_per_torque(sample, self.crane, self.config)
         self._law.advance(x, groups, dt)
         self._load.learn(sample, torque / self.config.scale if self.config.scale else 0.0, ahead.acceleration, dt)
         return True
 
-    def _steepest(self, x: tuple[float, ...], groups: int) -> None:
+    def _steepest(self, x: tuple[float, ...], groups: int, magnitude: float) -> None:
         """Slew no faster than a reversal at this load needs: the sign is spread over `reversal_time`, so the bound of
         the friction near standstill changes by itself over that time, and no friction changes faster."""
         slow = (x[0], self.config.reversal_speed, self.config.reversal_speed, *x[3:])
-        size = max(self._seed_law.magnitude(slow, groups), self._seed_law.magnitude(x, groups))
+        size = max(self._seed_law.magnitude(slow, groups), magnitude)
         if self.config.reversal_time > 0.0 and math.isfinite(size):
             self.output.restrict(max(self.config.envelope, 1.0) * size / self.config.reversal_time)
 

@@ -1,6 +1,7 @@
 """One model as the compensator uses it: its torque term by term, with gains, and its memory."""
 
 from collections.abc import Mapping, Sequence
+from operator import mul
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, registered_terms
@@ -17,17 +18,20 @@ class FrictionLaw:
     def __init__(self, model: FrictionModel, gains: Mapping[str, float]) -> None:
         self.model = model
         self.gains = tuple(gains.get(t.name, 0.0 if t.place == NOT_FELT else 1.0) for t in model.terms)
+        self._all_used = min(self.gains, default=0.0) > 0.0
         self.reads = frozenset(name for term in model.terms for name in term.reads)
         self._compiled: dict[int, CompiledTerms] = {}
         self._states: tuple[float, ...] | None = None
 
     def torque(self, x: Sequence[float], groups: int) -> float:
         """Sum of gain times contribution, N m at the motor shaft; overflow comes out as NaN."""
-        return sum(gain * part for gain, part in zip(self.gains, self._parts(x, groups), strict=True))
+        return sum(map(mul, self.gains, self._parts(x, groups)))
 
     def magnitude(self, x: Sequence[float], groups: int) -> float:
         """Sum of the terms' magnitudes at direction 1, N m: the largest torque that the signs could make of them."""
         parts = self._parts((1.0, *x[1:]), groups)
+        if self._all_used:
+            return sum(map(abs, parts))
         return sum(abs(part) for gain, part in zip(self.gains, parts, strict=True) if gain > 0.0)
 
     def advance(self, x: Sequence[float], groups: int, dt: float) -> None:

@@ -81,7 +81,7 @@ class ChannelRanges:
 
     def plausible(self, channel: str, value: float) -> bool:
         """Whether this crane's channel can show this value; False for NaN."""
-        lower, upper = self._ranges.get(channel.rpartition(".")[2], (-1.0e300, 1.0e300))
+        lower, upper = self._ranges.get(channel) or self.range(channel)
         return lower <= value <= upper
 
     def change(self, channel: str) -> Change | None:

@@ -29,6 +29,14 @@ def test_the_start_page_can_be_typed(tmp_path, monkeypatch, capsys):
     assert "feedforward active" in capsys.readouterr().out
 
 
+def test_the_python_in_the_readme_runs(capsys):
+    blocks = fenced(ROOT / "README.md", "python")
+    assert blocks
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), {})
+    assert "feedforward active" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
 def test_every_verb_and_option_that_a_page_names_exists(page):
     known = {verb.name: verb for verb in VERBS}

@@ -152,6 +152,8 @@ class Gap:
 
         gap = self.content()["gap"]
         locked, unit = gap["holdout"], gap["unit"]
+        if locked["before"] is None:
+            return verdict_sentence(self.result)
         return (
             f"{verdict_sentence(self.result)} Gap on locked runs: {locked['before']:.3g} {unit} before, "
             f"{locked['after']:.3g} after; noise {locked['noise_floor']:.3g} {unit}."

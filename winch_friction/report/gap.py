@@ -8,7 +8,7 @@ from typing import Any
 
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.physics.effects import effect_text
-from winch_friction.physics.friction import registered_terms
+from winch_friction.physics.friction import Term, registered_terms
 from winch_friction.physics.units import RPM
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
@@ -33,9 +33,11 @@ def gap_sections(result: GapResult, provenance: Mapping[str, Any] | None = None)
     decision = decision_html(verdict_sentence(result), facts(result), _physics(result) + _steps(result))
     sections = [
         TextSection("Decision", decision),
-        TextSection("What is missing", "".join(_effect(effect) for effect in result.effects)),
+        TextSection("What is missing", "".join(_effect(effect) for effect in result.effects) + _proposals(result)),
+        TextSection("Whether these runs can answer", _adequacy(result)),
+        TextSection("What the data say of the seed", _seed(result)),
         TextSection("Proof on locked runs", _proof(result)),
-        TextSection("Where the gap is", plot_html(heat_plot(result)) + _regions(result)),
+        TextSection("Where the gap is", _where(result)),
         TextSection("The runs that were learned from", _runs(result, result.train)),
         TextSection("What else was considered", _considered(result)),
         TextSection("Provenance", _notes(result) + provenance_html(known)),
@@ -65,7 +67,16 @@ def _effect(effect: Effect) -> str:
         for name, e in effect.parameters.items()
     ]
     told = any(effect.variant.startswith(f"{name} =") for name in effect.parameters)
-    term = registered_terms().get(effect.name)
+    term = _declared(effect)
+    combined = effect.combination
+    combination = (
+        paragraph(
+            f"What these runs determine, where its members are tied: {combined.expression} = {combined.value:.4g} ± "
+            f"{combined.std:.2g} {for_people(combined.unit)} ({combined.because})."
+        )
+        if combined
+        else ""
+    )
     size = paragraph(f"Usual size: {text.size}.", "faint") if text.size else ""
     evidence = (
         f"Evidence ({effect.where}): p = {effect.p_value:.2g}; the error on data not fitted is lower by "
@@ -77,12 +88,24 @@ def _effect(effect: Effect) -> str:
         + table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4)
         + paragraph(evidence)
         + size
+        + combination
         + (term_html(term) if term else latex_html(effect.law))
     )
 
 
+def _declared(effect: Effect) -> Term | None:
+    """The declared term whose law was found: the effect's own, or the member of its family with these parameters."""
+    names = set(effect.parameters)
+    known = registered_terms()
+    own = [known[effect.name]] if effect.name in known else []
+    fitting = [term for term in (*own, *known.values()) if names and {p.name for p in term.parameters} == names]
+    return fitting[0] if fitting else None
+
+
 def _proof(result: GapResult) -> str:
     side, unit = result.holdout, shown_unit(result)
+    if not side.blocks.y.size:
+        return ""
     rows = [
         ("model as given", side.size_before.value, _interval(side.size_before.interval)),
         ("repaired model", side.size_after.value, _interval(side.size_after.interval)),
@@ -105,10 +128,35 @@ def _runs(result: GapResult, side: Side) -> str:
     return "".join(plot_html(plot) for plot in run_plots(result, side))
 
 
+def _where(result: GapResult) -> str:
+    return plot_html(heat_plot(result)) + _regions(result) if result.train.blocks.y.size else ""
+
+
 def _regions(result: GapResult) -> str:
     rows = [(_in_rpm(r.where), 100 * r.share_of_gap, r.mean_residual) for r in result.regions]
     columns = ("where", "share of the gap [%]", f"mean gap [{shown_unit(result)}]")
     return table_html(columns, rows, "Where it is largest", 3) if rows else ""
+
+
+def _proposals(result: GapResult) -> str:
+    rows = [(p["equation"], p["holdout"]["before"], p["holdout"]["after"], p["terms_file"], p["model_file"])
+            for p in result.content()["proposals"]]  # fmt: skip
+    columns = ("equation, SI", "gap before", "gap after", "terms", "model")
+    return table_html(columns, rows, "Laws proposed for what has no name; locked runs", 3) if rows else ""
+
+
+def _adequacy(result: GapResult) -> str:
+    rows = [(c.what, c.value, c.needed, for_people(c.unit), "yes" if c.met else "no") for c in result.adequacy]
+    return table_html(("what a search needs", "these runs", "needed", "unit", "met"), rows, digits=3) if rows else ""
+
+
+def _seed(result: GapResult) -> str:
+    said = [
+        f"{', '.join(each.shifts)} leave what the seed says of them, by {each.sigma:.1f} σ together"
+        + (f"; it looks like {', '.join(each.mimics)}." if each.mimics else ".")
+        for each in result.seed_refuted
+    ]
+    return list_html(said)
 
 
 def _in_rpm(where: str) -> str:

@@ -37,6 +37,8 @@ def _lowered(title: str) -> str:
 def facts(result: "GapResult") -> list[tuple[str, str]]:
     """Size, proof and certainty, each in a few words."""
     side, unit = result.holdout, shown_unit(result)
+    if not side.blocks.y.size:
+        return [(each.what, f"{each.value:.3g}, needed {each.needed:g}") for each in result.adequacy if not each.met]
     found = [
         ("Gap on locked runs", f"{number(side.size_before.value, 3)} → {number(side.size_after.value, 3)} {unit} RMS"),
         ("Noise floor", f"{number(side.noise_floor, 3)} {unit}"),
@@ -90,6 +92,8 @@ def next_steps(result: "GapResult") -> list[str]:
     if result.effects:
         steps.append("Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the "
                      "compensator load it (service ~/load_model); it takes over without a bump.")  # fmt: skip
+    if result.verdict == "insufficient":
+        steps += [f"Bring runs with more of it: {each.sentence}." for each in result.adequacy if not each.met]
     if result.verdict == "unexplained":
         steps.append("Plot the residual below over the named signals, or declare a term of your own and pass it with "
                      "--effects.")  # fmt: skip

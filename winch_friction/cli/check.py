@@ -30,7 +30,7 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.inputs import crane_of, run_paths
+    from winch_friction.cli.inputs import crane_of, folders_of_cranes, run_paths
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
     from winch_friction.physics.friction.registry import load_file
@@ -46,7 +46,7 @@ def command(
     if seed is not None:
         refuse_other_crane(seed, winch)
     read = [read_run(path, winch) for path in progress(paths, "reading runs")]
-    near = [path.resolve().parent for path in (*paths, *((Path(crane),) if crane else ()))]
+    near = folders_of_cranes([*paths, *([Path(crane)] if crane else [])])
     result = check(read, winch, seed, known_cranes(*near))
     content = result.content()
     if out is not None:

@@ -68,6 +68,11 @@ def _crane_of_runs(paths: Sequence[Path]) -> tuple[str, str]:
     return "", ""
 
 
+def folders_of_cranes(near: Sequence[Path]) -> list[Path]:
+    """Where the user's other cranes may lie: here, and beside these files."""
+    return list(dict.fromkeys([Path.cwd(), *(Path(each).resolve().parent for each in near)]))
+
+
 def refuse_implausible(
     runs: Sequence[Any], crane: Any, model: Any = None, force: bool = False, near: Sequence[Path] = ()
 ) -> dict[str, Any]:
@@ -79,7 +84,7 @@ def refuse_implausible(
     from winch_friction.commissioning.check import known_cranes, quick_check, refuse
     from winch_friction.commissioning.finding import first_contradiction
 
-    findings = quick_check(runs, crane, model, known_cranes(*(Path(each).resolve().parent for each in near)))
+    findings = quick_check(runs, crane, model, known_cranes(*folders_of_cranes(near)))
     show_warnings(f"{each.sentence}" for each in findings if each.severity == "warning")
     contradiction = first_contradiction(findings)
     if contradiction is None:

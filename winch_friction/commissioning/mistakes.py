@@ -44,6 +44,9 @@ DISPLACEMENT_UNITS = (
 )  # fmt: skip
 
 
+LARGEST_TARE = 0.05  # of the mass that all motors hold at 300 bar: hook, block and wire weigh no more
+
+
 @dataclass(frozen=True)
 class Mistake:
     """A mistake: `cause` and `channel` as in `Finding`, `words` that complete 'most likely ...', `undo` puts it right.
@@ -278,7 +281,10 @@ def free_mistakes(views: Sequence[RunView], scale_of: Mapping[str, float], tare:
     `tare` kg missing in the load."""
     load = scale_of.get("load", float("nan"))
     if np.isfinite(load) and load > 0.0:
-        words = f"the gear ratio of the crane file is wrong: {views[0].gear_ratio / load:.4g} would close"
+        ratio = views[0].gear_ratio / load
+        words = (
+            f"the gear ratio of the crane file is wrong ({ratio:.4g} would close), or these are another crane's runs"
+        )
         yield Mistake("gear", "gear_ratio", words, SCALE - 2.0, _geared(1.0 / load), 1.0 / load)
         words = f"displacement is wrong by a factor (or per group, not per motor): times {1.0 / load:.3g} would close"
         yield Mistake("scale", "displacement", words, SCALE - 2.0, displacement_times(1.0 / load), 1.0 / load)
@@ -288,7 +294,8 @@ def free_mistakes(views: Sequence[RunView], scale_of: Mapping[str, float], tare:
         if name != "load" and np.isfinite(factor) and factor > 0.0:
             words = f"{name}.displacement (or its pressures) is wrong by a factor: times {factor:.3g} would close"
             yield Mistake("scale", f"{name}.displacement", words, SCALE + 1.0, displacement_times(factor, name), factor)
-    if tare > 0.0:
+    holds = min(view.rated_torque / (GRAVITY * float(np.median(view.lever))) for view in views) if views else 0.0
+    if 0.0 < tare < LARGEST_TARE * holds:
         words = f"hook_load lacks a tare (hook, block or wire) of {tare / 1e3:.3g} t"
         yield Mistake("tare", "hook_load", words, TARE + 2.0, lambda v: replace(v, load=v.load + tare), tare)
 

@@ -6,6 +6,7 @@ Every log must come back as the run it was made from, or be answered with the ca
 import argparse
 import contextlib
 import io
+import re
 import tempfile
 import time
 from dataclasses import dataclass
@@ -15,11 +16,18 @@ import numpy as np
 
 from campaign.import_variants import Variant, draw, write
 from winch_friction.cli.main import run as command
+from winch_friction.importing.carry_out import import_log
+from winch_friction.importing.mapping import load_map
 from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
 from winch_friction.records.runs import read_run
 
 EXAMPLES = Path(__file__).parents[1] / "config" / "examples" / "practice_150t"
-BASES = ("test_02", "test_03", "test_08", "test_09", "ahc_160", "ahc_215")
+REAL = {
+    "real/winch_100kw/cycle_13": "winch_100kw", "real/winch_100kw/cycle_37": "winch_100kw",
+    "real/worm_drive/60": "worm_drive", "real/worm_drive/n120": "worm_drive",
+}  # fmt: skip
+BASES = ("test_02", "test_03", "test_08", "test_09", "ahc_160", "ahc_215", *REAL)
 SLOWEST = 5.0  # s for an answer
 _ROUNDING = 5e-3  # of a channel's largest value: the digits that a log keeps
 
@@ -53,9 +61,9 @@ class Outcome:
 
 def trial(variant: Variant, folder: Path, seed: int) -> Outcome:
     """Write a variant's log, propose, import, compare."""
-    base = read_run(EXAMPLES / f"{variant.base}.parquet")
+    base = base_run(variant.base)
     log = write(variant, base, folder, seed)
-    crane = "crane_150t"
+    crane = REAL.get(variant.base, "crane_150t")
     if variant.mistake.name == "wrong crane":
         small = folder / "crane_50t.yaml"
         small.write_text(_SMALL_CRANE, encoding="utf-8")
@@ -68,22 +76,32 @@ def trial(variant: Variant, folder: Path, seed: int) -> Outcome:
     if second[0] == 1 or "Traceback" in first[2] + second[2]:
         return Outcome(variant, "crashed", slowest, said)
     if second[0] == 0:
-        written = read_run(next(out.glob("*.csv")))
+        written = read_run(next(out.glob("*.csv")), load_crane(crane))
         kind = "imported" if _same(written, base, variant) and not variant.mistake.said else "wrong"
         return Outcome(variant, kind, slowest, said)
     lead = said.partition("needs an answer:")[2] or said
     first_cause = lead.partition(" | ")[0]
-    named = any(word in first_cause for word in variant.mistake.said)
+    said_so = (*variant.mistake.said, *(("no unit",) if variant.units == "none" else ()))
+    named = any(word in first_cause for word in said_so)
     return Outcome(variant, "answered" if named else "missed", slowest, said)
 
 
+def base_run(name: str) -> Run:
+    """The run that a log is made from: simulated, or a real one by its shipped map."""
+    if name not in REAL:
+        return read_run(EXAMPLES / f"{name}.parquet")
+    _, folder, log = name.split("/")
+    place = EXAMPLES.parent / folder
+    return import_log(place / f"{log}.csv", load_map(place / "map.yaml"), load_crane(REAL[name]))
+
+
 def _timed(*arguments: str) -> tuple[int, float, str]:
-    began = time.perf_counter()
+    began = time.process_time()
     errors = io.StringIO()
     with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(io.StringIO()):
         status = command(arguments)
     lines = [line for line in errors.getvalue().splitlines() if not line.startswith("warning:")]
-    return status, time.perf_counter() - began, "\n".join(lines)
+    return status, time.process_time() - began, "\n".join(lines)
 
 
 def _same(written: Run, base: Run, variant: Variant) -> bool:
@@ -111,7 +129,7 @@ def table(outcomes: list[Outcome], seed: int) -> str:
         "# Spoilt logs through `import`", "",
         f"`make campaign-import` (seed {seed}, {len(outcomes)} logs, commit {commit()}).", "",
         "| logs | number | imported as they were | answered with the cause | data written that are not the run's "
-        "| missed | tracebacks | slowest answer |",
+        "| missed | tracebacks | slowest answer, processor time |",
         "|---|---|---|---|---|---|---|---|",
     ]  # fmt: skip
     parts = {
@@ -119,6 +137,7 @@ def table(outcomes: list[Outcome], seed: int) -> str:
         "without a mistake": [o for o in outcomes if not o.variant.mistake.said],
         "with a mistake": [o for o in outcomes if o.variant.mistake.said],
         "names held out from the word list": [o for o in outcomes if o.variant.held_out],
+        "real winches and drives": [o for o in outcomes if o.variant.base in REAL],
         "no units": [o for o in outcomes if o.variant.units == "none"],
     }
     for name, part in parts.items():
@@ -136,10 +155,15 @@ def table(outcomes: list[Outcome], seed: int) -> str:
         lines += [
             "## What was not",
             "",
-            *(f"* {o.variant}: {o.kind}; said: {o.said[:300] or 'nothing'}" for o in bad),
+            *(f"* {o.variant}: {o.kind}; said: {_shown(o.said)}" for o in bad),
             "",
         ]
     return "\n".join(lines)
+
+
+def _shown(said: str) -> str:
+    """An answer without the campaign's own temporary paths."""
+    return re.sub(r"\S*/(?=[\w.]+)", "", said)[:300] or "nothing"
 
 
 def main() -> None:

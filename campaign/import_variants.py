@@ -83,7 +83,7 @@ MISTAKES = (
     Mistake("rad/s under [rpm]", _scaled("motor_speed", 0.10471975511965977), ("motor_speed",), {"motor_speed": "rpm"}),
     Mistake("displacement in mm^3", _scaled("displacement", 1e3), ("displacement",), {"displacement": "ccm"}),
     Mistake("speed counts paying out", _scaled("motor_speed", -1.0)),
-    Mistake("ports swapped", _ports, ("port",)),
+    Mistake("ports swapped", _ports, ("port", "are swapped")),
     Mistake("groups swapped", _groups, ("group", "displacement")),
     Mistake("pressures doubled", _pressures_scaled(2.0), ("balance", "pressure")),
     Mistake("one cell of 1e30", _spike),
@@ -94,6 +94,8 @@ MISTAKES = (
     Mistake("every second row", _thinned),
     Mistake("wrong crane", lambda columns: columns, ("crane",)),
 )
+# what can be told wrong of a real drive without a load cell at the hook and without pressures
+REAL_MISTAKES = tuple(each for each in MISTAKES if each.name in ("none", "every second row"))
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,8 @@ def draw(number: int, bases: Sequence[str], seed: int) -> Variant:
     rng = np.random.default_rng([seed, number])
     mistake = MISTAKES[0] if rng.random() < 0.35 else MISTAKES[int(rng.integers(1, len(MISTAKES)))]
     base = str(rng.choice([b for b in bases if mistake.name != "groups swapped" or b.startswith("ahc")]))
+    if base.startswith("real/"):
+        mistake = REAL_MISTAKES[int(rng.integers(0, len(REAL_MISTAKES)))]
     form = str(rng.choice(FORMATS))
     plain = form == "parquet"
     units = str(
@@ -132,7 +136,7 @@ def draw(number: int, bases: Sequence[str], seed: int) -> Variant:
     decimal = "." if plain else str(rng.choice([".", ","]))
     return Variant(
         number, base, str(rng.choice(["en", "de", "no"])), form, str(rng.choice(TIMES)), decimal,
-        "header" if mistake.labels else units, bool(rng.random() < 0.25), mistake,
+        "header" if mistake.labels or base.startswith("real/") else units, bool(rng.random() < 0.25), mistake,
     )  # fmt: skip
 
 

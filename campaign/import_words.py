@@ -14,6 +14,9 @@ NAMES: dict[str, dict[str, tuple[str, ...]]] = {
         "hook_load": ("Hook load", "load", "LoadCell", "crane_weight"),
         "wire_out": ("Wire out", "payout_length", "Rope length"),
         "wire_layer": ("Wire layer", "layer", "drum_layer"),
+        "rope_force": ("Rope force", "tether_tension", "line pull"),
+        "mechanical_power": ("Mechanical power", "motor_power", "pwr"),
+        "motor_torque": ("Motor torque", "torque_act", "trq"),
     },
     "de": {
         "time": ("Zeit", "Zeitstempel", "Datum"),
@@ -23,6 +26,9 @@ NAMES: dict[str, dict[str, tuple[str, ...]]] = {
         "hook_load": ("Hakenlast", "Last", "Kranlast", "Masse am Haken"),
         "wire_out": ("Seillänge", "Seil ausgelegt", "Seillaenge"),
         "wire_layer": ("Lage", "Seillage", "Wickellage"),
+        "rope_force": ("Seilkraft", "Seilzug", "Zugkraft Seil"),
+        "mechanical_power": ("Leistung", "Wellenleistung", "mech. Leistung"),
+        "motor_torque": ("Motordrehmoment", "Drehmoment", "Md_Motor"),
     },
     "no": {
         "time": ("Tid", "Tidsstempel", "Klokkeslett"),
@@ -32,6 +38,9 @@ NAMES: dict[str, dict[str, tuple[str, ...]]] = {
         "hook_load": ("Kroklast", "Last i krok", "vekt", "hengende last"),
         "wire_out": ("Wire ute", "Utlagt wire", "wirelengde"),
         "wire_layer": ("Wirelag", "Lag", "Trommellag"),
+        "rope_force": ("Wirekraft", "strekk i wire", "taukraft"),
+        "mechanical_power": ("Effekt", "mekanisk effekt", "motoreffekt"),
+        "motor_torque": ("Motormoment", "dreiemoment", "moment motor"),
     },
 }
 HELD_OUT: dict[str, tuple[str, ...]] = {
@@ -49,6 +58,9 @@ HELD_OUT: dict[str, tuple[str, ...]] = {
     "hook_load": ("Anhängelast", "payload", "krokvekt", "Tragelast", "lyftlast"),
     "wire_out": ("Trossenlänge", "wire_paid_out_m", "uttatt wire", "Leinenlänge"),
     "wire_layer": ("Windungslage", "wrap_layer", "viklingslag"),
+    "rope_force": ("Trossenzug", "tethertension_N", "linjespenning"),
+    "mechanical_power": ("Wirkleistung", "shaftpowr", "ytelse"),
+    "motor_torque": ("Wellenmoment", "momentti", "torqe"),
 }
 GROUPS = {
     "en": {"active": ("active", "Active", "act"), "passive": ("passive", "Passive", "pass"), "main": ("", "main")},
@@ -65,4 +77,7 @@ UNITS: dict[str, tuple[tuple[str, float, int], ...]] = {
     "hook_load": (("t", 1e-3, 3), ("te", 1e-3, 3), ("kg", 1.0, 0), ("tonnes", 1e-3, 3), ("kN", 9.81e-3, 2)),
     "wire_out": (("m", 1.0, 3),),
     "wire_layer": (("", 1.0, 0),),
+    "rope_force": (("kN", 1e-3, 4), ("N", 1.0, 1), ("kgf", 1 / 9.80665, 3)),
+    "mechanical_power": (("kW", 1e-3, 4), ("W", 1.0, 1)),
+    "motor_torque": (("Nm", 1.0, 7), ("mNm", 1e3, 4)),
 }  # fmt: skip

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 
 from winch_friction.commissioning.check import quick_check
-from winch_friction.importing.balance import drive_torque
+from winch_friction.importing.balance import drive_torque, power_ratio
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 
-UNEXPLAINED = "unexplained"  # the check's cause where no single mistake would do
+LOSSES = 2.0  # power over load times speed: no winch loses half of it
 
 
 def contradictions(logs: Mapping[str, Mapping[str, FloatArray]], crane: Crane) -> list[str]:
@@ -19,10 +19,19 @@ def contradictions(logs: Mapping[str, Mapping[str, FloatArray]], crane: Crane) -
 def run_contradictions(runs: Sequence[Run], crane: Crane) -> list[str]:
     """The same for runs.
 
-    What no single mistake explains counts for hydraulic winches alone: of other drives the usual friction is unknown.
+    Of a hydraulic winch the commissioning check knows what friction is usual; of another drive only that its power is
+    the load times the speed but for its losses.
     """
-    found = [each for each in quick_check(runs, crane) if each.contradicts] if runs else []
-    return [each.sentence for each in found if crane.drive.hydraulic or each.cause != UNEXPLAINED]
+    if not runs:
+        return []
+    if crane.drive.hydraulic:
+        return [each.sentence for each in quick_check(runs, crane) if each.contradicts]
+    gains = {run.name: gain for run in runs if (gain := power_ratio(run.columns, crane)) is not None}
+    return [
+        f"{name}: mechanical_power is {gain:.3g} times load times speed: a unit or a sign of one of them is another"
+        for name, gain in gains.items()
+        if not 1.0 / LOSSES < gain < LOSSES
+    ]
 
 
 def _is_complete(columns: Mapping[str, FloatArray], crane: Crane) -> bool:

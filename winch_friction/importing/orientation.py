@@ -1,13 +1,20 @@
 """Ports and signs, where names do not tell them: by what the crane's physics allows."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from winch_friction.importing.balance import closure, groups_of, opposes_motion, power_ratio, told
 from winch_friction.importing.draft import Draft
+from winch_friction.importing.guess import in_si
 from winch_friction.importing.kinematics import rope_over_motor
+from winch_friction.importing.mapping import Entry
 from winch_friction.importing.names import name_concepts
+from winch_friction.importing.units import header_readings, usual_units
 from winch_friction.physics.winch.crane import Crane
 
+_GEAR = 0.1  # relative, between the wire's speed and the gear's: an inner layer, not another unit
+_BY_MOTION = 0.6  # confidence of a speed that no name says
 _TELLING = 0.3  # power over load times speed from which its sign is told: losses are not two thirds of it
 
 
@@ -47,6 +54,23 @@ def _settle_speed(draft: Draft, crane: Crane) -> None:
     elif len(groups) <= 1:
         draft.change("motor_speed", sign=-1, because="sign turned: friction would drive the motion otherwise")
     # with several groups swapped ports would do the same: left to the contradictions, as a question
+
+
+def speed_by_motion(draft: Draft, crane: Crane) -> None:
+    """The motor's speed where no name says it: the column whose sum follows the wire, in a unit that fits the gear."""
+    used = {*draft.log_map.time_from, *(entry.source for entry in draft.log_map.columns.values())}
+    columns = draft.converted()[0].columns
+    for column in draft.logs[0].columns:
+        if column.name in used or not column.numeric or column.unit:
+            continue
+        for unit in usual_units("motor_speed"):
+            values = in_si(column, unit, "motor_speed", crane)
+            ratio = rope_over_motor({**columns, "motor_speed": values}, crane) if values is not None else None
+            if ratio is not None and abs(abs(ratio.value) - 1.0) < _GEAR and len(header_readings(column.name)) == 1:
+                because = f"no name says it, but its sum follows {ratio.by} as gear and drum have it in {unit}"
+                entry = Entry(column.name, unit, confidence=_BY_MOTION, because=because)
+                draft.log_map = replace(draft.log_map, columns={"motor_speed": entry, **draft.log_map.columns})
+                return
 
 
 def _says_out(name: str) -> bool:

@@ -12,7 +12,7 @@ from winch_friction.importing.guess import Match, matches
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
-from winch_friction.importing.orientation import settle_orientation
+from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.reading import read_log
 from winch_friction.importing.time_base import TimeGuess, guess_time, to_seconds
 from winch_friction.importing.unit_guess import settle_units
@@ -45,6 +45,8 @@ def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "", se
     _settle_time(draft)
     found = matches(pooled, crane, draft.log_map.time_from)
     _settle_columns(draft, found, pooled)
+    if crane is not None and not {"motor_speed", "drum_speed"} & set(draft.log_map.columns):
+        speed_by_motion(draft, crane)
     settle_units(draft, found, pooled)
     draft.apply(settings)
     settle_orientation(draft, _said_signs(settings))

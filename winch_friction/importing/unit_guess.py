@@ -17,6 +17,8 @@ from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, usual_units
 from winch_friction.physics.units import CM3_PER_REV
 
 _COMBINATIONS = 300  # of units tried against the torque balance
+_ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")
+_AS_WELL = 0.3  # evidence of another unit over the chosen one's from which the log does not tell them apart
 _RARER = 0.6  # prior of each next unit in the order of usual ones
 
 
@@ -25,7 +27,9 @@ def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
     axes: dict[str, list[str]] = {}
     members: dict[str, list[str]] = {}
     for name in list(draft.log_map.columns):
-        match = found.get(name) or found["rope_speed"]
+        match = found.get(name) or found.get("rope_speed")
+        if match is None:
+            continue  # found by its motion, with its unit
         if ambiguity(match.slot.channel, match.unit):
             continue
         options = _options(draft, name, match, pooled)
@@ -39,6 +43,13 @@ def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
     open_axes = {kind: options for kind, options in axes.items() if len(options) > 1}
     chosen = _by_balance(draft, open_axes, members) if open_axes else {}
     for kind, options in open_axes.items():
+        if kind in _ASKED and chosen and _undecided(draft, chosen, kind, options, members):
+            name = members[kind][0]
+            draft.questions.append(
+                f"{name}: '{draft.log_map.columns[name].source}' says no unit, and the log does not tell "
+                f"{' from '.join(options)}; set {name}.unit"
+            )
+            continue
         for name in members[kind]:
             _set_unit(draft, name, options, chosen.get(kind))
 
@@ -86,6 +97,18 @@ def _by_balance(draft: Draft, axes: Mapping[str, list[str]], members: Mapping[st
         if worth > best[0]:
             best = (worth, choice)
     return best[1]
+
+
+def _undecided(
+    draft: Draft, chosen: Mapping[str, str], kind: str, options: Sequence[str], members: Mapping[str, list[str]]
+) -> bool:
+    """Whether another unit of one channel would fit the balance and the wire's motion as well."""
+
+    def evidence(choice: Mapping[str, str]) -> float:
+        return _closing(draft, {n: unit for k, unit in choice.items() for n in members[k]})
+
+    best = evidence(chosen)
+    return any(evidence({**chosen, kind: unit}) > _AS_WELL * best for unit in options if unit != chosen[kind])
 
 
 def _closing(draft: Draft, units: Mapping[str, str]) -> float:

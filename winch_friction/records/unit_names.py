@@ -56,6 +56,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         "long_ton": ("long ton", "long tons", "long_ton", "long_tons", "imperial ton", "uk ton"),
     },
     "N": {
+        "N": ("newton",),
         "kgf": ("kp", "kgf", "kilopond", "kg", "kgs"),
         "metric_ton * gravity": ("tf", "t", "te", "tonnef", "to", "mp", "tonne", "tonnes", "tonn", "tonnen"),
         "kN": ("kn",), "decanewton": ("dan",), "meganewton": ("mn",),

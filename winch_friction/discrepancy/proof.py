@@ -59,7 +59,8 @@ def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> 
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
     """Locked runs whose gap grows significantly, beyond what matters to anybody."""
     found = []
-    least = LIMITS.worse_p / max(len(side.runs), 1)
+    # no chance smaller than that can come out of so many draws
+    least = max(LIMITS.worse_p / max(len(side.runs), 1), 2.0 / LIMITS.bootstrap_draws)
     for k, run in enumerate(side.runs):
         own = side.blocks.run == k
         before, after = side.before[own], side.after[own]

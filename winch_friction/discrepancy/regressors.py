@@ -10,13 +10,14 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
-from winch_friction.discrepancy.preparation.balance import Accounted
+from winch_friction.discrepancy.preparation.balance import SPARSE, Accounted
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import GRAVITY
 
+UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
@@ -98,7 +99,7 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
 def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
-    inertia = run.inertia * run.acceleration
+    inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSE else 1.0)
     timing = delay_columns(run, SMALL_DELAY)[:, 0] * max(run.dt, SHORTEST_PERIOD)
     return np.column_stack([weight, inertia, timing, run.corrections])
 

@@ -14,6 +14,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     single_shape,
 )
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.balance import SPARSE
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
@@ -86,6 +87,12 @@ def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
     return run.acceleration[:, None]
 
 
+def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    if max(run.dt for run in runs) <= SPARSE:
+        return None
+    return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 33 Hz or more"
+
+
 def _to_mass(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     masses = [correction("tare_load", found["m_h"])] if shape.values["hook"] else []
     return masses + ([correction("wire_weight", found["mu_w"])] if shape.values["wire"] else [])
@@ -139,6 +146,7 @@ def geometry_candidates() -> list[Candidate]:
             single_shape,
             kind="inertia",
             plain=True,
+            blind=_too_slow,
             corrects=_to_inertia,
         ),
     ]

@@ -28,6 +28,7 @@ from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
 DELAYS = (0.05, 0.1)  # s
+SLOWEST_FOR_DELAY = 0.03  # s between samples
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
@@ -148,6 +149,12 @@ def _time_constants(runs: Sequence[PreparedRun]) -> list[Shape]:
     return [Shape(f"tau = {tau:g} s", {"tau": tau}, carried=True) for tau in TIME_CONSTANTS]
 
 
+def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    if max(run.dt for run in runs) <= SLOWEST_FOR_DELAY:
+        return None
+    return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is within one sample; log at 33 Hz or more"
+
+
 def _no_passive_group(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     several = any(len(run.groups) > 1 for run in runs)
     return None if several else ("a passive motor group", "no run has one")
@@ -214,6 +221,7 @@ def signal_candidates() -> list[Candidate]:
             _delay_shapes,
             kind="signal",
             reversal_rival=True,
+            blind=_too_slow,
             corrects=_to_delay,
         ),
         # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the

@@ -24,6 +24,7 @@ from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import Crane, operating_point
 from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
+SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
 MIN_DISPLACEMENT_SHARE = 0.05
 BALANCING = ("active", "main")  # the groups that close the balance where they run
 FIXED_POINT_STEPS = 3
@@ -190,7 +191,12 @@ class Balancing:
 
     def _smoothed(self, torque: FloatArray) -> FloatArray:
         """With the acceleration's kernel: what that takes out of one side must not stay in the other."""
-        return smooth(torque, self.motion.window)
+        smoothed = smooth(torque, self.motion.window)
+        if self.grid.dt < SPARSE:
+            return smoothed
+        # the acceleration is a difference over two periods: the mean over them, which the torque must be as well
+        padded = np.pad(smoothed, 1, mode="edge")
+        return np.asarray(0.25 * padded[:-2] + 0.5 * padded[1:-1] + 0.25 * padded[2:])
 
     def _point(self, load: SuspendedLoad, groups: Groups) -> tuple[Any, ...]:
         columns, motion = self.grid.columns, self.motion

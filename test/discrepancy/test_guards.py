@@ -1,0 +1,184 @@
+"""The guards of the workflow, each on the smallest data that can break it: no winch, no simulator."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
+from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
+from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.engine.omnibus import dependences
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
+from winch_friction.discrepancy.engine.regions import find_regions
+from winch_friction.discrepancy.engine.selection import select
+from winch_friction.discrepancy.proof import at_the_floor, nothing_compared, prove, worse_runs
+from winch_friction.discrepancy.verdict import MISSING, UNEXPLAINED, decide
+
+RUNS, BLOCKS = 8, 300
+SPEED = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+WAVE = np.tile(np.sin(np.linspace(0.0, 40.0, BLOCKS)), RUNS)
+OTHER = np.tile(np.cos(np.linspace(0.0, 31.0, BLOCKS)), RUNS)
+RUN = np.repeat(np.arange(RUNS), BLOCKS)
+POSITION = np.tile(np.arange(BLOCKS), RUNS)
+SEGMENT = RUN * 10 + POSITION // 30
+SLOTS = (Slot("wave", "", (1,), most=50.0), Slot("other", "", (2,), most=50.0))
+
+
+def crossfit(y, features=None):
+    """One base parameter that explains a little of the noise, and two candidates."""
+    rng = np.random.default_rng(99)
+    x = np.column_stack([rng.standard_normal(len(y)), WAVE, OTHER])
+    features = {"speed": np.abs(SPEED), "acceleration": np.abs(OTHER)} if features is None else features
+    blocks = Blocks(y, x, RUN, SEGMENT, np.ones_like(y), features, np.sign(SPEED), POSITION)
+    one = np.ones(1)
+    base = Base(("b",), 1, one, 0.0 * one, -2.0 * one, 2.0 * one)
+    bound = np.array([2.0, 100.0, 100.0])
+    layout = Layout(base, SLOTS, np.ones(3), -bound, bound)
+    return CrossFit(Problem(layout, blocks, grams(blocks), dict.fromkeys(range(RUNS), 1.0)))
+
+
+def noise(seed=0):
+    return np.random.default_rng(seed).standard_normal(RUNS * BLOCKS)
+
+
+def answer(y, seed=1):
+    cross, rng = crossfit(y), np.random.default_rng(seed)
+    selection = select(cross, rng)
+    return selection, decide(cross, selection, dependences(cross, cross.remainder(selection.final), rng))
+
+
+# -- selection and verdict
+def test_what_is_there_is_selected_alone():
+    selection, verdict = answer(2.0 * WAVE + noise())
+    assert [each.slot.name for each in selection.found] == ["wave"]
+    assert verdict.kind == MISSING
+
+
+def test_noise_alone_selects_nothing():
+    assert not any(answer(noise(seed), seed)[0].found for seed in range(20))
+
+
+@pytest.mark.parametrize(("left", "kind"), [(0.6, MISSING), (1.9, UNEXPLAINED)])
+def test_a_name_may_leave_an_eighth_of_the_excess_but_not_half(left, kind):
+    """The remainder is one that no candidate makes: 15 % of the excess is the limit."""
+    strange = np.where(np.abs(SPEED) > 0.5, 1.0, -1.0) * left * 1.5
+    selection, verdict = answer(4.0 * WAVE + strange + noise())
+    assert "wave" in [each.slot.name for each in selection.found]
+    assert verdict.kind == kind
+
+
+# -- omnibus
+def test_the_omnibus_tells_hoisting_from_lowering():
+    """A remainder that is opposite in the two directions is nothing on average, and yet all of it depends on speed."""
+    cross = crossfit(noise())
+    left = 1.5 * SPEED + noise(3)
+    found = dependences(cross, left, np.random.default_rng(0))
+    best = max(found, key=lambda each: each.share)
+    assert best.signal == "speed"
+    assert best.share > 0.3
+    assert best.p_value < 0.01
+
+
+def test_the_omnibus_finds_nothing_in_noise():
+    cross = crossfit(noise())
+    found = [dependences(cross, noise(seed), np.random.default_rng(seed)) for seed in range(10, 25)]
+    assert np.mean([min(d.p_value for d in each) < 0.05 for each in found]) < 0.3
+
+
+# -- noise, covariance, intervals
+def test_the_noise_of_a_record_does_not_see_its_waves():
+    assert noise_of_run(3.0 * np.sin(np.arange(600) / 40.0) + noise()[:600], np.arange(600)) == pytest.approx(
+        1.0, rel=0.2
+    )
+
+
+def test_correlated_blocks_count_for_a_tenth():
+    """The covariance is thinned: one deviation is sqrt(10) times that of independent blocks."""
+    cross = crossfit(2.0 * WAVE + noise())
+    explained = cross.explain((SLOTS[0],))
+    std = np.sqrt(cross.covariance(explained)[-1, -1])
+    assert std == pytest.approx(np.sqrt(10.0 / (WAVE**2).sum()), rel=0.1)
+
+
+def test_the_interval_holds_nineteen_times_of_twenty():
+    held = []
+    for seed in range(150):
+        rng = np.random.default_rng(seed)
+        size = rms_with_interval(rng.standard_normal(1500), np.arange(1500) // 15, np.arange(1500) // 375, rng)
+        held.append(size.interval[0] <= 1.0 <= size.interval[1])
+    assert 0.88 <= np.mean(held) <= 0.995
+
+
+def test_a_gain_is_seen_in_pairs_and_not_where_there_is_none():
+    rng = np.random.default_rng(5)
+    common = rng.standard_normal(1500)
+    segment, run = np.arange(1500) // 15, np.arange(1500) // 375
+    assert chance_of_no_gain(1.1 * common, common, segment, run, rng) < 0.01
+    assert chance_of_no_gain(common, 1.1 * common, segment, run, rng) > 0.99
+
+
+# -- regions
+def test_a_region_is_where_the_gap_is():
+    cross = crossfit(noise())
+    residual = np.where((np.abs(SPEED) > 0.7) & (SPEED > 0), 3.0, 0.0) + 0.1 * noise()
+    region = find_regions(cross.problem.blocks, residual, {})[0]
+    assert "speed >" in region.where
+    assert "hoisting" in region.where
+    assert region.mean_residual > 2.0
+    assert region.share_of_gap > 0.7
+
+
+# -- proof
+class _Run:
+    def __init__(self, name):
+        self.name = name
+
+
+def side(before, after, floor=1.0):
+    """Locked runs with these gaps of the given model and of the file."""
+    rng = np.random.default_rng(0)
+    blocks = crossfit(noise()).problem.blocks
+    return replace(
+        nothing_compared(), runs=tuple(_Run(f"run {k}") for k in range(RUNS)), blocks=blocks, before=before,
+        after=after, size_before=rms_with_interval(before, SEGMENT, RUN, rng),
+        size_after=rms_with_interval(after, SEGMENT, RUN, rng), noise_floor=floor,
+    )  # fmt: skip
+
+
+def proven(before, refit, after):
+    return prove("wave", side(before, refit), side(before, after), np.random.default_rng(1))
+
+
+def test_a_name_that_shrinks_the_locked_gap_holds():
+    assert proven(2.0 * WAVE + noise(), 2.0 * WAVE + noise(), noise()).holds
+
+
+def test_a_name_that_leaves_the_locked_gap_as_it_was_is_refused():
+    proof = proven(2.0 * WAVE + noise(), 2.0 * WAVE + noise(), 1.99 * WAVE + noise())
+    assert not proof.holds
+    assert "does not fall" in proof.why
+
+
+def test_a_name_that_does_no_more_than_a_refit_is_refused():
+    """The locked gap falls, but it does so without the name as well."""
+    proof = proven(2.0 * WAVE + noise(), noise(), 1.001 * noise())
+    assert not proof.holds
+    assert "refit" in proof.why
+
+
+def test_one_run_that_gets_worse_refuses_a_name():
+    worse = np.where(RUN == 3, 1.6 * noise(), noise())
+    before = np.where(RUN == 3, noise(), 3.0 * WAVE + noise())
+    assert "run 3" in proven(before, before, worse).why
+    assert worse_runs(side(before, worse), np.random.default_rng(0)) == ("run 3",)
+
+
+@pytest.mark.parametrize(("left", "floor"), [(0.0, True), (0.3, True), (2.0, False)])
+def test_nothing_is_missing_only_at_the_floor(left, floor):
+    assert at_the_floor(side(3.0 * WAVE + noise(), left * WAVE + noise())) is floor
+
+
+def test_nothing_compared_has_no_size():
+    assert nothing_compared().size_after == Size(0.0, (0.0, 0.0))

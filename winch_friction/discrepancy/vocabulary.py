@@ -115,6 +115,8 @@ def factors(word: Word, covered: FloatArray) -> Iterator[Factor]:
     knots = list(dict.fromkeys(float(f"{q:.3g}") for q in np.quantile(covered, QUANTILES)))
     for kind in word.kinds:
         for constants in _constants(kind, word, knots, span):
+            if 0.0 in constants.values():  # a constant of no size has no scale to be fitted on
+                continue
             yield Factor(kind, word.name, tuple(constants.items()))
 
 
@@ -131,7 +133,7 @@ def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> li
         return [{"c": c} for c in LAGS]
     if kind == "wave":
         periods = [p for p in PERIODS if p < span]
-        return [{"c": p, "h": share * p} for p in periods for share in (0.0, 0.25, 0.5, 0.75)]
+        return [{"c": p, "h": share * p} for p in periods for share in (0.125, 0.375, 0.625, 0.875)]
     if kind == "sector":
-        return [{"c": k / SECTORS, "h": width} for k in range(SECTORS) for width in WIDTHS]
+        return [{"c": (k + 0.5) / SECTORS, "h": width} for k in range(SECTORS) for width in WIDTHS]
     return [{"c": c} for c in knots]

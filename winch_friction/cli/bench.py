@@ -29,11 +29,12 @@ def command(
       winch-friction bench estimator replay --json
     """
     rows: list[Any] = []
+    commit = _commit()  # now: what is measured, whatever is committed meanwhile
     for name in progress(_chosen(names or []), "measuring"):
         rows += importlib.import_module(f"bench.{name}").measure(smoke)
     if page is not None:
         command_line = " ".join(["winch-friction bench", *(names or [])])
-        importlib.import_module("bench.page").write_page(page, rows, command_line, _commit())
+        importlib.import_module("bench.page").write_page(page, rows, command_line, commit)
     if as_json:
         show_json({row.name: asdict(row) | {"goal": row.goal, "met": row.met} for row in rows})
         return

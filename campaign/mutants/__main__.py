@@ -1,0 +1,141 @@
+"""The mutation campaign (`make mutants`): how many of a list of small semantic faults the tests notice.
+
+    python -m campaign.mutants [--processes 2] [--only NAME ...] [--out docs/campaign_mutants.md]
+
+Each fault is put into a copy of the working tree, and the tests named beside it run there until the first failure. A
+fault is caught when a test fails; a time-out counts as caught. Tests that fail without any fault would catch
+everything, so all of them run once on an unchanged copy first.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from queue import Queue
+
+from campaign.commit import commit
+from campaign.mutants.fault import ROOT, Fault, all_faults
+
+LONGEST = 420.0  # s for the tests of one fault; a fault that makes them hang is noticed by that
+KEPT_OUT = shutil.ignore_patterns(".git", ".venv*", "out", "__pycache__", ".*_cache", ".hypothesis", "build", "install")
+OUT = Path("docs/campaign_mutants.md")
+BAR = 0.85
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Whether a fault was noticed, by which test, and in how many seconds."""
+
+    fault: Fault
+    caught: bool
+    by: str
+    seconds: float
+
+
+def copy_tree(into: Path) -> Path:
+    """A copy of the working tree, where faults can be put without harm."""
+    return Path(shutil.copytree(ROOT, into / "tree", ignore=KEPT_OUT, symlinks=True))
+
+
+def run_tests(tree: Path, tests: Sequence[str]) -> tuple[bool, str]:
+    """Whether these tests pass in that tree, and else the first that fails."""
+    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", "not browser", *tests]
+    try:
+        done = subprocess.run(
+            command, cwd=tree, env=environment, capture_output=True, text=True, timeout=LONGEST, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return False, "no answer in time"
+    failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return done.returncode == 0, failed[0].split(" - ")[0] if failed else (done.stdout.strip().splitlines() or [""])[-1]
+
+
+def try_fault(tree: Path, fault: Fault) -> Outcome:
+    """Put one fault in, run its tests, take it out again."""
+    path = tree / fault.file
+    source = path.read_text()
+    began = time.monotonic()
+    path.write_text(fault.changed(source))
+    try:
+        passed, by = run_tests(tree, fault.tests)
+    finally:
+        path.write_text(source)
+    return Outcome(fault, not passed, "" if passed else by, time.monotonic() - began)
+
+
+def try_all(faults: Sequence[Fault], processes: int) -> list[Outcome]:
+    """Every fault, several trees at a time; stops when tests fail without a fault."""
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+        trees: Queue[Path] = Queue()
+        for k in range(processes):
+            trees.put(copy_tree(Path(folder) / str(k)))
+        first = trees.queue[0]
+        passed, by = run_tests(first, sorted({test for fault in faults for test in fault.tests}))
+        if not passed:
+            raise SystemExit(f"without any fault a test fails: {by}")
+
+        def one(fault: Fault) -> Outcome:
+            tree = trees.get()
+            try:
+                return try_fault(tree, fault)
+            finally:
+                trees.put(tree)
+
+        with ThreadPoolExecutor(processes) as pool:
+            waiting = [pool.submit(one, fault) for fault in faults]
+            for k, done in enumerate(as_completed(waiting)):
+                outcome = done.result()
+                said = f"caught by {outcome.by}" if outcome.caught else "SURVIVED"
+                print(f"{k + 1}/{len(faults)} {outcome.fault.name}: {said} ({outcome.seconds:.0f} s)", flush=True)
+            return [each.result() for each in waiting]
+
+
+def page(outcomes: Sequence[Outcome], measured: str) -> str:
+    """The campaign's page."""
+    caught = sum(each.caught for each in outcomes)
+    rows = "\n".join(
+        f"| {each.fault.name} | `{each.fault.file.removeprefix('winch_friction/')}` | "
+        f"{'`' + each.by.removeprefix('FAILED ') + '`' if each.caught else '**survived**'} |"
+        for each in outcomes
+    )
+    return f"""# Do the tests hold the guards: the mutation campaign
+
+Small faults of meaning, one at a time, in a copy of the package; the tests named beside each fault in
+`campaign/mutants/faults.yaml` run until one fails.
+
+* Command: `make mutants` (`python -m campaign.mutants`)
+* Commit: {measured}
+* Caught: {caught} of {len(outcomes)} ({100.0 * caught / len(outcomes):.0f} %; bar {100 * BAR:.0f} %)
+
+| fault | file | noticed by |
+|---|---|---|
+{rows}
+"""
+
+
+def main() -> int:
+    """Run the campaign and write its page; 1 below the bar."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--only", nargs="*", default=[], help="names of faults, for a closer look; writes no page")
+    parser.add_argument("--out", type=Path, default=OUT)
+    options = parser.parse_args()
+    faults = [fault for fault in all_faults() if not options.only or fault.name in options.only]
+    outcomes = try_all(faults, options.processes)
+    caught = sum(each.caught for each in outcomes)
+    print(f"{caught} of {len(outcomes)} caught")
+    if not options.only:
+        options.out.write_text(page(outcomes, commit()))
+    return 0 if caught >= BAR * len(outcomes) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

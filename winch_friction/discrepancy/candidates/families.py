@@ -64,7 +64,16 @@ def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Cand
     member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
     if cause == "viscosity_temperature":  # the term is a difference and has no sign, but thick oil never drags less
         member = replace(member, shapes=partial(_positive, member.shapes))
+    if cause == "stribeck":
+        member = replace(member, shapes=partial(_inside_the_speeds, member.shapes))
     return replace(member, name=cause)
+
+
+def _inside_the_speeds(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Stribeck speeds that the runs go well beyond: a wider curve is a constant, and that is Coulomb friction."""
+    top = max((float(np.percentile(np.abs(run.speed), 99)) for run in runs), default=np.inf)
+    wide = [any(name.startswith("v_") and v >= 0.5 * top for name, v in each.values.items()) for each in shapes(runs)]
+    return [shape for shape, out in zip(shapes(runs), wide, strict=True) if not out]
 
 
 def _positive(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:

@@ -1,6 +1,7 @@
 """Models that arrive as text: parsed beside the control thread, bounded in size and rate, the newest one kept."""
 
 import threading
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -40,7 +41,7 @@ class ModelIntake:
     beside: bool = True
     clock: Callable[[], float] = lambda: 0.0
     _text: str | None = field(default=None, init=False)
-    _done: list[FrictionModel | InputError] = field(default_factory=list, init=False)
+    _done: deque[FrictionModel | InputError] = field(default_factory=deque, init=False)  # never replaced: two threads
     _worker: threading.Thread | None = field(default=None, init=False)
     _looked: float = field(default=float("-inf"), init=False)
 
@@ -57,8 +58,7 @@ class ModelIntake:
             self._looked = self.clock()
             self._worker = threading.Thread(target=self._parse, name="model", daemon=True)
             self._worker.start()
-        done, self._done = self._done, []
-        return done
+        return [self._done.popleft() for _ in range(len(self._done))]
 
     def _parse(self) -> None:
         text, self._text = self._text, None

@@ -53,7 +53,7 @@ def with_stated_std(model: FrictionModel, share: float = ASSUMED_STD) -> tuple[F
 
     A model without `std` gets `share` of each value, of a tenth of the typical size where the value is smaller.
     """
-    if model.covariance is not None:
+    if model.covariance is not None or not model.values:
         return model, ""
     size = [max(abs(v), 0.1 * abs(p.typical)) for v, p in zip(model.values, model.parameters, strict=True)]
     said = (

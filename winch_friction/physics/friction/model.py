@@ -182,6 +182,8 @@ def _group_count(x: Sequence[Any]) -> int:
 def _check_covariance(name: str, covariance: FloatArray, size: int) -> None:
     if covariance.shape != (size, size):
         raise InputError(f"model '{name}': covariance is {covariance.shape}, expected ({size}, {size})")
+    if not size:  # a model without parameters has nothing to be unsure of
+        return
     scale = np.sqrt(np.clip(np.diag(covariance), 1e-300, None))
     correlation = covariance / np.outer(scale, scale)
     if not np.isfinite(covariance).all() or np.abs(correlation - correlation.T).max() > 1e-6:

@@ -82,15 +82,24 @@ def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return shapes
 
 
+TOKEN_INERTIA = 0.02  # of the gap; below it a crane file's inertia stands for one that nobody knows
+
+
 def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
     """The shaft's acceleration."""
     return run.acceleration[:, None]
 
 
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    if max(run.dt for run in runs) <= SPARSE:
+    if max(run.dt for run in runs) <= SPARSE or all(_hardly_any_inertia(run) for run in runs):
         return None
     return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 33 Hz or more"
+
+
+def _hardly_any_inertia(run: PreparedRun) -> bool:
+    """Whether next to nothing is accounted for as inertia: nothing that a poor acceleration could smear."""
+    known = run.inertia * run.acceleration + run.load * run.radius / run.gear_ratio * run.load_acceleration
+    return float(np.std(known[run.used])) <= TOKEN_INERTIA * float(np.std(run.gap[run.used]))
 
 
 def _to_mass(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:

@@ -19,7 +19,8 @@ EXPECTED = {
     "worm_drive": (
         "A worm drive that winds a weight",
         "Published: Coulomb and viscous friction of the supports, thread friction that is load-proportional and "
-        "depends on the direction, Stribeck. One load only: an offset and a load-proportional loss cannot be told apart.",
+        "depends on the direction, Stribeck. One load only: an offset and a load-proportional loss cannot be told "
+        "apart.",
     ),
     "emps": (
         "EMPS, a ball-screw drive",

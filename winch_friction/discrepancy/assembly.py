@@ -23,7 +23,8 @@ from winch_friction.discrepancy.proof import compare, nothing_compared, read_bac
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, INSUFFICIENT, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.ties import Company, company, known_combination
+from winch_friction.discrepancy.verdict import AMBIGUOUS, INSUFFICIENT, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
@@ -56,8 +57,10 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
     cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
     found = selection.found if search.explanation is selection.final else ()
     experiment = _experiment(given.crane, search, options) if options.plan else None
+    tied = {each.slot.name: company(search, each) for each in found}
+    kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
     return GapResult(
-        verdict=verdict.kind, refused=verdict.refused, effects=_effects(search, found, repaired),
+        verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
         depends=_named(search.left) if verdict.kind == UNEXPLAINED else (),
@@ -65,7 +68,10 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         untestable=search.untestable, model=repaired.model, seed_model=given.model,
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
-        notes=(*_notes(split.runs, given.loads), *repaired.cut),
+        notes=(
+            *_notes(split.runs, given.loads), *repaired.cut,
+            *(each.note for own in tied.values() for each in own.partners),
+        ),
     )  # fmt: skip
 
 
@@ -94,8 +100,10 @@ def insufficient(
     )  # fmt: skip
 
 
-def _effects(search: Search, found: Sequence[Finding], repaired: Repair) -> tuple[Effect, ...]:
-    effects = [_effect(each, repaired.parameters) for each in found]
+def _effects(
+    search: Search, found: Sequence[Finding], repaired: Repair, tied: Mapping[str, Company]
+) -> tuple[Effect, ...]:
+    effects = [_effect(search, each, repaired, tied[each.slot.name]) for each in found]
     if search.reversal is not None:
         effects.append(_reversal_effect(search.reversal, repaired.parameters))
     side = [each.effect for each in (search.ripple, search.leakage) if each is not None]
@@ -111,12 +119,13 @@ def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperi
     return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 
-def _effect(found: Finding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
+def _effect(search: Search, found: Finding, repaired: Repair, tied: Company) -> Effect:
     candidate = found.slot.origin[0]
+    estimates = repaired.parameters.get(candidate.name, {})
     return Effect(
-        candidate.name, tuple(rival.name for rival in found.rivals), found.slot.label, candidate.law,
-        parameters.get(candidate.name, {}), found.p_value, found.gain, found.selection_frequency,
-        law_name=candidate.law_name, free=candidate.free,
+        candidate.name, tied.rivals, found.slot.label, candidate.law, estimates, found.p_value, found.gain,
+        found.selection_frequency, law_name=candidate.law_name, free=candidate.free,
+        combination=known_combination(search, found, estimates, tied.partners, repaired.model),
     )  # fmt: skip
 
 

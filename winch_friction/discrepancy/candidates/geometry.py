@@ -29,7 +29,7 @@ e_R = Parameter("e_R", "1", 0.06, lower=-0.5, upper=0.5, doc="relative error of 
 dJ = Parameter("dJ", "kg*m^2", 0.2, lower=-5.0, upper=10.0, doc="missing inertia at the motor shaft")
 
 
-def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
+def hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
     """Torque at the motor shaft of a hanging mass with its inertia and the friction it causes, N m."""
     share = np.divide(mass, run.load, out=np.zeros(len(run.time)), where=run.load > 0.0)
     return mass * run.radius / run.gear_ratio * (GRAVITY + run.load_acceleration) + share * run.load_friction
@@ -37,9 +37,9 @@ def _hanging(run: PreparedRun, mass: FloatArray | float) -> FloatArray:
 
 def tare_columns(run: PreparedRun, values: Values) -> FloatArray:
     """A constant mass, the wire paid out, or both."""
-    hook = _hanging(run, 1.0) * values["hook"]
+    hook = hanging(run, 1.0) * values["hook"]
     length = run.channels["wire_out"] if "wire_out" in run.channels else np.zeros(len(run.time))
-    return np.column_stack([hook, _hanging(run, length) * values["wire"]])
+    return np.column_stack([hook, hanging(run, length) * values["wire"]])
 
 
 def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
@@ -54,7 +54,7 @@ def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     # the radius acts twice on the load's inertia: on its lever and on its acceleration
     inertia = 0.0 if run.tension_measured else run.load * (run.radius / run.gear_ratio) ** 2
     turning = inertia * run.acceleration
-    torque = _hanging(run, run.load) + turning
+    torque = hanging(run, run.load) + turning
     layer = run.channels.get("wire_layer")
     if values["layer"] == 0.0 or layer is None:
         return torque[:, None]

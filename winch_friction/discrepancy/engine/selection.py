@@ -220,19 +220,22 @@ def _rivals(
     own = current.slots[k]
     fitted = _fitted(cross, rest, current.names)
     trials = _heads(without.loss, [cross.explain((*rest, slot)) for slot in fitted])
-    worth = without.loss - current.loss
     equal = []
     for trial in trials:
-        worse = trial.losses - current.losses
-        gained = without.loss - trial.loss
-        if gained < LIMITS.rival_worth * worth:
-            continue
-        p = flip_p_values(worse[None], rng)[0]
-        if p > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth:
+        if does_as_well(trial, current, without, rng):
             equal.append((trial.loss, trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
     frequency = _frequency(current.losses, [t.losses for t in trials], rng)
     return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
+
+
+def does_as_well(trial: Explanation, current: Explanation, without: Explanation, rng: np.random.Generator) -> bool:
+    """Whether another effect in the place of one, `without` neither, is no worse on held-out data."""
+    worth = without.loss - current.loss
+    worse = trial.losses - current.losses
+    if without.loss - trial.loss < LIMITS.rival_worth * worth:
+        return False
+    return bool(flip_p_values(worse[None], rng)[0] > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth)
 
 
 def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:

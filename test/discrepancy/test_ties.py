@@ -1,0 +1,111 @@
+"""What the equations make one thing has parallel regressors, and is never given a single name."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from gap_rig import names_of, runs_with
+
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.discrepancy.ties import TIES, _best_pair, member_candidate
+from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+PARALLEL = 0.98
+
+
+@cache
+def _prepared():
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    # heave compensation at one wire length with the passive motors on, and a constant speed run without them
+    return [prepare(run, crane, model) for run in runs_with(4060, "paper")], model
+
+
+def _column(member, runs, run, model):
+    candidate = member_candidate(member, model)
+    shape = next(each for each in candidate.shapes(runs) if each.label.startswith(member.label))
+    columns = candidate.columns(run, shape.values)[run.used]
+    return columns[:, np.argmax(np.abs(columns).sum(axis=0))]
+
+
+@pytest.mark.parametrize("tie", TIES, ids=lambda tie: f"{tie.first.name}-{tie.second.name}-{tie.second.label}")
+def test_both_sides_of_a_tie_are_one_column(tie):
+    runs, model = _prepared()
+    # hook and wire are one at one wire length alone, which each run keeps to
+    for some in [[run] for run in runs[:3]] if tie.first.name == tie.second.name else [runs]:
+        sides = [
+            np.concatenate([_column(member, runs, run, model) / run.unit_torque for run in some])
+            for member in (tie.first, tie.second)
+        ]
+        first, second = (side / np.linalg.norm(side) for side in sides)
+        assert abs(first @ second) > PARALLEL
+
+
+def test_no_tie_is_said_twice_and_each_says_what_would_break_it():
+    assert len({(tie.first, tie.second) for tie in TIES}) == len(TIES)
+    assert all(tie.why and tie.separates for tie in TIES)
+
+
+def _scaled(run, factor):
+    return Run(run.name, {k: v * factor if k.endswith("displacement") else v for k, v in run.columns.items()})
+
+
+@pytest.mark.parametrize("seed", [4061, 4062])
+def test_a_gain_error_of_the_displacement_is_no_single_name(seed):
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    runs = [_scaled(run, 1.02) for run in runs_with(seed, "paper")]
+    result = find_gap(runs, crane, model, GapOptions(plan=False))
+    assert result.verdict == "ambiguous"
+    named = names_of(result)
+    assert any({"pressure_scale", "displacement_scale"} <= each for each in named), named
+    assert all(len(each) <= 3 for each in named)
+    for effect in result.effects:
+        if effect.name == "pressure_scale":
+            known = effect.content()["identifiable_combination"]
+            assert known["expression"].startswith("e_p + ")
+            assert known["expression"].endswith("e_D")
+            assert known["value"] == pytest.approx(0.02, abs=0.01)
+    assert any("displacement_scale" in note for note in result.notes)
+
+
+def test_hook_and_wire_at_nearly_one_length_are_known_as_a_sum():
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    runs = [_light(run) for run in runs_with(4063, "paper")]
+    result = find_gap(runs, crane, model, GapOptions(plan=False))
+    effect = next(each for each in result.effects if each.name == "tare_load")
+    for each in effect.parameters.values():
+        assert each.std > 0.0
+    assert effect.parameters.get("mu_w") is None or effect.parameters["mu_w"].value >= 0.0
+
+
+def _light(run):
+    """A load cell that hangs 900 kg and 12 kg/m of wire higher than it says."""
+    columns = dict(run.columns)
+    columns["hook_load"] = columns["hook_load"] - 900.0 - 12.0 * columns["wire_out"]
+    return Run(run.name, columns)
+
+
+def _between(low, high):
+    """Estimates of a hook's mass and a wire's weight from weighings at wire lengths between these, 50 kg each."""
+    length = np.linspace(low, high, 40)
+    columns = np.column_stack([np.ones(40), length]) / 50.0
+    covariance = np.linalg.inv(columns.T @ columns)
+    std = np.sqrt(np.diag(covariance))
+    names, units, values = ["m_h", "mu_w"], ["kg", "kg/m"], [900.0, 12.0]
+    return covariance, {n: ParameterEstimate(*x) for n, *x in zip(names, values, std, units, strict=True)}, names
+
+
+def test_what_is_tied_is_known_as_a_combination_at_the_length_that_was_run():
+    known = _best_pair(*_between(118.0, 122.0))
+    assert known.expression == "m_h + 120 m * mu_w"
+    assert known.value == pytest.approx(900.0 + 120.0 * 12.0)
+    assert known.std == pytest.approx(50.0 / np.sqrt(40), rel=1e-6)
+    assert known.unit == "kg"
+
+
+def test_what_is_known_alone_needs_no_combination():
+    assert _best_pair(*_between(0.0, 2000.0)) is None

@@ -34,8 +34,8 @@ NOTES = {
     "winch_100kw": "Beside what is expected: the inertia lies a few percent low, the losses are named as viscous with "
     "a loss that depends on the load instead of Coulomb and viscous with a gain, and check takes the unknown inertia "
     "for data of another crane.",
-    "worm_drive": "Beside what is expected: nothing of the published friction is named, which is missed. The log has no "
-    "load, and these runs give the workflow none.",
+    "worm_drive": "Beside what is expected: nothing of the published friction is named, which is missed. The log has "
+    "no load, and these runs give the workflow none.",
     "emps": "Beside what is expected: Coulomb, offset and asymmetry are named and nothing else; check refuses the run "
     "all the same.",
 }

@@ -161,6 +161,16 @@ def test_a_name_that_leaves_the_locked_gap_as_it_was_is_refused():
     assert "does not fall" in proof.why
 
 
+def test_what_no_balance_closes_is_nobodys_effect():
+    """A fall that is sure, by so little that no winch's balance tells it."""
+    before, after = 0.16 * (WAVE + noise()), 0.158 * (WAVE + noise())
+    small = replace(side(before, after), least_noise=0.1)
+    small = replace(small, size_before=Size(small.size_before.value, (small.size_before.value,) * 2))
+    proof = prove("wave", side(before, before), small, np.random.default_rng(1))
+    assert not proof.holds
+    assert "any balance" in proof.why
+
+
 def test_a_name_that_does_no_more_than_a_refit_is_refused():
     """The locked gap falls, but it does so without the name as well."""
     proof = proven(2.0 * WAVE + noise(), noise(), 1.001 * noise())

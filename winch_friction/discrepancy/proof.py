@@ -40,12 +40,16 @@ class Proof:
 
 
 def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> Proof:
-    """Names stand if the locked gap falls below the interval that it had, falls by more than a mere refit of the base
-    takes off, and no locked run gets significantly worse. Both sides start from the same given model.
+    """Names stand if the locked gap falls below the interval that it had, by an amount that a balance of a winch can
+    tell at all and by more than a mere refit of the base takes off, and no locked run gets significantly worse. Both
+    sides start from the same given model.
     """
     before, after = repaired.size_before, repaired.size_after
     if not after.value < before.interval[0]:
         return Proof(f"{named}: the locked gap of {before.value:.3g} does not fall surely (to {after.value:.3g})")
+    removed = float(np.sqrt(before.value**2 - after.value**2))
+    if removed < repaired.least_noise:
+        return Proof(f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes")
     own = repaired.blocks
     chance = chance_of_no_gain(*_common(refit, repaired), rng)
     if chance > LIMITS.proof_p:

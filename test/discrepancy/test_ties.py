@@ -72,7 +72,7 @@ def test_a_gain_error_of_the_displacement_is_no_single_name(seed):
     assert any("displacement_scale" in note for note in result.notes)
 
 
-def test_hook_and_wire_at_nearly_one_length_are_known_as_a_sum():
+def test_hook_and_wire_come_physical_and_with_their_deviations():
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     runs = [_light(run) for run in runs_with(4063, "paper")]
     result = find_gap(runs, crane, model, GapOptions(plan=False))

@@ -86,5 +86,5 @@ def test_the_real_winch_has_the_inertia_that_hindsight_gives_it():
         runs.append(Run(path.stem, columns))
     found = find_gap(runs, winch(), BARE, GapOptions(plan=False)).content()
     inertia = next(each for each in found["effects"] if each["name"] == "inertia_error")
-    assert inertia["parameters"]["dJ"]["value"] == pytest.approx(4989.0, rel=0.05)
+    assert inertia["parameters"]["dJ"]["value"] == pytest.approx(4989.0, rel=0.08)
     assert found["gap"]["holdout"]["after"] < 0.25 * found["gap"]["holdout"]["before"]

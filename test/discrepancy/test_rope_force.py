@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from winch_friction.commissioning.check import quick_check
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.workflow import find_gap
@@ -65,6 +66,13 @@ def test_from_the_rope_force_alone_the_friction_and_the_inertia_are_found():
     assert {"inertia_error", "viscous", "coulomb"} <= set(named)
     assert sizes["C5"]["value"] == pytest.approx(VISCOUS, rel=0.15)
     assert found["gap"]["holdout"]["after"] < 0.2 * found["gap"]["holdout"]["before"]
+
+
+def test_a_winch_of_unknown_friction_and_inertia_is_not_taken_for_another():
+    """Its balance closes with neither: that is what `gap` is to find, not a reason to refuse the runs."""
+    assert not [
+        each.sentence for each in quick_check([cycle(3, "one"), cycle(4, "two")], winch(), BARE) if each.contradicts
+    ]
 
 
 @pytest.mark.shared

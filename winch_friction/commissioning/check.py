@@ -1,6 +1,7 @@
 """Can these runs be this crane's? The quick part, which `identify`, `replay` and `gap` ask first."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from winch_friction.commissioning.channels import cell_findings, clock_findings
@@ -44,12 +45,21 @@ def diagnosed(
     diagnosis = diagnose(views, crane, model, known)
     findings = [
         *_named_crane(runs, crane, others),
-        *_mistake(diagnosis),
+        *_trusted(_mistake(diagnosis), crane),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
     order = {"error": 0, "warning": 1, "note": 2}
     return sorted(findings, key=lambda finding: order[finding.severity]), diagnosis
+
+
+def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
+    """What the balance says: of a hydraulic winch it is known what friction is ordinary; of another drive, whose
+    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing.
+    """
+    if crane.drive.hydraulic:
+        return findings
+    return [replace(each, severity="warning") if each.contradicts else each for each in findings]
 
 
 def _mistake(diagnosis: Diagnosis) -> list[Finding]:

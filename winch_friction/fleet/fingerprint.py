@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -37,6 +38,7 @@ def fingerprint(run: Run, crane: Crane, model: FrictionModel) -> list[Trait]:
 
     Empty when too little of the run moves. Raises `InputError` where the balance lacks a channel.
     """
+    run, crane = corrected(run, crane, model)
     prepared = prepare(run, crane, model)
     moving = prepared.used
     if moving.sum() < FEWEST_STRETCHES * STRETCH / prepared.dt:

@@ -4,8 +4,8 @@
 
 Every crane has its own friction, its own slow wear, and every month its own load and sea. Some cranes get new seals in
 one month (Coulomb friction changes at once), some a new transducer (its zero changes), half of them nothing.
-`winch-friction fleet` then goes over all recordings, and its steps are compared with the truth. The cost of a recording
-is measured on the way, for the plan of a larger fleet.
+`winch-friction fleet` then goes over all recordings, and its steps are compared with the truth. What one hour of
+recording costs is measured beside it, for the plan of a larger fleet.
 """
 
 import argparse
@@ -27,6 +27,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
 import numpy as np  # noqa: E402
 
 from campaign.commit import commit  # noqa: E402
+from campaign.fleet_cost import Cost, measured, plan  # noqa: E402
 from winch_friction.fleet.drift import month_of, month_text  # noqa: E402
 
 MONTH = 30.44 * 86400.0  # s
@@ -36,8 +37,6 @@ COULOMB = ("C6", "K3", "K4")  # what seals and bearings carry: load-proportional
 OUT = Path("docs/campaign_fleet.md")
 BARS = (0.9, 0.02)  # dates found within a month; false steps per crane
 EDGE = 3  # months at either end without a change: there a step and noise are the same
-LARGE_FLEET = (300, 5, 50.0)  # cranes, years, Hz
-DUTY = 200.0  # h of logged operation per crane and year
 
 
 @dataclass(frozen=True)
@@ -101,16 +100,14 @@ def _record(item: tuple[Life, int], seconds: float, seed: int, folder: Path) -> 
     record(*item, seconds, seed, folder)
 
 
-def make_fleet(lives: list[Life], months: int, seconds: float, seed: int, folder: Path, processes: int) -> float:
-    """All recordings; s that it took."""
+def make_fleet(lives: list[Life], months: int, seconds: float, seed: int, folder: Path, processes: int) -> None:
+    """All recordings."""
     items = [(life, month) for life in lives for month in range(months)]
-    began = time.monotonic()
     work = partial(_record, seconds=seconds, seed=seed, folder=folder)
     with multiprocessing.get_context("spawn").Pool(processes) as pool:
         for k, _ in enumerate(pool.imap_unordered(work, items, chunksize=8)):
             if k % 48 == 47:
                 print(f"{k + 1}/{len(items)} recordings", flush=True)
-    return time.monotonic() - began
 
 
 def look(folder: Path, out: Path, verb: str, workers: int) -> tuple[dict[str, Any], float]:
@@ -153,14 +150,10 @@ def score(lives: list[Life], steps: list[dict[str, Any]]) -> Score:
     return Score(found, events, len(steps) - true_steps, len(lives), tuple(rows))
 
 
-def page(result: Score, options: argparse.Namespace, made: float, looked: float, size: int) -> str:
+def page(result: Score, options: argparse.Namespace, looked: float, costs: list[Cost]) -> str:
     """The campaign's page."""
     recordings = options.cranes * options.months
     rows = "\n".join("| " + " | ".join(row) + " |" for row in result.rows)
-    seconds = recordings * options.seconds
-    cost, weight = looked * options.processes / seconds, size / seconds  # CPU s and bytes per s of recording
-    cranes, years, rate = LARGE_FLEET
-    hours = cranes * years * DUTY
     call = f"--cranes {options.cranes} --months {options.months} --seconds {options.seconds:g} --seed {options.seed}"
     return f"""# A fleet over two years: which crane changed, and when
 
@@ -179,16 +172,10 @@ def page(result: Score, options: argparse.Namespace, made: float, looked: float,
 |---|---|---|---|
 {rows}
 
-## Cost, and a plan for {cranes} cranes and {years} years
+{recordings} recordings were gone through in {looked:.0f} s with {options.processes} worker(s), on a machine that did
+other work besides.
 
-Measured here: {recordings} recordings made in {made:.0f} s, gone through in {looked:.0f} s on {options.processes}
-processes: {1e3 * cost:.2f} ms of CPU and {weight:.0f} bytes (Parquet) per second of recording.
-
-A fleet of {cranes} cranes that each log {DUTY:.0f} h of heave compensation a year at {rate:.0f} Hz gives {hours:.0f} h
-in {years} years: {hours * cost:.0f} core hours for one pass ({hours * cost / 16:.1f} h on 16 cores) and
-{hours * 3600 * weight / 1e9:.0f} GB of Parquet. A worker holds one recording at a time; ledger and store take a few
-hundred bytes per recording. Extrapolated from the small fleet above, not measured on a large one.
-"""
+{plan(costs)}"""
 
 
 def main() -> int:
@@ -205,13 +192,12 @@ def main() -> int:
     options = parser.parse_args()
     lives = draw_lives(options.cranes, options.months, options.seed)
     bags = options.folder / f"bags_{options.cranes}_{options.months}_{options.seconds:g}_{options.seed}"
-    made = make_fleet(lives, options.months, options.seconds, options.seed, bags, options.processes)
+    make_fleet(lives, options.months, options.seconds, options.seed, bags, options.processes)
     (options.folder / "truth.json").write_text(json.dumps([asdict(life) for life in lives], indent=1))
     shutil.rmtree(options.folder / "view", ignore_errors=True)
     content, looked = look(bags, options.folder / "view", options.verb, options.processes)
     result = score(lives, content["steps"])
-    size = sum(path.stat().st_size for path in bags.rglob("*.parquet"))
-    options.out.write_text(page(result, options, made, looked, size))
+    options.out.write_text(page(result, options, looked, measured(options.folder / "hour")))
     print(f"{result.found} of {result.events} changes dated within a month, {result.false} false; {options.out}")
     return 0 if result.found >= BARS[0] * result.events and result.false <= BARS[1] * result.cranes else 1
 

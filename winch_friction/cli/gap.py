@@ -218,6 +218,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
             f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
             f"noise floor {gap['noise_floor']:.3g} {unit}"
         )
+    for note in content["notes"]:
+        print(f"note: {note}")
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if content["next_experiment"]:

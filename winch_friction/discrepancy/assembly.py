@@ -10,6 +10,7 @@ from winch_friction.discrepancy.adequacy import Check, supplying
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
+from winch_friction.discrepancy.drift import drift_note
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.omnibus import Dependence
 from winch_friction.discrepancy.engine.regions import find_regions
@@ -59,6 +60,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
     experiment = _experiment(given.crane, search, options) if options.plan else None
     tied = {each.slot.name: company(search, each) for each in found}
     kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
+    drift = drift_note((trial.train, trial.holdout), [each.slot.name for each in found], given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
@@ -70,7 +72,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         next_scenario=experiment.text if experiment else "",
         notes=(
             *_notes(split.runs, given.loads), *repaired.cut,
-            *(each.note for own in tied.values() for each in own.partners),
+            *(each.note for own in tied.values() for each in own.partners), *([drift] if drift else []),
         ),
     )  # fmt: skip
 

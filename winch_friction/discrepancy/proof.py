@@ -104,7 +104,7 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     noise = np.array([_noise(y_after, blocks, k) for k in range(len(pairs))])
     floor = np.sqrt(np.mean(noise[blocks.run] ** 2)) if len(blocks.run) else 0.0
     runs = tuple(old for old, _ in pairs)
-    torque = np.array([_drive(run) for run in runs])[blocks.run]
+    torque = np.array([drive_of(run) for run in runs])[blocks.run]
     return Side(
         runs=runs, blocks=blocks, before=y_before, after=y_after,
         size_before=rms_with_interval(y_before, blocks.segment, blocks.run, rng),
@@ -145,7 +145,7 @@ def _noise(values: FloatArray, blocks: Blocks, k: int) -> float:
     return noise_of_run(values[own], blocks.position[own]) if own.any() else 0.0
 
 
-def _drive(run: PreparedRun) -> float:
+def drive_of(run: PreparedRun) -> float:
     """RMS of a run's measured drive while moving, in the gap's unit."""
     if not run.used.any():
         return 0.0

@@ -75,4 +75,4 @@ def _at_bound(cross: CrossFit, selection: Selection, found: Finding) -> bool:
 
 def _plain_term(cross: CrossFit, found: Finding) -> bool:
     """A plain term that the model lacked from the start: several of them may be missing without being an imitation."""
-    return all(cross.problem.layout.upper[column] >= LIMITS.unbounded for column in found.slot.columns)
+    return cross.problem.unlimited(found.slot)

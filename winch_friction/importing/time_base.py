@@ -23,6 +23,7 @@ ORDERS = ("ymd", "dmy", "mdy")
 _DAY = 86_400.0
 _EXCEL_EPOCH = 25_569.0  # days from 1899-12-30 to 1970-01-01
 _MATLAB_EPOCH = 719_529.0  # days from year 0 to 1970-01-01
+UNSTEADY = 0.5  # periods that a steady clock's row may miss its tick by, for what its own jitter is
 _UNIX_YEARS = (6.3e8, 2.6e9)  # s: 1990 to 2052
 
 
@@ -198,10 +199,15 @@ def _over_midnight(seconds: FloatArray) -> FloatArray:
 
 
 def spread_ticks(seconds: FloatArray) -> FloatArray:
-    """Rows of one time laid evenly between this time and the next; the first and last tick like the others."""
+    """Rows of one time at a steady rate where one puts every row into its tick; else laid evenly between this time and
+    the next, the first and last tick like the others.
+    """
     ticks, first, counts = np.unique(seconds, return_index=True, return_counts=True)
     if len(ticks) < 2 or np.any(np.diff(seconds) < 0.0) or not np.isfinite(seconds).all():
         return seconds
+    steady = _steady_clock(seconds, float(np.median(np.diff(ticks))))
+    if steady is not None:
+        return steady
     usual = float(np.median(counts[1:-1])) if len(ticks) > 2 else float(max(counts))
     width = float(np.median(np.diff(ticks)))
     rank = np.arange(len(seconds)) - np.repeat(first, counts)
@@ -215,6 +221,20 @@ def spread_ticks(seconds: FloatArray) -> FloatArray:
     rank = np.where(begin, rank + np.maximum(usual - counts[0], 0.0), rank)  # the first tick was joined late
     share = np.where(begin, np.maximum(share, usual), share)
     return seconds + ends * rank / share
+
+
+def _steady_clock(seconds: FloatArray, tick: float) -> FloatArray | None:
+    """Times at one rate that rounding or cutting to whole ticks makes of these, or None.
+
+    A logger that writes whole seconds gives 9 and 11 rows in turn at 10 Hz; spread inside each tick, the rate would
+    jump by a fifth from one to the next, and every acceleration with it.
+    """
+    row = np.arange(len(seconds))
+    period = float(np.polyfit(row, seconds - seconds[0], 1)[0])
+    off = seconds - seconds[0] - period * row
+    if not period > 0.0 or np.ptp(off) > tick + UNSTEADY * period:
+        return None
+    return np.asarray(seconds[0] + float(off.max() + off.min()) / 2.0 + 0.5 * tick + period * row)
 
 
 def _joined(columns: Sequence[LogColumn]) -> Any:

@@ -91,6 +91,10 @@ class Problem:
         """Columns of the base and of these candidates."""
         return self.base_columns + tuple(c for slot in slots for c in slot.columns)
 
+    def unlimited(self, slot: Slot) -> bool:
+        """Whether a candidate may have any size: a plain term that a bare model lacked from the start."""
+        return all(self.layout.upper[column] >= LIMITS.unbounded for column in slot.columns)
+
     def fit(self, g: FloatArray, b: FloatArray, columns: Sequence[int]) -> FloatArray:
         """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments."""
         index = np.asarray(columns)

@@ -49,9 +49,28 @@ class Selection:
 def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_effects) -> Selection:
     """Add effects as long as one brings a significant and useful gain, then look for rivals of each."""
     base = cross.explain(())
-    current, considered = base, []
+    considered: list[Considered] = []
     p_values: dict[str, float] = {}
-    for stage in range(most):
+    current = _forward(cross, base, base, rng, most, considered, p_values)
+    start = _plain_together(cross, base, rng)
+    if start.slots:
+        others: tuple[list[Considered], dict[str, float]] = ([], {})
+        together = _forward(cross, base, start, rng, most, *others)
+        if _no_worse(together, current, rng):
+            current = together
+            considered, p_values = [*considered, *others[0]], p_values | others[1]
+    current = _with_company(cross, _pruned(cross, current, rng))
+    found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
+    return Selection(base, current, found, tuple(considered))
+
+
+def _forward(
+    cross: CrossFit, base: Explanation, start: Explanation, rng: np.random.Generator, most: int,
+    considered: list[Considered], p_values: dict[str, float],
+) -> Explanation:  # fmt: skip
+    """A set with more effects one by one, as long as one brings a significant and useful gain."""
+    current = start
+    for stage in range(len(start.slots), most):
         trials = candidate_trials(cross, current, current.names)
         if not trials:
             break
@@ -72,9 +91,26 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
             break
         p_values[trials[best].slots[-1].name] = float(p[best])
         current = _exchanged(cross, trials[best])
-    current = _with_company(cross, _pruned(cross, current, rng))
-    found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
-    return Selection(base, current, found, tuple(considered))
+    return current
+
+
+def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator) -> Explanation:
+    """What every machine has and a bare model lacks, all of it at once and then without what is not needed.
+
+    Inertia, Coulomb and viscous friction and a gain stand in for each other: one by one, the first takes what belongs
+    to two others, which then bring nothing alone.
+    """
+    plain = [slot for slot in cross.problem.slots if cross.problem.unlimited(slot) and not slot.brings]
+    best = {slot.name: slot for slot in sorted(plain, key=lambda each: -cross.train_loss((each,))[0])}
+    return _pruned(cross, cross.explain(tuple(best.values())), rng) if len(best) > 1 else base
+
+
+def _no_worse(plain: Explanation, other: Explanation, rng: np.random.Generator) -> bool:
+    """Whether plain effects do on held-out data what another set does, chance apart."""
+    if plain.loss <= other.loss:
+        return True
+    same = len(plain.slots) <= len(other.slots) and not any(slot.free for slot in plain.slots)
+    return same and bool(flip_p_values((plain.losses - other.losses)[None], rng)[0] > LIMITS.rival_p)
 
 
 def _evidence(

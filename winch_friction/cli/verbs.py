@@ -45,6 +45,7 @@ VERBS = (
     Verb("plot", "plot", "Runs as a page: every channel, zoomed together."),
     Verb("compare", "compare", "Two models against each other, on a grid or on runs."),
     Verb("doctor", "doctor", "Whether this machine has what it takes: libraries, ROS, DDS, clock, configuration."),
+    Verb("load", "load", "A repaired model into the running compensator."),
     Verb("watch", "watch", "The running nodes in the terminal: state, torque, estimates, rates, faults."),
     Verb("dashboard", "dashboard", "The running nodes, or a bag, as a live page on this machine."),
     Verb("terms", "terms", "The declared friction terms: equations, parameters, sources."),

@@ -38,6 +38,14 @@ def test_what_is_no_number_is_no_message(nonsense: float) -> None:
     assert held.value(11.0) == 0.0  # and does not keep the last one alive
 
 
+def test_what_the_crane_could_never_say_is_no_message() -> None:
+    held = HeldTorque(largest=2000.0)
+    held.take(300.0, 1.0)
+    assert not held.take(1e300, 1.02)
+    assert not held.take(-2001.0, 1.02)
+    assert held.value(1.02) == 300.0
+
+
 def test_an_old_number_is_an_old_message_but_not_for_ever() -> None:
     held = HeldTorque()
     assert held.take(300.0, 10.0, mark(True, 500))

@@ -1,8 +1,11 @@
 """What this crane cannot show is refused, named and faded; what contradicts itself too."""
 
+from collections.abc import Callable
+
 import pytest
 from sea import CRANE, PERIOD, SEED, TOPICS, Fed, check_invariants, swell
 
+from winch_friction.compensation import CompensatorConfig
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.signals import Sample
 from winch_friction.records.bag_write import MESSAGES
@@ -57,6 +60,46 @@ def test_a_reference_of_the_opposite_sign_is_doubted() -> None:
     assert "contradicts motor_speed" in " ".join(fed.service.contradictions)
     assert {each.friction_torque for each in said[150:]} == {0.0}  # at the reversals too, where nothing is to be seen
     check_invariants(fed)
+
+
+@pytest.mark.parametrize(
+    ("size", "spoil"),
+    [
+        (0.3, lambda reference, _: -reference),  # below what the difference of the speeds would show
+        (1.0, lambda reference, _: -reference),
+        (0.3, lambda _, first: first),  # stuck
+        (0.3, lambda _, first: 0.05 * first),
+    ],
+)
+@pytest.mark.parametrize("lead", [0.0, 0.1])
+def test_nothing_pushes_against_the_motion_for_long(
+    size: float, spoil: Callable[[float, float], float], lead: float
+) -> None:
+    fed = Fed(config=CompensatorConfig(lead=lead))
+    fed.run(1.4, lambda sample: _slower(sample, size))
+    first: list[float] = []
+
+    def change(sample: Sample) -> None:
+        _slower(sample, size)
+        first.append(sample.speed_reference)
+        sample.speed_reference = spoil(sample.speed_reference, first[0])
+
+    longest = wrong = 0.0
+    for _ in range(400):
+        (said, *_) = fed.run(PERIOD, change)
+        speed = size * swell(fed.now).motor_speed
+        wrong = wrong + PERIOD if said.friction_torque * speed < 0.0 and abs(speed) > 5.0 else 0.0
+        longest = max(longest, wrong)
+    assert "turns against motor_speed" in " ".join(fed.service.contradictions)
+    assert longest <= lead + 0.25
+    fed.run(5.0, lambda sample: _slower(sample, size))
+    assert fed.service.law.status()["state"] == "active"
+    check_invariants(fed)
+
+
+def _slower(sample: Sample, size: float) -> None:
+    sample.motor_speed *= size
+    sample.speed_reference *= size
 
 
 def test_two_references_that_take_turns_are_doubted() -> None:

@@ -29,6 +29,7 @@ def test_silence_begins_a_ramp_within_a_period_of_the_age_limit_and_ends_at_zero
     sizes = [abs(each.friction_torque) for each in said]
     assert sizes == sorted(sizes, reverse=True)
     assert said[-1].friction_torque == 0.0
+    assert math.copysign(1.0, said[-1].friction_torque) == 1.0  # 0, not -0
     assert {each.state for each in said} == {"stale"}
     assert not any(each.valid for each in said)
     check_invariants(fed)

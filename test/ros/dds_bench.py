@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -88,6 +89,10 @@ class Bench:
             if name not in self._publishers:
                 self._publishers[name] = self.node.create_publisher(type(message), name, OUTPUT)
             self._publishers[name].publish(message)
+
+    def publisher(self, topic: str) -> Any:
+        """The publisher of an input that was announced."""
+        return self._publishers[topic]
 
     def announce(self, namespace: str = "", subscribers: int = 1) -> None:
         """Make the publishers and wait until the speed is subscribed to."""

@@ -17,9 +17,11 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from winch_friction.nodes.messages import pressure_message
 from winch_friction.nodes.qos import LATCHED, OUTPUT, SENSOR, fresh
 from winch_friction.online.consumer import read_mark
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Sample
 from winch_friction.records.topics import crane_topics
 
 SLEW = 1.5e4  # N m/s, the compensator's own limit
@@ -107,6 +109,22 @@ def test_diagnostics_tell_the_truth_within_a_second(fed: tuple[Bench, list]) -> 
     bench.drive(1.0)
     assert "winch/reference: 2 publishers" in diagnostics(seen, "compensator: inputs")["message"]
     bench.node.destroy_publisher(second)
+    bench.time += 0.2
+    bench.drive(1.2, held_behind(bench, bench.time))
+    assert "winch/active/pressure_a: its stamps are " in diagnostics(seen, "compensator: inputs")["message"]
+    bench.remote("compensator").change("deactivate")
+    bench.spin(0.3)
+    assert diagnostics(seen, "compensator: feedforward")["message"] == "not active"
+
+
+def held_behind(bench: Bench, stamp: float) -> Callable[[Sample], None]:
+    """A pressure that goes on to come, under a stamp that stands still."""
+
+    def change(sample: Sample) -> None:
+        sample.groups["active"].pressure_a = math.nan
+        bench.publisher("winch/active/pressure_a").publish(pressure_message(stamp, 100e5))
+
+    return change
 
 
 def _level(messages: list[DiagnosticArray], part: str) -> int:
@@ -136,13 +154,17 @@ def test_an_estimator_without_a_pressure_says_that_it_waits(bench: Bench, tmp_pa
 
 
 def test_a_terms_file_cannot_end_the_process(bench: Bench, tmp_path: Path) -> None:
-    file = tmp_path / "mine.py"
-    file.write_text("import sys\nsys.exit(3)\n")
-    bench.start("compensator", autostart=False, terms_file=file)
+    bench.start("compensator", autostart=False)
     node = bench.remote("compensator")
-    with pytest.raises(InputError, match="refused to configure"):
-        node.change("configure")
-    assert node.state() == "unconfigured"
+    ways = ("import sys\nsys.exit(3)\n", "raise KeyboardInterrupt\n", "class Mine(BaseException): ...\nraise Mine\n")
+    for number, text in enumerate(ways):
+        file = tmp_path / f"mine_{number}.py"
+        file.write_text(text)
+        node.set({"terms_file": str(file)})
+        with pytest.raises(InputError, match="refused to configure"):
+            node.change("configure")
+        assert node.state() == "unconfigured"
+        assert f"{file}: " in bench.log("compensator")
     assert "sys.exit" in bench.log("compensator")
 
 

@@ -22,6 +22,7 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.physics.winch.ranges import ChannelRanges
 
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
+AGAINST_SPEED, AGAINST_FADE = 5.0, 0.1  # rad/s, s: what turns faster against a fading target lets it go in this time
 
 
 @dataclass(slots=True)
@@ -226,13 +227,14 @@ class FeedforwardCompensator:
             self.output.restrict(max(self.config.envelope, 1.0) * size / self.config.reversal_time)
 
     def _turn(self, sample: Sample) -> None:
-        """A target without its inputs still turns with the motion, as long as the speed is there."""
-        speed = self._speed(sample)
-        if not self._ranges.plausible("motor_speed", speed):
-            return
-        target = self._target
-        target.torque = min(target.size, target.envelope) * smooth_sign(speed, self.config.reversal_speed)
-        target.reversal = math.inf
+        """A target without its inputs still turns with the motion, as long as the speed is there; against what is
+        measured it goes quickly."""
+        target, speed = self._target, self._speed(sample)
+        if self._ranges.plausible("motor_speed", speed):
+            target.torque = min(target.size, target.envelope) * smooth_sign(speed, self.config.reversal_speed)
+            target.reversal = math.inf
+        if target.torque * sample.motor_speed < 0.0 and abs(sample.motor_speed) > AGAINST_SPEED:
+            target.reversal = min(target.reversal, AGAINST_FADE)
 
     def _without_time(self) -> Feedforward:
         """A sample that cannot be placed in time changes nothing but the counts."""

@@ -116,7 +116,7 @@ class SafeOutput:
         wanted = self._not_against(wanted, target)
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
-        self.torque = self.limits.slewed(wanted, self.torque, self._dt)
+        self.torque = self.limits.slewed(wanted, self.torque, self._dt) + 0.0  # never -0.0
         self.sequence += 1
         self._held, self._faded, self._reversal = self.torque, self.fade.value, reversal
         return self.torque
@@ -139,7 +139,8 @@ class SafeOutput:
         silent = time - self._fed - self.hold
         if not silent > 0.0:
             return self._held
-        return math.copysign(max(0.0, abs(self._held) - self._ramp_rate() * silent), self._held)
+        left = abs(self._held) - self._ramp_rate() * silent
+        return math.copysign(left, self._held) if left > 0.0 else 0.0
 
     def _ramp_rate(self) -> float:
         """N m/s: over within the ramp's time, and before the motion may have turned where the slew limit allows it."""

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -110,8 +110,12 @@ class WinchNode(Guarded, LifecycleNode):
         if self.options.terms_file:
             try:
                 load_file(self.options.terms_file)
-            except SystemExit as error:
+            except (SystemExit, KeyboardInterrupt, GeneratorExit) as error:
                 raise InputError(f"{self.options.terms_file}: it wants to end the program (sys.exit)") from error
+            except InputError:
+                raise
+            except BaseException as error:  # whatever its author derived from the root of all exceptions
+                raise InputError(f"{self.options.terms_file}: {type(error).__name__}: {error}") from error
             for each in self._settings:
                 each.declare(self)
 
@@ -182,6 +186,7 @@ class WinchNode(Guarded, LifecycleNode):
 
     def _halt(self) -> None:
         self.stop()
+        self._report_the_end()
         for end in self._active_entities:
             end()
         self._active_entities.clear()
@@ -271,12 +276,23 @@ class WinchNode(Guarded, LifecycleNode):
         if self.urgent() != self._reported:
             self._publish_health()
 
+    def _report_the_end(self) -> None:
+        """The last report does not say that all is well."""
+        try:
+            if getattr(self, "_diagnostics", None) in self._publishers_made:
+                self._report([replace(each, level=WARN, summary="not active") for each in self.health()])
+        except Exception:
+            self.report_defect("last report")
+
     def _publish_health(self) -> None:
         self._reported = self.urgent()
+        self._report(self.health())
+
+    def _report(self, parts: Sequence[Health]) -> None:
         name = self.get_fully_qualified_name().lstrip("/")
         statuses = [
             diagnostic_status(f"{name}: {each.part}", self.crane.name, each.level, each.summary, each.values)
-            for each in self.health()
+            for each in parts
         ]
         self._diagnostics.publish(diagnostic_array(self.get_clock().now().to_msg(), statuses))
 

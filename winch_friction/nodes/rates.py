@@ -75,9 +75,17 @@ class InputHealth:
             problems.append((ERROR if needed else WARN, f"{topic}: silent for {now - arrivals.arrived:.1f} s"))
         elif refused:
             problems.append((ERROR if needed else WARN, f"{topic}: {refused} refused, {arrivals.reason}"))
+        elif lag := self._lag(topic):
+            problems.append((ERROR if needed else WARN, f"{topic}: its stamps are {lag:.1f} s behind the speed's"))
         if publishers > 1:
             problems.append((ERROR if needed else WARN, f"{topic}: {publishers} publishers"))
         return problems
+
+    def _lag(self, topic: str) -> float:
+        """s by which what a topic says is too old by its stamps, although it comes; 0 when it is young enough."""
+        hold, ages = self._gate.hold, self._gate.ages()
+        columns = [each for each in self._gate.topics.inputs[topic].channels if ages.get(each, 0.0) > hold.limit(each)]
+        return max((ages[each] for each in columns), default=0.0)
 
     def _gate_was_heard(self) -> bool:
         return math.isfinite(self._gate.last_arrival)

@@ -83,7 +83,7 @@ class SimulatorNode(WinchNode):
         self.voyage = Voyage(scenario, crane, truth, own.seed, hidden_effects(own.hidden), legs)
         self.topics = self.options.topics(crane)
         self.answers = Answers(own.wait_for if own.lockstep else ())
-        self.held = HeldTorque(max(HOLD_TIME, HELD_SCANS / scenario.sensors.rate))
+        self.held = HeldTorque(max(HOLD_TIME, HELD_SCANS / scenario.sensors.rate), largest=crane.absolute_torque_limit)
         self._inputs = {
             topic: self.publisher(message_type(each.type_name), topic, OUTPUT, qos_overriding_options=overridable())
             for topic, each in self.topics.inputs.items()

@@ -31,11 +31,13 @@ class HeldTorque:
     """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step.
 
     An `invalid` torque is a ramp to zero: it is followed, but not held beyond the next that is due. A torque that is
-    not a number, or that came before (by its number), is no message at all.
+    not a number, larger than `largest` N m (what the crane's compensator may say at all), or that came before (by its
+    number), is no message at all.
     """
 
     hold_time: float = HOLD_TIME
     fade_time: float = FADE_TIME
+    largest: float = math.inf
     torque: float = field(default=0.0, init=False)  # the last one that came
     _came: float = field(default=-math.inf, init=False)  # s
     _number: int = field(default=-1, init=False)
@@ -46,7 +48,7 @@ class HeldTorque:
         """A torque that came at `now` s with the text of its header; False when it is ignored."""
         valid, number = read_mark(text)
         silent = now - self._came > self.hold_time
-        if not math.isfinite(torque) or (0 <= number <= self._number and not silent):
+        if not abs(torque) <= self.largest or not math.isfinite(torque) or (0 <= number <= self._number and not silent):
             return False
         self._update(now)
         self.torque, self._came, self._number = torque, now, number

@@ -125,7 +125,7 @@ def _effect(search: Search, found: Finding, repaired: Repair, tied: Company) -> 
     candidate = found.slot.origin[0]
     estimates = repaired.parameters.get(candidate.name, {})
     return Effect(
-        candidate.name, tied.rivals, found.slot.label, candidate.law, estimates, found.p_value, found.gain,
+        candidate.name, tied.rivals, found.slot.label, candidate.latex, estimates, found.p_value, found.gain,
         found.selection_frequency, law_name=candidate.law_name, free=candidate.free,
         combination=known_combination(search, found, estimates, tied.partners, repaired.model),
     )  # fmt: skip
@@ -134,7 +134,7 @@ def _effect(search: Search, found: Finding, repaired: Repair, tied: Company) -> 
 def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
     candidate = finding.slot.origin[0]
     return Effect(
-        candidate.name, (), finding.slot.label, candidate.law, parameters[candidate.name], finding.p_value,
+        candidate.name, (), finding.slot.label, candidate.latex, parameters[candidate.name], finding.p_value,
         finding.gain, 1.0, "just after reversals", candidate.law_name, candidate.free,
     )  # fmt: skip
 

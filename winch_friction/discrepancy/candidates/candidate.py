@@ -108,7 +108,7 @@ class Candidate:
     """
 
     name: str  # of the cause
-    law: str
+    law: str = ""  # LaTeX; empty: the term's
     linear: tuple[Parameter, ...] = ()
     columns: Columns = no_columns
     shapes: Shapes = single_shape
@@ -134,6 +134,11 @@ class Candidate:
     corrects: Corrects | None = None  # how its estimates become corrections of the repaired model
     merge: Merge | None = None  # how its term melts with the same term of another shape; None: values add
 
+    @property
+    def latex(self) -> str:
+        """Its law in LaTeX. Rendering costs, and few of those that are tried are ever shown."""
+        return self.law or (self.term.latex if self.term else "")
+
     def most_in(self, model: FrictionModel) -> float:
         """Largest amplitude that is believed, in typical sizes: of a bare model nothing is known yet."""
         present = self.term is not None and self.term.name in model.term_names
@@ -144,12 +149,12 @@ class Candidate:
         """Why these runs cannot show it; None where they can."""
         present = frozenset.intersection(*(run.present for run in runs))
         if self.hydraulic and not any(run.groups for run in runs):
-            return Untestable(self.name, self.law, "pressures", "an electric drive has none")
+            return Untestable(self.name, self.latex, "pressures", "an electric drive has none")
         if self.blind is not None and (reason := self.blind(runs)) is not None:
-            return Untestable(self.name, self.law, *reason)
+            return Untestable(self.name, self.latex, *reason)
         missing = [name for name in self.needs if name not in present]
         if missing:
-            return Untestable(self.name, self.law, missing[0], f"no run has '{missing[0]}' throughout")
+            return Untestable(self.name, self.latex, missing[0], f"no run has '{missing[0]}' throughout")
         return None
 
     def refined(self, shape: Shape) -> "Candidate":

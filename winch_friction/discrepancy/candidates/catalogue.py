@@ -27,7 +27,7 @@ def _never(_: Sequence[PreparedRun]) -> tuple[str, str] | None:
 DETECTED = (
     Candidate("entrained_air", r"K(p)", regime=NOWHERE, kind="flow", hydraulic=True, blind=_never),
     Candidate("slip_leakage", r"C\,p/\mu", regime=FLOW, kind="flow", hydraulic=True, blind=_no_command),
-    Candidate("torque_ripple", term_named("torque_ripple").latex, regime=ANGLE),
+    Candidate("torque_ripple", term=None, regime=ANGLE),
 )
 
 

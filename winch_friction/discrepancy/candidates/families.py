@@ -138,7 +138,7 @@ def _free(row: _Free, runs: Sequence[PreparedRun]) -> Candidate | None:
     hydraulic = scope is Scope.MOTOR
     presumes = COULOMB if cause == "wear_drift" else ()
     return Candidate(
-        cause, term.latex, term.parameters, partial(term_columns, term), term=term, needs=needs, hydraulic=hydraulic,
+        cause, "", term.parameters, partial(term_columns, term), term=term, needs=needs, hydraulic=hydraulic,
         presumes=presumes, law_name=name, free=True, plausible=FAR,
     )  # fmt: skip
 

@@ -73,7 +73,7 @@ def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Can
         "hydraulic": any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     }
     linear = tuple(p for p in term.parameters if not p.shape)
-    return Candidate(term.name, term.latex, linear, partial(term_columns, term), term=term, **(fields | more))
+    return Candidate(term.name, "", linear, partial(term_columns, term), term=term, **(fields | more))
 
 
 def _grid(term: Term, given: Grid) -> Grid:

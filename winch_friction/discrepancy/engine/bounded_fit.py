@@ -23,8 +23,9 @@ def bounded_fit(
         target = beta.copy()
         if len(index):
             fixed = np.flatnonzero(~free)
-            rhs = g[index] - h[np.ix_(index, fixed)] @ beta[fixed]
-            target[index] = np.linalg.solve(h[np.ix_(index, index)], rhs)
+            rows = h[index]
+            rhs = g[index] - rows[:, fixed] @ beta[fixed]
+            target[index] = np.linalg.solve(rows[:, index], rhs)
         step = target - beta
         limit, blocking = _longest_step(beta, step, lower, upper, index)
         beta = beta + limit * step

@@ -65,11 +65,11 @@ class CrossFit:
         index = np.asarray(columns)
         losses, left_out = np.empty(len(self.fold)), np.empty((len(self.sums), len(columns)))
         g = self.problem.grams
-        for k, (own, sum_g, sum_b) in enumerate(self.sums):
-            left_out[k] = beta = self.problem.fit(sum_g, sum_b, columns)
-            part = g.g[np.ix_(own, index, index)]
-            losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ beta + (part @ beta) @ beta
         loss, beta = self.train_loss(slots)
+        for k, (own, sum_g, sum_b) in enumerate(self.sums):
+            left_out[k] = without = self.problem.fit(sum_g, sum_b, columns, beta)
+            part = g.g[np.ix_(own, index, index)]
+            losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ without + (part @ without) @ without
         return Explanation(tuple(slots), losses, beta, loss, left_out)
 
     def covariance(self, explanation: Explanation) -> FloatArray:

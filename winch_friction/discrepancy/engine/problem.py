@@ -95,16 +95,19 @@ class Problem:
         """Whether a candidate may have any size: a plain term that a bare model lacked from the start."""
         return all(self.layout.upper[column] >= LIMITS.unbounded for column in slot.columns)
 
-    def fit(self, g: FloatArray, b: FloatArray, columns: Sequence[int]) -> FloatArray:
-        """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments."""
+    def fit(
+        self, g: FloatArray, b: FloatArray, columns: Sequence[int], start: FloatArray | None = None
+    ) -> FloatArray:
+        """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments. A `start`
+        near the answer saves steps and changes nothing else."""
         index = np.asarray(columns)
-        h, rhs = g[np.ix_(index, index)].copy(), b[index].copy()
+        h, rhs = g[index][:, index], b[index]
         k = len(self.base.names)
         h[np.arange(k), np.arange(k)] += LIMITS.prior_weight
         rhs[:k] -= LIMITS.prior_weight * self.base.shift
         rest = np.arange(k, len(index))
         h[rest, rest] += RIDGE * h[rest, rest] + TINY
-        return bounded_fit(h, rhs, self.layout.lower[index], self.layout.upper[index])
+        return bounded_fit(h, rhs, self.layout.lower[index], self.layout.upper[index], start)
 
     def covariance(self, g: FloatArray, columns: Sequence[int]) -> FloatArray:
         """Covariance of the coefficients: data, thinned for correlated noise, and prior; bounds do not count."""

@@ -237,14 +237,17 @@ def state_history(
         exponent = decay * dt
         keep = np.exp(-exponent)
         weight = np.where(exponent > 1e-9, -np.expm1(-exponent) / np.maximum(exponent, 1e-9), 1.0)
-        out.append(_recursion(initial, keep.tolist(), (gain * dt * weight).tolist()))
+        out.append(_recursion(initial, keep, gain * dt * weight))
     return tuple(out)
 
 
-def _recursion(z: float, keep: list[float], add: list[float]) -> FloatArray:
-    history: list[float] = []
-    append = history.append
-    for a, b in zip(keep, add, strict=True):
-        z = a * z + b
-        append(z)
-    return np.array(history)
+def _recursion(z: float, keep: FloatArray, add: FloatArray) -> FloatArray:
+    """z_k = keep_k z_{k-1} + add_k by doubling: after step m each entry has 2^m steps behind it."""
+    reach, out = keep.copy(), add.copy()
+    out[0] += keep[0] * z
+    step = 1
+    while step < len(out):
+        out[step:] += reach[step:] * out[:-step]
+        reach[step:] *= reach[:-step]
+        step *= 2
+    return out

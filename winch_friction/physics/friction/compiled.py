@@ -50,14 +50,14 @@ class CompiledTerms:
         return tuple(self._at_shaft(term) for term in self.terms)
 
     def _at_shaft(self, term: Term) -> sp.Expr:
-        torque = term.torque.subs(self._constant_values())
+        torque = term.torque.xreplace(self._constant_values())
         if term.scope is Scope.MOTOR:
             return sp.Add(*(self._in_group(term, symbols.n * torque, g) for g in range(self.group_count)))
         return self._in_group(term, symbols.N * torque if term.scope is Scope.SYSTEM else torque, 0)
 
     def _in_group(self, term: Term, expression: sp.Expr, group: int) -> sp.Expr:
         own = {symbol: symbols.group_symbol(symbol, group) for symbol in symbols.GROUP_SYMBOLS}
-        return expression.subs({**own, **self._state_of(term, group)})
+        return expression.xreplace({**own, **self._state_of(term, group)})
 
     def _state_of(self, term: Term, group: int) -> dict[sp.Basic, sp.Basic]:
         if term.state is None:
@@ -65,8 +65,9 @@ class CompiledTerms:
         index = self.stateful.index(term)
         return {term.state.symbol: sp.Symbol(f"z_{{{index},{group}}}", real=True)}
 
-    def _constant_values(self) -> dict[sp.Basic, float]:
-        return {each.symbol: self.constants.get(each.name, each.default or 0.0) for each in symbols.CONSTANTS}
+    def _constant_values(self) -> dict[sp.Basic, sp.Basic]:
+        values = {each.symbol: self.constants.get(each.name, each.default or 0.0) for each in symbols.CONSTANTS}
+        return {symbol: sp.Float(value) for symbol, value in values.items()}
 
     @cached_property
     def total(self) -> sp.Expr:
@@ -126,7 +127,7 @@ class CompiledTerms:
     @cached_property
     def _state_equations(self) -> list[sp.Expr]:
         return [
-            self._in_group(term, part.subs(self._constant_values()), g)
+            self._in_group(term, part.xreplace(self._constant_values()), g)
             for term in self.stateful
             if term.state is not None
             for g in self._groups(term)
@@ -154,7 +155,7 @@ def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:
     return tuple({parameter.name: parameter for term in terms for parameter in term.parameters}.values())
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=1024)
 def compiled(terms: tuple[Term, ...], group_count: int, constants: tuple[tuple[str, float], ...]) -> CompiledTerms:
     """The functions of these terms, made once per process."""
     return CompiledTerms(terms, group_count, constants)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
+from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.options import from_mapping
 from winch_friction.physics.signals import GroupSample, Sample
@@ -290,3 +291,14 @@ def test_a_hydraulic_model_is_refused_on_an_electric_drive():
     each = FeedforwardCompensator(load_crane("emps"), load_model("emps_symmetric"))
     with pytest.raises(InputError, match="need pressures, the crane's drive is electric"):
         each.load_model(replace(SEED, name="wrong crane"))
+
+
+def test_the_envelope_bounds_what_is_published_below_the_absolute_limit():
+    output = SafeOutput(absolute=2000.0, slew=1e6, ramp_time=0.2, hold=0.1)
+    for k in range(100):
+        output.arrive(k * PERIOD)
+        output.follow(-900.0, 300.0 if k < 50 else 5000.0, usable=True, enabled=True)
+        assert output.torque >= (-300.0 if k < 50 else -900.0)
+        if k == 49:
+            assert output.torque == -300.0
+    assert output.torque == pytest.approx(-900.0)

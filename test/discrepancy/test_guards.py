@@ -9,12 +9,12 @@ from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.noise import noise_of_run
-from winch_friction.discrepancy.engine.omnibus import dependences
+from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.selection import select
+from winch_friction.discrepancy.engine.selection import _significant, select
 from winch_friction.discrepancy.proof import at_the_floor, nothing_compared, prove, worse_runs
-from winch_friction.discrepancy.verdict import MISSING, UNEXPLAINED, decide
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, decide
 
 RUNS, BLOCKS = 8, 300
 SPEED = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
@@ -26,10 +26,10 @@ SEGMENT = RUN * 10 + POSITION // 30
 SLOTS = (Slot("wave", "", (1,), most=50.0), Slot("other", "", (2,), most=50.0))
 
 
-def crossfit(y, features=None):
+def crossfit(y, features=None, other=OTHER):
     """One base parameter that explains a little of the noise, and two candidates."""
     rng = np.random.default_rng(99)
-    x = np.column_stack([rng.standard_normal(len(y)), WAVE, OTHER])
+    x = np.column_stack([rng.standard_normal(len(y)), WAVE, other])
     features = {"speed": np.abs(SPEED), "acceleration": np.abs(OTHER)} if features is None else features
     blocks = Blocks(y, x, RUN, SEGMENT, np.ones_like(y), features, np.sign(SPEED), POSITION)
     one = np.ones(1)
@@ -60,13 +60,39 @@ def test_noise_alone_selects_nothing():
     assert not any(answer(noise(seed), seed)[0].found for seed in range(20))
 
 
-@pytest.mark.parametrize(("left", "kind"), [(0.6, MISSING), (1.9, UNEXPLAINED)])
-def test_a_name_may_leave_an_eighth_of_the_excess_but_not_half(left, kind):
+@pytest.mark.parametrize(("left", "kind"), [(0.6, MISSING), (0.92, UNEXPLAINED), (1.9, UNEXPLAINED)])
+def test_a_name_may_leave_an_eighth_of_the_excess_but_not_a_fifth(left, kind):
     """The remainder is one that no candidate makes: 15 % of the excess is the limit."""
     strange = np.where(np.abs(SPEED) > 0.5, 1.0, -1.0) * left * 1.5
     selection, verdict = answer(4.0 * WAVE + strange + noise())
     assert "wave" in [each.slot.name for each in selection.found]
     assert verdict.kind == kind
+
+
+@pytest.mark.parametrize(
+    ("share", "p", "kind"), [(0.1, 1e-3, UNEXPLAINED), (0.06, 1e-3, NOTHING), (0.1, 0.02, NOTHING)]
+)
+def test_what_a_signal_predicts_is_something_from_eight_per_cent_on(share, p, kind):
+    cross = crossfit(noise())
+    selection = select(cross, np.random.default_rng(0))
+    assert decide(cross, selection, [Dependence("speed", share, p)]).kind == kind
+
+
+@pytest.mark.parametrize(("gain", "p", "enough"), [
+    (0.2, 0.04, True), (0.2, 0.06, False), (0.05, 0.008, True), (0.05, 0.03, False), (0.015, 5e-4, True),
+    (0.015, 5e-3, False),
+])  # fmt: skip
+def test_the_smaller_a_gain_the_surer_it_must_be(gain, p, enough):
+    assert _significant(np.array([p]), np.array([gain])) == [enough]
+
+
+def test_what_does_as_well_is_a_rival_and_what_does_worse_is_none():
+    twin, worse = WAVE + 0.02 * OTHER, WAVE + 0.6 * OTHER
+    for other, kind in ((twin, AMBIGUOUS), (worse, MISSING)):
+        cross, rng = crossfit(2.0 * WAVE + noise(), other=other), np.random.default_rng(1)
+        selection = select(cross, rng)
+        assert len(selection.found) == 1
+        assert decide(cross, selection, []).kind == kind
 
 
 # -- omnibus

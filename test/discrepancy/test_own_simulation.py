@@ -11,9 +11,10 @@ from own_winch import FMU_SOURCE, churning, cycle
 
 from winch_friction.cli import main
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.preparation.own_simulation import simulated_column
+from winch_friction.discrepancy.preparation.own_simulation import simulated_column, simulated_error
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Run
 from winch_friction.records.runs import write_run
 from winch_friction.simulation.fmu import load_fmu_map, simulate_fmu
 
@@ -123,3 +124,14 @@ def test_a_file_that_is_no_fmu_is_said(fmu, tmp_path):
     (tmp_path / "x.fmu").write_text("not an archive")
     with pytest.raises(InputError, match="not an FMU"):
         simulate_fmu(tmp_path / "x.fmu", load_fmu_map(fmu[1]), cycle(3, "run"))
+
+
+def test_the_error_of_each_simulated_column_is_measured_minus_simulated_drive_torque(crane_150t):
+    """Drop and torque: what was measured on top. Force: a rope that pulls less than simulated has lost torque."""
+    radius, one = np.full(3, 1.1), np.ones(3)
+    columns = {"rope_force": 90e3 * one, "rope_force_simulated": 100e3 * one}
+    lost = simulated_error(columns, Run("force", {"time": np.arange(3.0), **columns}), (), crane_150t, radius)
+    assert lost == pytest.approx(10e3 * 1.1 / crane_150t.gear_ratio)
+    columns = {"motor_torque": 120.0 * one, "motor_torque_simulated": 100.0 * one}
+    more = simulated_error(columns, Run("torque", {"time": np.arange(3.0), **columns}), (), crane_150t, radius)
+    assert more == pytest.approx(20.0 * crane_150t.motor_total(()))

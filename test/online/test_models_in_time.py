@@ -32,6 +32,12 @@ def test_a_hostile_model_is_one_line(text: str) -> None:
     assert time.monotonic() - began < 2.0
 
 
+def test_brackets_without_end_are_refused_before_any_parser_sees_them() -> None:
+    for text in ("[" * 20_000, "{" * 3_000, "a:\n" + 200 * " " + "b: 1"):
+        with pytest.raises(InputError, match="nested too deeply"):
+            parse(text, "friction_model")
+
+
 def test_a_model_passes_and_is_far_below_the_limit() -> None:
     text = model_to_text(SEED)
     assert len(text) < LARGEST / 4
@@ -62,10 +68,11 @@ def test_the_newest_is_kept_and_one_a_second_looked_at() -> None:
     assert isinstance(refused, InputError)
 
 
+@pytest.mark.parametrize("period", [1.0, 0.05])
 @pytest.mark.parametrize("shifts", [(0.0,), (0.0, 7.8), (0.0, -7.8), (0.0, 3600.0, -3600.0)])
-def test_models_are_published_once_a_second_whatever_the_clocks(shifts: tuple[float, ...]) -> None:
+def test_models_are_published_once_a_second_whatever_the_clocks(shifts: tuple[float, ...], period: float) -> None:
     """What was seen: two senders with different clocks, 127 models in 5 s."""
-    service = EstimatorService(CRANE, SEED, TOPICS, model_period=1.0)
+    service = EstimatorService(CRANE, SEED, TOPICS, model_period=period)
     published, now = [], START
     for k in range(250):
         now += PERIOD

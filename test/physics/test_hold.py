@@ -21,6 +21,14 @@ def test_holds_until_the_age_limit_of_the_input():
     assert hold.ages(0.3)["motor_speed"] == 0.3
 
 
+def test_an_input_may_have_an_age_limit_of_its_own_beside_its_channel():
+    hold = InputHold(groups=("main",), max_ages={"pressure_a": 0.5, "main.pressure_a": 2.0, "hook_load": 5.0})
+    assert hold.limit("main.pressure_a") == 2.0
+    assert hold.limit("other.pressure_a") == 0.5
+    assert hold.limit("hook_load") == 5.0
+    assert hold.limit("motor_speed") == hold.max_age
+
+
 def test_ignores_what_is_not_finite_or_late():
     hold = InputHold()
     assert hold.put("motor_speed", 1.0, 5.0)

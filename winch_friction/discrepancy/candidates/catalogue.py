@@ -10,7 +10,7 @@ from winch_friction.discrepancy.candidates.geometry import geometry_candidates
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
 
 

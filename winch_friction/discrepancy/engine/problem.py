@@ -95,9 +95,7 @@ class Problem:
         """Whether a candidate may have any size: a plain term that a bare model lacked from the start."""
         return all(self.layout.upper[column] >= LIMITS.unbounded for column in slot.columns)
 
-    def fit(
-        self, g: FloatArray, b: FloatArray, columns: Sequence[int], start: FloatArray | None = None
-    ) -> FloatArray:
+    def fit(self, g: FloatArray, b: FloatArray, columns: Sequence[int], start: FloatArray | None = None) -> FloatArray:
         """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments. A `start`
         near the answer saves steps and changes nothing else."""
         index = np.asarray(columns)

@@ -1,0 +1,65 @@
+"""Which stamps are believed: one case for every way in which a sender's clock goes wrong."""
+
+import pytest
+
+from winch_friction.online.stamps import CONFIRMED_BY, Stamp, StampWatch
+
+PERIOD = 0.02  # s
+
+
+def watch_at_work(seconds=1.0, **options):
+    """A watch that has seen good stamps; with the time of the last."""
+    watch, steps = StampWatch(**options), round(seconds / PERIOD)
+    for k in range(steps + 1):
+        assert watch.judge(100.0 + k * PERIOD, k * PERIOD) is Stamp.GOOD
+    return watch, 100.0 + steps * PERIOD, steps * PERIOD
+
+
+def test_a_stamp_that_stands_is_refused_at_once_and_for_ever():
+    watch, stamp, now = watch_at_work()
+    assert all(watch.judge(stamp, now + k * PERIOD) is Stamp.REPEATED for k in range(1000))
+
+
+def test_the_same_stamp_at_the_same_moment_is_refused():
+    """A burst repeats the last message before any time has passed."""
+    watch, stamp, now = watch_at_work()
+    assert watch.judge(stamp, now) is Stamp.REPEATED
+
+
+@pytest.mark.parametrize(("pace", "worth"), [(0.05, Stamp.REPEATED), (0.5, Stamp.GOOD), (1.0, Stamp.GOOD)])
+def test_stamps_that_creep_are_as_good_as_standing(pace, worth):
+    """Slower than a tenth of the clock is no clock; half as fast is a slow simulation."""
+    watch, stamp, now = watch_at_work()
+    assert watch.judge(stamp + pace * 0.2, now + 0.2) is worth
+
+
+def test_a_simulated_clock_may_creep_but_not_stand():
+    watch, stamp, now = watch_at_work(paced=False)
+    assert watch.judge(stamp + 0.001, now + 0.2) is Stamp.GOOD
+    assert watch.judge(stamp + 0.001, now + 0.4) is Stamp.REPEATED
+
+
+def test_one_stamp_of_the_future_is_refused_and_locks_nothing_out():
+    watch, stamp, now = watch_at_work()
+    assert watch.judge(stamp + 3600.0, now + PERIOD) is Stamp.AHEAD
+    assert watch.judge(stamp + 2 * PERIOD, now + 2 * PERIOD) is Stamp.GOOD
+
+
+def test_the_window_is_half_a_second():
+    for ahead, worth in ((0.4, Stamp.GOOD), (0.6, Stamp.AHEAD)):
+        watch, stamp, now = watch_at_work()
+        assert watch.judge(stamp + PERIOD + ahead, now + PERIOD) is worth
+
+
+@pytest.mark.parametrize("shift", [-5.0, 3600.0])
+def test_a_clock_that_was_set_is_believed_once_messages_agree(shift):
+    watch, stamp, now = watch_at_work()
+    worths = [watch.judge(stamp + shift + k * PERIOD, now + k * PERIOD) for k in range(1, CONFIRMED_BY + 1)]
+    refused = Stamp.AHEAD if shift > 0 else Stamp.BACK
+    assert worths == [refused] * (CONFIRMED_BY - 1) + [Stamp.JUMP]
+    assert watch.judge(stamp + shift + 6 * PERIOD, now + 6 * PERIOD) is Stamp.GOOD
+
+
+def test_late_by_less_than_a_jump_is_late():
+    watch, stamp, now = watch_at_work()
+    assert watch.judge(stamp - 0.5, now + PERIOD) is Stamp.REPEATED

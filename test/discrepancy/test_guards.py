@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
-from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.selection import _significant, select
+from winch_friction.discrepancy.engine.selection import _significant, does_as_well, select
 from winch_friction.discrepancy.proof import at_the_floor, nothing_compared, prove, worse_runs
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, decide
 
@@ -218,3 +218,20 @@ def test_nothing_is_missing_only_at_the_floor(left, floor):
 
 def test_nothing_compared_has_no_size():
     assert nothing_compared().size_after == Size(0.0, (0.0, 0.0))
+
+
+def explanation(losses):
+    return Explanation((), np.asarray(losses), np.zeros(0), 0.0, np.zeros((0, 0)))
+
+
+@pytest.mark.parametrize(("behind", "scatter", "rival"), [
+    (0.02, 0.0, True),  # within three per cent of what the effect is worth
+    (0.2, 3.0, True),  # further, but not surely
+    (0.2, 0.05, False),  # further, and surely
+    (1.5, 9.0, False),  # not half of what the effect is worth
+])  # fmt: skip
+def test_a_rival_is_worse_only_where_the_segments_say_so(behind, scatter, rival):
+    sign = np.tile([1.0, -1.0], 20)
+    current, without = explanation(np.ones(40)), explanation(3.0 * np.ones(40))
+    trial = explanation(1.0 + behind + scatter * sign)
+    assert does_as_well(trial, current, without, np.random.default_rng(0)) is rival

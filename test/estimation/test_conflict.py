@@ -78,6 +78,17 @@ def test_a_truth_ten_of_its_sigmas_away_is_said_and_lies_within_three_stated_one
     assert by_name["C6"].prior_std > 5.0 * by_name["C6"].seed_std  # the 3 % that 10 sigma refuted
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("scale", [1.0, 1.01])
+def test_a_refuted_seed_is_not_believed_where_a_small_sea_shows_nothing(crane, seed, scale):
+    """The turbulent loss K2 is 0.1 % of the friction there: it stays at the seed, 7.5 of the seed's sigmas away."""
+    truth = seed.with_values({name: 1.3 * seed.value(name) for name in seed.parameter_names if name != "C4"})
+    each = learned(crane, seed, truth, 90, load=15e3, height=0.3, scale=scale)
+    in_sigmas, squares = errors(each, truth)
+    assert np.abs(in_sigmas).max() < 3.0
+    assert squares < 29.6  # 99.9 % of a chi-square of 10 degrees of freedom
+
+
 def test_never_doubting_is_a_choice(crane, seed):
     truth = seed.with_values({name: 1.3 * seed.value(name) for name in seed.parameter_names if name != "C4"})
     case = load_scenario("ahc_55t_215").override({"duration": 60.0})

@@ -96,15 +96,18 @@ def test_finds_the_total_friction_of_a_raised_system_inside_its_own_sigma(crane,
     assert {p.status for p in each.parameters()} & {"learning", "learned"}
 
 
-def test_what_low_speed_does_not_excite_stays_at_the_seed_with_the_seeds_sigma(crane, seed):
-    each = FrictionEstimator(crane, seed, CONFIG)
+@pytest.mark.parametrize("conflict_level", [0.0, 0.01])
+def test_what_low_speed_does_not_excite_stays_at_the_seed_with_the_priors_sigma(crane, seed, conflict_level):
+    each = FrictionEstimator(crane, seed, replace(CONFIG, conflict_level=conflict_level))
     for sample in rigid_samples(crane, raised(seed), amplitude=12.0, duration=80.0, noise=9, speed_noise=0.1):
         each.step(sample)
     by_name = {p.name: p for p in each.parameters()}
     for name in ("K2", "K1"):  # turbulence and viscosity do nothing at 12 rad/s
-        assert abs(by_name[name].value - by_name[name].seed_value) < 0.1 * by_name[name].seed_std
-        assert by_name[name].std == pytest.approx(by_name[name].seed_std, rel=0.01)
+        # where the seed is refuted they move by their correlation with the others, far inside what is then stated
+        assert abs(by_name[name].value - by_name[name].seed_value) < 0.2 * by_name[name].prior_std
+        assert by_name[name].std == pytest.approx(by_name[name].prior_std, rel=0.02)
         assert by_name[name].status == "seed"
+        assert (by_name[name].prior_std > by_name[name].seed_std) == (conflict_level > 0.0)
     assert each.counts["learned_from"] > 1000
 
 

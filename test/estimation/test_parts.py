@@ -50,7 +50,7 @@ def test_the_wire_steps_as_the_exact_solution_does(crane):
             [damping * r / mass, k / mass, -damping / mass],
         ]
     )
-    step = wire_step(crane, mass, 6, length, damping, dt)
+    step = np.array(wire_step(crane, mass, 6, length, damping, dt))
     assert step[:, :3] == pytest.approx(expm(rates * dt), abs=0.02 * np.abs(expm(rates * dt)).max())
     tustin = np.linalg.inv(np.eye(3) - 0.5 * dt * rates)
     assert step[:, :3] == pytest.approx(tustin @ (np.eye(3) + 0.5 * dt * rates), rel=1e-9, abs=1e-12)
@@ -61,7 +61,7 @@ def test_the_wire_steps_as_the_exact_solution_does(crane):
 
 
 def test_without_a_load_the_shaft_is_alone(crane):
-    step = wire_step(crane, 0.0, 6, 50.0, 1e5, 0.02)
+    step = np.array(wire_step(crane, 0.0, 6, 50.0, 1e5, 0.02))
     assert step[0, 3] == pytest.approx(0.02 / crane.inertia)
     assert np.array_equal(step[:, :3], np.eye(3))
     assert not step[:, 4].any()
@@ -124,7 +124,7 @@ def test_a_step_is_filterpys_predict_and_update(seed):
 def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(seed, learning):
     each, step = some_filter(seed)
     each.predict_step(step, learning, False)
-    ahead, x = each._ahead.copy(), each._ahead_x.copy()
+    ahead, x = each._ahead_P.copy(), each._ahead_x.copy()
     innovation, variance = each.innovation(0.7)
     row = np.zeros(each.size)
     row[[SPEED, ENCODER_CHANGE]] = 1.0

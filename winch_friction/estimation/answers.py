@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
@@ -126,14 +127,14 @@ class ParameterStatuses:
         self._each = [ParameterStatus(config) for _ in parameters.seed.values]
         self._since, self._frozen = 0.0, True
 
-    def step(self, phi: FloatArray, covariance: FloatArray, frozen: bool, dt: float) -> None:
-        """Take the filter's parameters (n,) and their covariance (n, n), and whether learning rested for `dt` s."""
+    def step(self, state: StateFilter, frozen: bool, dt: float) -> None:
+        """Take the filter, and whether learning rested for `dt` s."""
         self._since += dt
         self._frozen = self._frozen and frozen
         if self._since < STATUS_PERIOD:
             return
-        shares = np.sqrt(np.diag(covariance) / np.diag(self._parameters.prior)).tolist()
-        limits = self._parameters.at_limit(phi).tolist()
+        shares = np.sqrt(state.considered_variances / self._parameters.prior.diagonal()).tolist()
+        limits = self._parameters.at_limit(state.phi).tolist()
         for index, share, limit in zip(self._parameters.free.tolist(), shares, limits, strict=True):
             self._each[index].step(share, self._frozen, limit, self._since)
         self._since, self._frozen = 0.0, True

@@ -35,6 +35,7 @@ UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
 STIFFEST = 40.0  # rad/s; a wire of unknown stiffness is taken as this stiff against the hanging mass
 
 FreshState = tuple[int, float, float]  # which state, its value, its variance
+Wire = Sequence[Sequence[float]]  # (3, 5) in plain floats: half of its use is one number at a time
 
 
 class Step(NamedTuple):
@@ -42,7 +43,7 @@ class Step(NamedTuple):
 
     `torque`: drive minus measured load, N m, its noise `variance` and what stick leaves unknown of it, (N m)^2;
     `friction`: N m, with its derivatives by all parameters; `by_sensors`: derivatives of the torque by the considered
-    sensor errors; `wire`: (3, 5) as from `wire_step`; heave velocity m/s; duration s.
+    sensor errors; `wire` as from `wire_step`; heave velocity m/s; duration s.
     """
 
     torque: float
@@ -51,13 +52,13 @@ class Step(NamedTuple):
     friction: float
     by_parameters: Sequence[float]
     by_sensors: Sequence[float]
-    wire: FloatArray
+    wire: Wire
     heave: float
     duration: float
     stick: bool
 
 
-def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> FloatArray:
+def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> Wire:
     """What [omega, stretch, v_load, torque, heave velocity] make of the first three after `dt` s, (3, 5).
 
     For a hanging mass in kg on `length` m of wire, damped by `damping` N s/m; without a mass the shaft is alone. The
@@ -66,7 +67,7 @@ def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: f
     """
     inertia = crane.inertia
     if mass <= 0.0:
-        return np.array([[1.0, 0, 0, dt / inertia, 0], [0, 1.0, 0, 0, 0], [0, 0, 1.0, 0, 0]])
+        return (1.0, 0.0, 0.0, dt / inertia, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0)
     r = crane.drum.radius(layer) / crane.gear_ratio
     k = min(crane.wire_stiffness / length, mass * STIFFEST**2)
     half = 0.5 * dt
@@ -77,14 +78,12 @@ def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: f
     pull = rate * stiff  # N s of force per m/s
     push = r * half / inertia  # m/s per N m
     at_shaft, at_load, spring = r / inertia, 1.0 / mass, dt * whole * k
-    return np.array(
-        [
-            [1.0 - at_shaft * pull * r, -at_shaft * spring, at_shaft * pull,
-             dt / inertia - at_shaft * pull * push, -at_shaft * pull],
-            [rate * r, 1.0 - spring * soft, -rate, rate * push, rate],
-            [at_load * pull * r, at_load * spring, 1.0 - at_load * pull, at_load * pull * push, at_load * pull],
-        ]
-    )  # fmt: skip
+    shaft, load = at_shaft * pull, at_load * pull
+    return (
+        (1.0 - shaft * r, -at_shaft * spring, shaft, dt / inertia - shaft * push, -shaft),
+        (rate * r, 1.0 - spring * soft, -rate, rate * push, rate),
+        (load * r, at_load * spring, 1.0 - load, load * push, load),
+    )
 
 
 class Propagation:
@@ -111,7 +110,7 @@ class Propagation:
         self._acting[TORQUE, [LOAD, DISTURBANCE]] = -1.0
         self._acting[TORQUE, size + TORQUE_NOISE] = 1.0
         self._acting[HEAVE, size + HEAVE_NOISE] = 1.0
-        self._rows = self.matrix[:LOAD]
+        self._rows, self._wire = self.matrix[:LOAD], np.zeros((LOAD, ACTING))
         self._by_parameters = self._acting[TORQUE, FIRST_PARAMETER:size]
         self._everything_free = len(free) and bool((np.arange(len(free)) == free).all())
 
@@ -121,18 +120,18 @@ class Propagation:
         if not self._everything_free or len(gradient) != len(self._free):
             gradient = [gradient[k] for k in self._free]
         np.multiply(gradient, self._scale, out=self._by_parameters)
-        np.dot(step.wire, self._acting, out=self._rows)
+        self._wire[:] = step.wire
+        np.dot(self._wire, self._acting, out=self._rows)
         self._rows[LOAD_SPEED, self.size + LOAD_SPEED_NOISE] = 1.0
         self.matrix[DISTURBANCE, DISTURBANCE] = fading(step.duration, self._config)
 
     def move(self, x: FloatArray, step: Step, out: FloatArray) -> None:
         """The states (n,) one step on: load torque and parameters stay, the disturbance fades."""
-        out[:] = x
         speed, stretch, load_speed, load, disturbance, encoder = x[:ENCODER_CHANGE].tolist()
         torque = step.torque - load - disturbance - step.friction
-        out[:LOAD] = step.wire.dot((speed, stretch, load_speed, torque, step.heave))
-        out[DISTURBANCE] = disturbance * fading(step.duration, self._config)
-        out[ENCODER], out[ENCODER_CHANGE] = 0.0, -encoder
+        moved = [a * speed + b * stretch + c * load_speed + d * torque + e * step.heave for a, b, c, d, e in step.wire]
+        out[FIRST_PARAMETER:] = x[FIRST_PARAMETER:]
+        out[:FIRST_PARAMETER] = (*moved, load, disturbance * fading(step.duration, self._config), 0.0, -encoder)
 
 
 def fading(duration: float, config: EstimatorConfig) -> float:

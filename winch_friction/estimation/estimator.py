@@ -134,7 +134,7 @@ class FrictionEstimator:
         self.counts["accepted"] += 1
         self.counts["learned_from"] += not reason
         self._state = reason or "learning"
-        self._statuses.step(self._filter.phi, self._filter.considered_covariance, bool(reason), dt)
+        self._statuses.step(self._filter, bool(reason), dt)
 
     def _rejected(self, sample: Sample, innovation: float, variance: float) -> Estimate:
         self._gate.rejected(innovation)

@@ -2,7 +2,8 @@
 
 filterpy's own predict and update take four products of whole matrices, an inverse and a dozen small arrays. Here the
 noises stand beside the states in one covariance, so that a prediction is one congruence, and the single speed that is
-measured makes the correction a change of rank one. A test holds both against filterpy's.
+measured makes the correction a change of rank one; the sensitivities to sensor errors are further rows of the same
+matrices. A test holds all of it against filterpy's.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +19,7 @@ from winch_friction.estimation.dynamics import (
     LOAD,
     NOISES,
     SPEED,
-    TORQUE,
+    TORQUE_NOISE,
     FreshState,
     Propagation,
     Step,
@@ -53,17 +54,21 @@ class StateFilter(ExtendedKalmanFilter):
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
-        self.sensitivity = np.zeros((len(sensors), size))
-        # states and, on the diagonal behind them, the noises of a step
-        self._joint = np.zeros((size + NOISES, size + NOISES))
-        self._noises = np.einsum("ii->i", self._joint)[size:]
-        self.x, self.P = np.zeros((size, 1)), self._joint[:size, :size]
+        # covariance of the states and, on the diagonal behind them, of a step's noises; below it the sensitivities,
+        # which a sensor error enters as the torque's noise does
+        noisy = size + NOISES
+        self._joint = np.zeros((noisy + len(sensors), noisy))
+        self._noises = np.einsum("ii->i", self._joint[:noisy])[size:]
+        self.x, self.P, self.sensitivity = np.zeros((size, 1)), self._joint[:size, :size], self._joint[noisy:, :size]
+        self._by_sensors = self._joint[noisy:, size + TORQUE_NOISE]
         self.P[self._phi, self._phi] = parameters.prior
         self._flat = self.x[:, 0]
-        # the prediction, until it is taken in, and room to calculate in
-        self._ahead, self._ahead_x, self._seen = np.zeros((size, size)), np.zeros(size), np.zeros(size)
-        self._ahead_sensitivity = self.sensitivity.copy()
-        self._half = np.zeros((size, size + NOISES))
+        self.phi: FloatArray = self._flat[self._phi]  # the scaled parameters (m,)
+        # the prediction of P and below it of the sensitivities, until it is taken in, and room to calculate in
+        self._ahead, self._ahead_x = np.zeros((size + len(sensors), size)), np.zeros(size)
+        self._ahead_P, self._ahead_sensitivity = self._ahead[:size], self._ahead[size:]
+        self._half, self._seen = np.zeros((noisy + len(sensors), size)), np.zeros(size + len(sensors))
+        self._half_of_joint, self._half_of_sensitivity = self._half[:noisy], self._half[noisy:]
         self._since_even = 0
         self._learned_for = self._unfaded = 0.0  # s of learning since the parameters' covariance last faded
 
@@ -93,11 +98,6 @@ class StateFilter(ExtendedKalmanFilter):
         return float(self._flat[LOAD])
 
     @property
-    def phi(self) -> FloatArray:
-        """The scaled parameters (m,)."""
-        return self._flat[self._phi]
-
-    @property
     def phi_covariance(self) -> FloatArray:
         """Their covariance (m, m)."""
         return self.P[self._phi, self._phi]
@@ -109,6 +109,12 @@ class StateFilter(ExtendedKalmanFilter):
             return self.phi_covariance
         root = self.sensitivity[:, self._phi] * self._sensors[:, None]
         return self.phi_covariance + root.T @ root
+
+    @property
+    def considered_variances(self) -> FloatArray:
+        """The diagonal of `considered_covariance` (m,)."""
+        own = self.phi_covariance.diagonal()
+        return own + self._sensors**2 @ self.sensitivity[:, self._phi] ** 2 if len(self._sensors) else own
 
     @property
     def noise_factor(self) -> float:
@@ -123,18 +129,17 @@ class StateFilter(ExtendedKalmanFilter):
     # -- one step
     def predict_step(self, step: Step, learning: bool, load_known: bool) -> None:
         """Look one step ahead: P = F P F' + G W G' with the noises' variances W; parameters also fade to the prior."""
-        motion, joint, ahead = self._propagation, self._joint, self._ahead
+        motion = self._propagation
         motion.take(step)
         motion.move(self._flat, step, self._ahead_x)
         self._noises[:] = noise_variances(step, self._config, self._factor.value, load_known)
-        np.dot(motion.matrix, joint, out=self._half)
-        np.dot(self._half, motion.matrix.T, out=ahead)
-        if len(self._sensors):
-            np.dot(self.sensitivity, motion.matrix[:, : self.dim_x].T, out=self._ahead_sensitivity)
-            self._ahead_sensitivity[:, :LOAD] += np.outer(step.by_sensors, step.wire[:, TORQUE])
+        self._by_sensors[:] = step.by_sensors
+        np.dot(self._joint, motion.matrix.T, out=self._half)
+        np.dot(motion.matrix, self._half_of_joint, out=self._ahead_P)
+        self._ahead_sensitivity[:] = self._half_of_sensitivity
         self._unfaded = self._learned_for + step.duration if learning else self._learned_for
         if self._unfaded >= FADE_PERIOD:
-            ahead[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
+            self._ahead_P[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
             self._unfaded = 0.0
 
     def innovation(self, measured: float) -> tuple[float, float]:
@@ -144,26 +149,24 @@ class StateFilter(ExtendedKalmanFilter):
         shows too much, the next one shows too little. Taken as white it would hide most of what the speed says about a
         torque, so the measured speed is the sum of two states.
         """
-        seen = np.add(self._ahead[SPEED], self._ahead[ENCODER_CHANGE], out=self._seen)
-        expected = self._ahead_x[SPEED] + self._ahead_x[ENCODER_CHANGE]
-        return measured - float(expected), float(seen[SPEED] + seen[ENCODER_CHANGE]) + self.speed_variance
+        seen = np.add(self._ahead[:, SPEED], self._ahead[:, ENCODER_CHANGE], out=self._seen)
+        expected = self._ahead_x.item(SPEED) + self._ahead_x.item(ENCODER_CHANGE)
+        return measured - expected, seen.item(SPEED) + seen.item(ENCODER_CHANGE) + self.speed_variance
 
     def correct(self, innovation: float, variance: float, learning: bool) -> None:
         """Take the prediction and its measured speed in; learned parameters stay inside their range."""
-        ahead, gain = self._ahead, self._seen * (1.0 / variance)
+        ahead, gain = self._ahead, self._seen[: self.size] * (1.0 / variance)
         if not learning:
             gain[self._phi] = 0.0
         self._learned_for = self._unfaded
         np.multiply(gain, innovation, out=self._flat)
         self._flat += self._ahead_x
-        # with the optimal gain of the free states Joseph's form is P - gain seen' there, and P among the considered
-        dger(-1.0, self._seen, gain, a=ahead.T, overwrite_x=0, overwrite_y=0, overwrite_a=1)
+        # with the optimal gain of the free states Joseph's form is P - seen gain' there, and P among the considered;
+        # so too for the sensitivities
+        dger(-1.0, gain, self._seen, a=ahead.T, overwrite_x=0, overwrite_y=0, overwrite_a=1)
         if not learning:
-            ahead[FIRST_PARAMETER:, :FIRST_PARAMETER] = ahead[:FIRST_PARAMETER, FIRST_PARAMETER:].T
-        self.P[:] = ahead
-        if len(self._sensors):
-            shown = self._ahead_sensitivity[:, SPEED] + self._ahead_sensitivity[:, ENCODER_CHANGE]
-            np.subtract(self._ahead_sensitivity, np.outer(shown, gain), out=self.sensitivity)
+            self._ahead_P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self._ahead_P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
+        self.P[:], self.sensitivity[:] = self._ahead_P, self._ahead_sensitivity
         if learning:
             self._keep_sound()
 
@@ -171,8 +174,8 @@ class StateFilter(ExtendedKalmanFilter):
         """Parameters inside their range; now and then without what rounding left unequal between the halves of P."""
         self._since_even += 1
         if self._since_even >= EVEN_EVERY:
-            np.add(self.P, self.P.T, out=self._ahead)
-            np.multiply(self._ahead, 0.5, out=self.P)
+            np.add(self.P, self.P.T, out=self._ahead_P)
+            np.multiply(self._ahead_P, 0.5, out=self.P)
             self._since_even = 0
         if not self._parameters.contains(self.phi):
             self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)

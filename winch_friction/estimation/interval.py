@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.dynamics import STICK_IGNORANCE, Step, wire_step
+from winch_friction.estimation.dynamics import STICK_IGNORANCE, Step, Wire, wire_step
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, torque_variance
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.state import advance_all
-from winch_friction.physics.signals import FloatArray, Sample
+from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point
 
@@ -109,7 +109,7 @@ class Intervals:
         magnitude = 0.5 * (abs(before) + abs(sample.motor_speed))
         return (mean_direction(before, sample.motor_speed), magnitude, *point[2:])
 
-    def _wire(self, sample: Sample, extra: float, duration: float) -> FloatArray:
+    def _wire(self, sample: Sample, extra: float, duration: float) -> Wire:
         length = sample.wire_out if math.isfinite(sample.wire_out) else self._config.wire_length
         mass = self._load.mass_by(extra, sample.wire_layer)
         damping = self._config.wire_damping

@@ -1,8 +1,9 @@
 """What a crane is, as far as friction is concerned."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import GRAVITY
@@ -17,15 +18,26 @@ class Drum:
 
     def has(self, layer: float) -> bool:
         """Whether this is one of the drum's layers, counted from 1, or none is said (NaN)."""
-        return layer != layer or (math.isfinite(layer) and 1 <= round(layer) <= len(self.layer_radii))
+        return (
+            layer in self._by_layer
+            or layer != layer
+            or (math.isfinite(layer) and 1 <= round(layer) <= len(self.layer_radii))
+        )
 
     def radius(self, layer: float) -> float:
         """Rope radius in m of a wire layer counted from 1; without a layer (NaN) the outer one is assumed."""
+        found = self._by_layer.get(layer)  # as a PLC says it; a node asks five times per sample
+        if found is not None:
+            return found
         if layer != layer:
             return self.layer_radii[-1]
         if not self.has(layer):
             raise InputError(f"wire_layer {layer:g} does not exist: the drum has layers 1 ... {len(self.layer_radii)}")
         return self.layer_radii[round(layer) - 1]
+
+    @cached_property
+    def _by_layer(self) -> dict[float, float]:
+        return {float(layer): radius for layer, radius in enumerate(self.layer_radii, start=1)}
 
 
 @dataclass(frozen=True)
@@ -67,9 +79,9 @@ class Crane:
         ]  # fmt: skip
         return html_table(f"Crane '{self.name}'", ("", "value", "unit"), rows)
 
-    def motor_total(self, groups: Sequence[str]) -> int:
+    def motor_total(self, groups: Collection[str]) -> int:
         """Number of motors on the shaft when these groups drive it."""
-        return sum(self.motor_count(group) for group in groups) if groups else sum(self.groups.values()) or 1
+        return sum(map(self.motor_count, groups)) if groups else sum(self.groups.values()) or 1
 
     def motor_count(self, group: str) -> int:
         """Motors in one group; an unknown name raises `InputError`."""

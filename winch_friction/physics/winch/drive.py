@@ -70,8 +70,10 @@ class Drive:
         if self.hydraulic:
             return float(
                 hydraulic_torque(
-                    (crane.motor_count(name), group.displacement, group.pressure_a - group.pressure_b)
-                    for name, group in sample.groups.items()
+                    [
+                        (crane.motor_count(name), group.displacement, group.pressure_a - group.pressure_b)
+                        for name, group in sample.groups.items()
+                    ]
                 )
             )
         speed = sample.motor_speed
@@ -125,4 +127,4 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 
 def hydraulic_torque(groups: Iterable[tuple[float, Any, Any]]) -> Any:
     """Sum of n D dp in N m over groups of (motors, displacement m^3/rad, pressure drop Pa); floats or arrays alike."""
-    return sum(count * displacement * drop for count, displacement, drop in groups)
+    return sum([count * displacement * drop for count, displacement, drop in groups])

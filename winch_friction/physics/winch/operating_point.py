@@ -1,6 +1,7 @@
 """From measured signals to the operating point that every friction function takes (the order of `symbols.layout`)."""
 
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,8 @@ _DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIG
 CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
 # places for the one point of a sample, which a node needs at every step
 _TEMPLATE: list[Any] = [_DEFAULTS.get(name) for name in _ORDER]
-_CHANNELS = tuple((_ORDER.index(name), name) for name in CHANNEL_SIGNALS)
+_PLACES = tuple(_ORDER.index(name) for name in CHANNEL_SIGNALS)
+_channels_of = attrgetter(*CHANNEL_SIGNALS)
 _DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL = (
     _ORDER.index(name)
     for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total")
@@ -54,16 +56,15 @@ def sample_operating_point(
 ) -> tuple[float, ...]:
     """The operating point of one sample at a given speed; `width` smooths the direction, rad/s."""
     x: list[Any] = _TEMPLATE.copy()
-    for index, name in _CHANNELS:
-        value = getattr(sample, name)
+    for index, value in zip(_PLACES, _channels_of(sample), strict=True):
         if value == value:
             x[index] = value
     x[_DIRECTION], x[_MAGNITUDE], x[_SPEED] = smooth_sign(speed, width), abs(speed), speed
     x[_DRUM_TORQUE], x[_ACCELERATION] = drum_torque, acceleration
-    x[_MOTOR_TOTAL] = crane.motor_total(tuple(sample.groups))
+    x[_MOTOR_TOTAL] = crane.motor_total(sample.groups)
     for name, g in sample.groups.items():
         a, b = g.pressure_a, g.pressure_b
-        x += crane.motor_count(name), abs(a - b), a + b, g.displacement
+        x += crane.groups[name], abs(a - b), a + b, g.displacement
     return tuple(x)
 
 

@@ -1,7 +1,6 @@
-"""Reference pages from the code: command line, API, channels, node parameters, corrections, effects."""
+"""Reference pages from the code: command line, API, channels, nodes, file schemas, corrections, effects."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ def write_reference(folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     for name, text in {
         "api": _api(), "cli": _cli(), "channels": _channels(), "parameters": _parameters(), "effects": _effects(),
-        "corrections": _corrections(),
+        "corrections": _corrections(), "nodes": _nodes(), "schemas": _schemas(),
     }.items():  # fmt: skip
         path = folder / f"{name}.md"
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
@@ -97,19 +96,66 @@ def _channels() -> str:
 
 
 def _parameters() -> str:
-    from winch_friction.compensation import CompensatorConfig
-    from winch_friction.estimation import EstimatorConfig
-    from winch_friction.physics.options import default_of, limits_of
+    from generate_nodes import nodes, parameters_of
 
-    text = "# Parameters of the nodes\n\nEvery parameter is declared once, with its limits, where it is used.\n"
-    for kind, node in ((CompensatorConfig, "compensator"), (EstimatorConfig, "estimator")):
-        rows = []
-        for each in fields(kind):
-            limits = limits_of(each)
-            span = ", ".join(limits.choices) if limits.choices else f"{limits.lower:g} … {limits.upper:g}"
-            rows.append((f"`{each.name}`", default_of(each), limits.unit, span, limits.doc))
-        text += f"\n## `{node}`\n\n" + _table(("parameter", "default", "unit", "may be", "meaning"), rows)
+    text = (
+        "# Parameters of the nodes\n\nWhat `ros2 param describe` says, asked of the nodes. Besides: `gains.TERM`, a "
+        "gain of each term of the compensator (1.0, 0 … 2), `use_sim_time`, and the quality of service of each topic under "
+        "`qos_overrides`.\n"
+    )
+    with nodes() as made:
+        for name, node in made.items():
+            rows = [(f"`{n}`", f"`{value}`", span, doc) for n, value, span, doc in parameters_of(node)]
+            text += f"\n## `{name}`\n\n" + _table(("parameter", "default", "range", "meaning"), rows)
     return text
+
+
+def _nodes() -> str:
+    from generate_nodes import SERVICE_TEXTS, meaning, nodes, services_of, topics_of
+
+    text = (
+        "# Topics and services of the nodes\n\nAsked of the running nodes, in their default configuration on crane "
+        "`crane_150t`. Every node is a lifecycle node and has the services that come with that.\n"
+    )
+    with nodes() as made:
+        for name, node in made.items():
+            rows = [(f"`{topic}`", way, f"`{kind}`", meaning(topic)) for topic, way, kind in topics_of(node)]
+            text += f"\n## `{name}`\n\n" + _table(("topic", "in or out", "type", "meaning"), rows)
+            served = [(f"`{s}`", f"`{t}`", SERVICE_TEXTS.get(s.rpartition("/")[2], "")) for s, t in services_of(node)]
+            text += "\n" + _table(("service", "type", "meaning"), served)
+    return text
+
+
+def _schemas() -> str:
+    import json
+
+    folder = Path(__file__).parents[1] / "config" / "schemas"
+    text = (
+        "# File schemas\n\nJSON Schemas of every file, for an editor's completion: `winch-friction init schemas` "
+        "writes them. The readers decide; the schemas are generated from what they accept.\n"
+    )
+    for path in sorted(folder.glob("*.json")):
+        content = json.loads(path.read_text())
+        required = set(content.get("required", []))
+        rows = [
+            (f"`{key}`", "yes" if key in required else "", _said(each, content))
+            for key, each in content.get("properties", {}).items()
+        ]
+        text += f"\n## {path.name.split('.')[0]}\n\n{content.get('description', '')}\n\n"
+        text += _table(("key", "required", "what"), rows)
+    return text
+
+
+def _said(schema: dict[str, Any], whole: dict[str, Any]) -> str:
+    """A key's type in words."""
+    if "$ref" in schema:
+        return _said(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
+    for key, words in (("description", "{}"), ("const", "`{}`"), ("enum", "one of {}"), ("type", "{}")):
+        if key in schema:
+            value = schema[key]
+            return words.format(", ".join(f"`{each}`" for each in value) if isinstance(value, list) else value)
+    options = schema.get("anyOf") or schema.get("oneOf") or schema.get("allOf") or []
+    return " or ".join(dict.fromkeys(_said(each, whole) for each in options)) or "anything"
 
 
 def _effects() -> str:

@@ -19,7 +19,11 @@ PUBLIC = {
     "read_run", "replay", "save_model", "simulate", "terms", "torque", "write_run",
 }  # fmt: skip
 NO_LOAD = {"time": [0, 1], "motor_speed": [1, 1], "motor_torque": [0, 0]}
-EXAMPLES = ("api.files", "api.runs", "api.evaluate", "api.work", "terms")
+EXAMPLES = (
+    "api.files", "api.runs", "api.evaluate", "api.work", "api.results", "terms", "physics.signals", "physics.errors",
+    "physics.friction.model", "physics.winch.crane", "compensation.compensator", "estimation.estimator",
+)  # fmt: skip
+RESULTS = ("Check", "Fit", "Gap", "Replay")  # what the jobs return
 
 
 def test_the_surface_is_what_was_promised():
@@ -57,6 +61,30 @@ def test_the_examples_in_the_docstrings_run(module):
     found = doctest.testmod(importlib.import_module(f"winch_friction.{module}"))
     assert found.attempted
     assert not found.failed
+
+
+def classes():
+    results = importlib.import_module("winch_friction.api.results")
+    public = [getattr(wf, name) for name in wf.__all__ if name[0].isupper()]
+    return [*public, *(getattr(results, name) for name in RESULTS)]
+
+
+def test_every_public_name_has_an_example_that_is_run():
+    """Functions and classes in their own docstring, every public method in its own or its class's."""
+    modules = {f"winch_friction.{name}" for name in EXAMPLES}
+    finder = doctest.DocTestParser()
+
+    def shown(documented):
+        return "".join(each.source for each in finder.get_examples(documented.__doc__ or ""))
+
+    for name in sorted(PUBLIC - {"terms"}):
+        assert shown(getattr(wf, name)), name
+        assert getattr(wf, name).__module__ in modules, name
+    for kind in classes():
+        for name, method in vars(kind).items():
+            if name.startswith("_") or not (callable(method) or isinstance(method, property)):
+                continue
+            assert re.search(rf"\.{name}\b", shown(kind) + shown(method)), f"{kind.__name__}.{name}"
 
 
 def test_runs_survive_pandas_and_xarray():

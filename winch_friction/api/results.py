@@ -9,7 +9,13 @@ from winch_friction.physics.signals import Run
 
 
 class Fit:
-    """A fitted model: `model` with covariance, `rms` in N m per motor, `details` of the method."""
+    """A fitted model: `model` with covariance, `rms` in N m per motor, `details` of the method.
+
+    >>> import winch_friction as wf
+    >>> found = wf.fit("a6vm215_generated", motor="mj4")
+    >>> found.model.covariance.shape, found.rms < 0.5, found.summary()[:30]
+    ((5, 5), True, 'motor_viscous + motor_turbulen')
+    """
 
     def __init__(self, model: FrictionModel, rms: float, details: Any) -> None:
         self.model, self.rms, self.details = model, rms, details
@@ -27,7 +33,19 @@ class Fit:
 
 
 class Replay:
-    """A recording through compensator and estimator: outputs as runs, the learned model, its parameters."""
+    """A recording through compensator and estimator: outputs as runs, the learned model, its parameters.
+
+    >>> import tempfile, winch_friction as wf
+    >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    >>> result = wf.replay(wf.simulate("ahc_55t_215", crane, model, duration=10.0).run, crane, model)
+    >>> result.compensator["friction_torque"].shape == result.estimator["friction_torque"].shape
+    True
+    >>> result.parameters.loc["C3", "unit"], result.model.crane, result.summary().split(",")[0]
+    ('N*m', 'crane_150t', '10 s')
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result.to_html(f"{folder}/replay.html").stat().st_size < 5e6
+    True
+    """
 
     def __init__(self, result: Any, seed: FrictionModel) -> None:
         self.result, self.seed = result, seed
@@ -85,7 +103,16 @@ class Replay:
 
 
 class Check:
-    """Whether runs can be a crane's: the sentence, the findings, what to log next."""
+    """Whether runs can be a crane's: the sentence, the findings, what to log next.
+
+    >>> import winch_friction as wf
+    >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    >>> run = wf.simulate("ahc_55t_215", crane, model, duration=30.0).run
+    >>> wrong = wf.from_frame(run.to_frame().assign(hook_load=run["hook_load"] / 1e3), "kg for t")
+    >>> result = wf.check([wrong], crane, model)
+    >>> result.plausible, "hook_load" in result.summary(), result.findings["severity"].iloc[0]
+    (False, True, 'error')
+    """
 
     def __init__(self, result: Any) -> None:
         self.result = result
@@ -113,7 +140,26 @@ class Check:
 
 
 class Gap:
-    """What the discrepancy workflow found: the verdict, the effects, the repaired model and the proof."""
+    """What the discrepancy workflow found: the verdict, the effects, the repaired model and the proof.
+
+    >>> import tempfile, numpy as np, winch_friction as wf
+    >>> crane, truth = wf.load_crane("emps"), wf.load_model("emps_symmetric").with_values({"T_0": 0.0})
+    >>> def logged(k):
+    ...     time = 0.02 * np.arange(3000)
+    ...     speed = 0.15 * np.sin(2 * np.pi * time / (6 + k)) * np.sin(2 * np.pi * time / 37 + k)
+    ...     columns = {"time": time, "motor_speed": speed, "motor_torque": 0 * time, "hook_load": 0 * time}
+    ...     noise = np.random.default_rng(k).normal(0.0, 0.3, 3000)
+    ...     drive = crane.inertia * np.gradient(speed, time) + wf.torque(truth, wf.from_frame(columns), crane) + noise
+    ...     return wf.from_frame({**columns, "motor_torque": drive}, f"run {k}")
+    >>> found = wf.gap([logged(k) for k in range(5)], crane, wf.load_model("emps_viscous"))
+    >>> found.verdict in ("missing_effect", "ambiguous"), len(found.effects), len(found.model.terms) > 1
+    (True, 1, True)
+    >>> found.content()["schema"], "locked runs" in found.summary(), len(found.plot().data) > 0
+    ('winch_friction.gap/2', True, True)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     found.to_html(f"{folder}/gap.html").stat().st_size < 5e6
+    True
+    """
 
     def __init__(self, result: Any) -> None:
         self.result = result

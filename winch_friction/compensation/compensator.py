@@ -50,6 +50,23 @@ class FeedforwardCompensator:
     below 0.02, so it cannot build up.
 
     Raises `InputError` when built with gains for unknown terms.
+
+    >>> import winch_friction as wf
+    >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    >>> compensator = wf.FeedforwardCompensator(crane, model)
+    >>> run = wf.simulate("ahc_55t_215", crane, model, duration=10.0).run
+    >>> outputs = [compensator.step(sample) for sample in run.samples()]
+    >>> outputs[-1].state, max(abs(each.friction_torque) for each in outputs) > 100.0  # N m
+    ('active', True)
+    >>> compensator.load_model(model.with_values({"C6": 1.1 * model.value("C6")}))  # while it runs, without a bump
+    >>> compensator.model.value("C6") > model.value("C6"), compensator.status()["accepted_models"]
+    (True, 1)
+    >>> compensator.configure(type(compensator.config)(scale=0.5))
+    >>> end = outputs[-1].time
+    >>> compensator.expire(end + 5.0).state, compensator.decay(end + 9.0).friction_torque == 0.0
+    ('stale', True)
+    >>> compensator.set_enabled(False)
+    >>> compensator.reset()
     """
 
     def __init__(self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None) -> None:

@@ -45,6 +45,22 @@ class FrictionEstimator:
     Learning rests in stick, in saturation and without excitation; the parameters are then considered, not updated
     (Schmidt).
     A sample that is not finite, late, or beyond the innovation gate leaves the estimator exactly as it was.
+
+    >>> import winch_friction as wf
+    >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    >>> estimator = wf.FrictionEstimator(crane, model)
+    >>> for sample in wf.simulate("ahc_55t_215", crane, model, duration=10.0).run.samples():
+    ...     estimate = estimator.step(sample)
+    >>> [(each.name, each.std > 0.0) for each in estimator.parameters()][:2]
+    [('K1', True), ('K2', True)]
+    >>> estimator.model().covariance.shape, estimator.size, estimator.drum_torque > 5e5  # N m
+    ((10, 10), 17, True)
+    >>> kept = estimator.snapshot()  # what a checkpoint holds
+    >>> estimator.reset()  # back to the seed
+    >>> estimator.restore(kept)
+    >>> estimator.set_enabled(False)
+    >>> estimator.status()["enabled"]
+    False
     """
 
     def __init__(self, crane: Crane, seed_model: FrictionModel, config: EstimatorConfig | None = None) -> None:

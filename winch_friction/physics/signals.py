@@ -23,7 +23,12 @@ NAN = float("nan")
 
 @dataclass(slots=True)
 class GroupSample:
-    """One motor group at one instant: pressures in Pa, displacement in m^3/rad per motor."""
+    """One motor group at one instant: pressures in Pa, displacement in m^3/rad per motor.
+
+    >>> import winch_friction as wf
+    >>> wf.GroupSample(pressure_a=180e5, pressure_b=25e5, displacement=3.4e-5).pressure_a
+    18000000.0
+    """
 
     pressure_a: float = NAN
     pressure_b: float = NAN
@@ -32,7 +37,13 @@ class GroupSample:
 
 @dataclass(slots=True)
 class Sample:
-    """One instant of the winch, SI units; NaN where a channel is absent. Its fields are those of `channels`."""
+    """One instant of the winch, SI units; NaN where a channel is absent. Its fields are those of `channels`.
+
+    >>> import winch_friction as wf
+    >>> sample = wf.Sample(time=0.0, motor_speed=50.0, groups={"main": wf.GroupSample(180e5, 25e5, 3.4e-5)})
+    >>> sample.groups["main"].pressure_b, sample.hook_load
+    (2500000.0, nan)
+    """
 
     time: float
     motor_speed: float
@@ -58,6 +69,18 @@ class Run:
     Parameters: `name` is the run's identity (its file name), `columns` maps contract names to float arrays of one
     length in SI, `aside` keeps unknown columns untouched, `warnings` says what was noticed while reading,
     `metadata` carries provenance (scenario, seed, source). Raises `InputError` for unequal lengths.
+
+    >>> import winch_friction as wf
+    >>> group = {"main.pressure_a [bar]": [100, 120], "main.pressure_b": [2e6, 2e6], "main.displacement": [3e-5, 3e-5]}
+    >>> run = wf.from_frame({"time": [0.0, 0.5], "motor_speed [rpm]": [0.0, 600.0], **group}, "start")
+    >>> len(run), run.time.tolist(), run.groups, run.units["main.pressure_a"]
+    (2, [0.0, 0.5], ('main',), 'Pa')
+    >>> run["motor_speed"].round(1).tolist(), "hook_load" in run, run.column("hook_load", 55e3).tolist()
+    ([0.0, 62.8], False, [55000.0, 55000.0])
+    >>> run.to_frame().shape, run.to_xarray()["motor_speed"].attrs["units"]
+    ((2, 4), 'rad/s')
+    >>> [round(sample.groups["main"].pressure_a / 1e5) for sample in run.samples()]
+    [100, 120]
     """
 
     name: str

@@ -24,6 +24,28 @@ class FrictionModel:
     ratio. `corrections` say what is wrong with the signals, geometry, load and inertia of the machine that it was
     identified on (`physics.corrections` takes it out); `crane` names that crane, empty where it is not known.
     Raises `InputError` for missing, unknown or non-finite values and for a covariance that is not one.
+
+    >>> import numpy as np, winch_friction as wf
+    >>> model = wf.load_model("a6vm215_crane2")
+    >>> model.value("C3"), model.as_dict()["C3"], model.bounds_of("C3"), float(model.std.min()) > 0.0
+    (0.562, 0.562, (0.0, 100.0), True)
+    >>> model.parameter_names[:2], model.parameters[0].unit, model.term_names[-1]
+    (('K1', 'K2'), 'N*m*s/rad', 'gear_load_loss')
+    >>> model.with_values({"C3": 5.0}).value("C3"), model.with_covariance(None).covariance
+    (5.0, None)
+    >>> model.only("motor").term_names[0], model.subset(["stribeck"]).to_frame().index.tolist()
+    ('motor_viscous', ['C1', 'C3', 'C4'])
+
+    Along operating points (here of a run; `wf.torque`, `wf.contributions` and `wf.jacobian` do it in one call):
+
+    >>> from winch_friction.physics.winch.operating_point import run_operating_points
+    >>> drive = wf.load_model("emps_symmetric")
+    >>> run = wf.from_frame({"time": [0.0, 0.1], "motor_speed": [1.0, -1.0], "motor_torque": [0.0, 0.0]})
+    >>> x = run_operating_points(run, wf.load_crane("emps"), drum_torque=np.zeros(2))
+    >>> drive.torque(x).round(1).tolist(), drive.contributions(x)["coulomb"].round(1).tolist()
+    ([220.7, -227.1], [20.4, -20.4])
+    >>> drive.jacobian(x).shape, drive.state_history(x), drive.compile(0).kernel is not None
+    ((2, 3), (), True)
     """
 
     name: str

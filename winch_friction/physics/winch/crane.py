@@ -49,6 +49,13 @@ class Crane:
     kg/m and `wire_stiffness` (EA) N describe the rope; `max_displacement` m^3/rad per motor; `drive`: how the torque of
     the motors is known; `rated_pressure` Pa, `rated_speed` rad/s of the motor shaft and `rated_load` kg bound what its
     sensors can show (`ranges`), 0: not said.
+
+    >>> import winch_friction as wf
+    >>> crane = wf.load_crane("crane_150t")
+    >>> crane.motor_count("active"), crane.motor_total(["active", "passive"])
+    (3, 11)
+    >>> round(crane.drum_torque(55e3) / 1e3), round(crane.load_inertia(55e3), 2)  # kN m, kg m^2
+    (613, 1.14)
     """
 
     name: str

@@ -100,8 +100,8 @@ def _parameters() -> str:
 
     text = (
         "# Parameters of the nodes\n\nWhat `ros2 param describe` says, asked of the nodes. Besides: `gains.TERM`, a "
-        "gain of each term of the compensator (1.0, 0 … 2), `use_sim_time`, and the quality of service of each topic under "
-        "`qos_overrides`.\n"
+        "gain of each term of the compensator (1.0, 0 … 2), `use_sim_time`, and the quality of service of each topic "
+        "under `qos_overrides`.\n"
     )
     with nodes() as made:
         for name, node in made.items():

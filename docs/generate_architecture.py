@@ -12,7 +12,7 @@ WIDTH, ROW, BOX, HIGH = 1000, 96, 150, 44  # px
 # what each package answers, in a few words
 SAYS = {
     "nodes": "ROS 2 nodes", "cli": "verbs", "api": "import winch_friction", "report": "pages and pictures",
-    "fleet": "many cranes", "importing": "foreign logs", "replay": "a recording again", "discrepancy": "what is lacking",
+    "fleet": "many cranes", "importing": "foreign logs", "replay": "a recording again", "discrepancy": "what lacks",
     "commissioning": "can this be so?", "online": "inputs, time, models", "compensation": "feedforward",
     "identification": "fits", "simulation": "plant, sea, sensors", "estimation": "Kalman filter",
     "records": "files and messages", "physics": "terms, crane, units",

@@ -219,6 +219,25 @@ def test_a_model_swap_is_bumpless_and_arrives():
     assert np.abs(np.diff([before, *torques])).max() <= 1.01 * (target - before) * PERIOD / 0.5
 
 
+@pytest.mark.parametrize("change", [1.0, 1.05])
+def test_a_model_swap_in_a_reversal_carries_over_no_more_than_the_models_differ(change):
+    """What the motion changes within the sample is not the models' difference: half the torque had been carried along
+    for a ramp time."""
+    other = SEED.with_values({"C6": SEED.value("C6") * change})
+    largest = 0.0
+    for swap in range(40, 60):
+        swapped, plain = compensator(ramp_time=1.0), compensator(ramp_time=1.0)
+        for each in (swapped, plain):
+            run_up(each, until=2.0)
+        for k in range(110):
+            if k == swap:
+                swapped.load_model(other)
+            sample = ahc_sample(2.0 + k * PERIOD, 100.0 * math.cos(math.pi * k / 100.0))
+            one, two = swapped.step(sample), plain.step(sample)
+            largest = max(largest, abs(one.friction_torque - two.friction_torque))
+    assert largest <= (change - 1.0) * 1.5 * abs(two.friction_torque) + 1e-9
+
+
 @pytest.mark.parametrize("factor", [0.49, 1.51])
 def test_a_model_outside_half_the_seed_is_refused_and_the_last_good_one_kept(factor):
     each = compensator()

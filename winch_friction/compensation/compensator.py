@@ -98,6 +98,7 @@ class FeedforwardCompensator:
         self._predictor.reset()
         self._load.reset()
         self._law.reset()
+        self._replaced: FrictionLaw | None = None  # the law that was published last, until the next sample
         self._last: Feedforward | None = None
         self._target = _Target()
         self._pressure_per_torque = 0.0
@@ -137,9 +138,12 @@ class FeedforwardCompensator:
             self._counts["refused_models"] += 1
             raise
         self._counts["accepted_models"] += 1
+        if model.corrections != self.model.corrections:
+            self.output.bump()  # the two do not look at the same sample
+        elif self._replaced is None:
+            self._replaced = self._law
         self._law, self._correct = law, correct
         self._load.crane = correct.crane
-        self.output.bump()
 
     # -- one sample
     def step(self, sample: Sample, now: float | None = None, distrusted: tuple[str, ...] = ()) -> Feedforward:
@@ -227,6 +231,10 @@ class FeedforwardCompensator:
             self._lost = ("finite model",)
             return False
         bounded = self.output.limits.bound(torque, envelope)
+        if self._replaced is not None:
+            before = self.output.limits.bound(self.config.scale * self._replaced.torque(x, groups), envelope)
+            self.output.carry(before - bounded)
+            self._replaced = None
         size = abs(bounded) / max(abs(x[0]), UNSURE)
         self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, _reversal(ahead))
         self._steepest(x, groups, magnitude)

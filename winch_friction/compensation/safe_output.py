@@ -43,7 +43,7 @@ class SafeOutput:
         self._held, self._faded = 0.0, 0.0
         self._reversal = math.inf
         self._steady, self._credit = math.nan, self.hold
-        self._dt = self._against = 0.0
+        self._dt = self._against = self._carried = 0.0
         self._bump = self._usable = self._new_time = False
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
@@ -60,6 +60,12 @@ class SafeOutput:
     def bump(self) -> None:
         """What is asked for is about to jump: carry the difference over."""
         self._bump = True
+
+    def carry(self, difference: float) -> None:
+        """What is asked for at the next sample differs by this, N m (before minus now), from what would have been asked
+        for: let that go by and by. Unlike a `bump` it leaves out what the motion itself changes from one sample to
+        the next, which at a reversal is half the torque."""
+        self._carried += difference
 
     # -- a sample
     def arrive(self, time: float, now: float | None = None) -> float:
@@ -111,7 +117,10 @@ class SafeOutput:
         faded = self.fade.step(usable and enabled, self._dt, self._hurry(reversal)) * target
         if self._bump and usable:
             self._bridge.start(self.torque - faded)
-            self._bump = False
+            self._bump, self._carried = False, 0.0
+        elif self._carried:
+            self._bridge.start(self._bridge.value() + self.fade.value * self._carried)
+            self._carried = 0.0
         wanted = faded + self._bridge.step(self._dt)
         wanted = self._not_against(wanted, target)
         bound = min(self.limits.absolute, envelope)

@@ -244,9 +244,9 @@ Whole checkpoints {killed["whole checkpoints"]}, damaged {killed["damaged checkp
 {chr(10).join("* " + each for each in defects[:10])}
 
 ## Wrong teachers
-Ten minutes of learning from a sensor that is wrong, from another crane, or from friction far outside the seed's range, by
-`EstimatorService`, while a compensator takes over what was learned and another one stays with the seed (scale 1). Drifts
-reach the size that the name says after ten minutes. Afterwards `~/reset`, and the seed loaded.
+Ten minutes of learning from a sensor that is wrong, from another crane, or from friction far outside the seed's
+range, by `EstimatorService`, while a compensator takes over what was learned and another one stays with the seed
+(scale 1). Drifts reach the size that the name says after ten minutes. Afterwards `~/reset`, and the seed loaded.
 
 {table(taught)}
 """

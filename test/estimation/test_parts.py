@@ -10,8 +10,11 @@ from scipy.linalg import expm
 from winch_friction.estimation import EstimatorConfig
 from winch_friction.estimation.answers import ParameterStatus
 from winch_friction.estimation.dynamics import (
+    DISTURBANCE,
+    ENCODER,
     ENCODER_CHANGE,
     FIRST_PARAMETER,
+    LOAD,
     SPEED,
     Propagation,
     Step,
@@ -74,20 +77,35 @@ def test_the_matrix_is_the_jacobian_of_the_propagation(seed):
     _, step = some_filter(seed)
     gradient = np.array(step.by_parameters)
 
-    def moved(x):
-        theta = np.array(seed.values) + parameters.scale * x[FIRST_PARAMETER:]
-        friction = float(gradient @ (theta - np.array(seed.values)))
-        out = np.zeros(motion.size)
-        motion.move(x, step._replace(friction=friction), out)
-        return out
+    def following(x):
+        friction = float(gradient @ (parameters.scale * x[FIRST_PARAMETER:]))
+        return moved(x, step._replace(friction=friction), config)
 
     x = 0.1 * np.random.default_rng(2).normal(size=motion.size)
-    base = moved(x)
-    motion.take(step)
+    base = following(x)
+    motion.take(step, x[FIRST_PARAMETER:])
     for column in range(motion.size):
         shifted = x.copy()
         shifted[column] += 1e-4
-        assert (moved(shifted) - base) / 1e-4 == pytest.approx(motion.matrix[:, column], rel=1e-6, abs=1e-7)
+        assert (following(shifted) - base) / 1e-4 == pytest.approx(motion.matrix[:, column], rel=1e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize("learning", [True, False])
+def test_the_states_move_as_the_equations_say(seed, learning):
+    each, step = some_filter(seed)
+    x = each.x[:, 0].copy()
+    each.predict_step(step, learning, False)
+    assert each._ahead_carried[-1] == pytest.approx(moved(x, step, EstimatorConfig()), rel=1e-12, abs=1e-12)
+
+
+def moved(x, step, config):
+    """The states one step on: load torque and parameters stay, the disturbance fades, the rounding becomes a change."""
+    out = x.copy()
+    torque = step.torque - x[LOAD] - x[DISTURBANCE] - step.friction
+    out[:3] = np.array(step.wire) @ [*x[:3], torque, step.heave]
+    out[DISTURBANCE] *= math.exp(-step.duration / config.disturbance_time)
+    out[ENCODER], out[ENCODER_CHANGE] = 0.0, -x[ENCODER]
+    return out
 
 
 def test_a_step_is_filterpys_predict_and_update(seed):
@@ -102,12 +120,11 @@ def test_a_step_is_filterpys_predict_and_update(seed):
     for _ in range(100):
         step = step._replace(torque=float(rng.normal(scale=100.0)), heave=float(rng.normal()))
         measured = float(plain.x[SPEED, 0] + rng.normal())
-        each._propagation.take(step)
+        each._propagation.take(step, plain.x[FIRST_PARAMETER:, 0])
         matrix = each._propagation.matrix
         noise = np.diag(noise_variances(step, config, 1.0, False))
         plain.F, plain.Q = matrix[:, :size].copy(), matrix[:, size:] @ noise @ matrix[:, size:].T
-        following = np.zeros(size)
-        each._propagation.move(plain.x[:, 0].copy(), step, following)
+        following = moved(plain.x[:, 0], step, config)
         plain.predict_x = lambda u=0, ahead=following: setattr(plain, "x", ahead[:, None].copy())
         plain.predict()
         plain.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=each.speed_variance)
@@ -124,7 +141,7 @@ def test_a_step_is_filterpys_predict_and_update(seed):
 def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(seed, learning):
     each, step = some_filter(seed)
     each.predict_step(step, learning, False)
-    ahead, x = each._ahead_P.copy(), each._ahead_x.copy()
+    ahead, x = each._ahead_P.copy(), each._ahead_carried[-1].copy()
     innovation, variance = each.innovation(0.7)
     row = np.zeros(each.size)
     row[[SPEED, ENCODER_CHANGE]] = 1.0

@@ -95,8 +95,8 @@ class Propagation:
     """
 
     def __init__(self, config: EstimatorConfig, free: NDArray[np.intp], scale: FloatArray) -> None:
-        self._config, self._scale = config, -scale
-        self._free = free
+        self._config, self._scales = config, (-scale).tolist()
+        self._free = free.tolist()
         self.size = size = FIRST_PARAMETER + len(scale)
         self.matrix = np.zeros((size, size + NOISES))
         np.fill_diagonal(self.matrix, 1.0)
@@ -110,28 +110,22 @@ class Propagation:
         self._acting[TORQUE, [LOAD, DISTURBANCE]] = -1.0
         self._acting[TORQUE, size + TORQUE_NOISE] = 1.0
         self._acting[HEAVE, size + HEAVE_NOISE] = 1.0
-        self._rows, self._wire = self.matrix[:LOAD], np.zeros((LOAD, ACTING))
+        self._rows = self.matrix[:LOAD]
         self._by_parameters = self._acting[TORQUE, FIRST_PARAMETER:size]
-        self._everything_free = len(free) and bool((np.arange(len(free)) == free).all())
 
-    def take(self, step: Step) -> None:
-        """Make `matrix` that of this step."""
-        gradient = step.by_parameters
-        if not self._everything_free or len(gradient) != len(self._free):
-            gradient = [gradient[k] for k in self._free]
-        np.multiply(gradient, self._scale, out=self._by_parameters)
-        self._wire[:] = step.wire
-        np.dot(self._wire, self._acting, out=self._rows)
+    def take(self, step: Step, phi: FloatArray) -> tuple[float, float]:
+        """Make `matrix` that of this step from the scaled parameters (m,).
+
+        Returns what takes the place of the torque's and the heave's noise where the states themselves go through the
+        matrix: the torque in N m at states and parameters of zero, such that at `phi` the friction is the step's, and
+        the heave velocity in m/s.
+        """
+        gradient, wire = step.by_parameters, step.wire
+        self._by_parameters[:] = [gradient[k] * scale for k, scale in zip(self._free, self._scales, strict=True)]
+        np.array((*wire[0], *wire[1], *wire[2])).reshape(LOAD, ACTING).dot(self._acting, out=self._rows)
         self._rows[LOAD_SPEED, self.size + LOAD_SPEED_NOISE] = 1.0
         self.matrix[DISTURBANCE, DISTURBANCE] = fading(step.duration, self._config)
-
-    def move(self, x: FloatArray, step: Step, out: FloatArray) -> None:
-        """The states (n,) one step on: load torque and parameters stay, the disturbance fades."""
-        speed, stretch, load_speed, load, disturbance, encoder = x[:ENCODER_CHANGE].tolist()
-        torque = step.torque - load - disturbance - step.friction
-        moved = [a * speed + b * stretch + c * load_speed + d * torque + e * step.heave for a, b, c, d, e in step.wire]
-        out[FIRST_PARAMETER:] = x[FIRST_PARAMETER:]
-        out[:FIRST_PARAMETER] = (*moved, load, disturbance * fading(step.duration, self._config), 0.0, -encoder)
+        return step.torque - step.friction - float(self._by_parameters.dot(phi)), step.heave
 
 
 def fading(duration: float, config: EstimatorConfig) -> float:

@@ -2,20 +2,20 @@
 
 filterpy's own predict and update take four products of whole matrices, an inverse and a dozen small arrays. Here the
 noises stand beside the states in one covariance, so that a prediction is one congruence, and the single speed that is
-measured makes the correction a change of rank one; the sensitivities to sensor errors are further rows of the same
-matrices. A test holds all of it against filterpy's.
+measured makes the correction a change of rank one; the states and their sensitivities to sensor errors go through the
+same two products as further rows. A test holds all of it against filterpy's.
 """
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
-from scipy.linalg.blas import dger
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.dynamics import (
     ENCODER_CHANGE,
     FIRST_PARAMETER,
+    HEAVE_NOISE,
     LOAD,
     NOISES,
     SPEED,
@@ -54,21 +54,22 @@ class StateFilter(ExtendedKalmanFilter):
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
-        # covariance of the states and, on the diagonal behind them, of a step's noises; below it the sensitivities,
-        # which a sensor error enters as the torque's noise does
-        noisy = size + NOISES
-        self._joint = np.zeros((noisy + len(sensors), noisy))
-        self._noises = np.einsum("ii->i", self._joint[:noisy])[size:]
-        self.x, self.P, self.sensitivity = np.zeros((size, 1)), self._joint[:size, :size], self._joint[noisy:, :size]
-        self._by_sensors = self._joint[noisy:, size + TORQUE_NOISE]
-        self.P[self._phi, self._phi] = parameters.prior
-        self._flat = self.x[:, 0]
+        # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, x; a sensor
+        # error and what is known to act enter where the noises do
+        noisy, carried = size + NOISES, len(sensors) + 1
+        self._now = np.zeros((noisy + carried, noisy))
+        self._noises = np.einsum("ii->i", self._now[:noisy])[size:]
+        self.P, self.sensitivity = self._now[:size, :size], self._now[noisy:-1, :size]
+        self._flat, self._carried = self._now[-1, :size], self._now[noisy:, :size]
+        self._acting = self._now[noisy:, size:]
+        self.x = self._flat.reshape(size, 1)
         self.phi: FloatArray = self._flat[self._phi]  # the scaled parameters (m,)
-        # the prediction of P and below it of the sensitivities, until it is taken in, and room to calculate in
-        self._ahead, self._ahead_x = np.zeros((size + len(sensors), size)), np.zeros(size)
-        self._ahead_P, self._ahead_sensitivity = self._ahead[:size], self._ahead[size:]
-        self._half, self._seen = np.zeros((noisy + len(sensors), size)), np.zeros(size + len(sensors))
-        self._half_of_joint, self._half_of_sensitivity = self._half[:noisy], self._half[noisy:]
+        self.P[self._phi, self._phi] = parameters.prior
+        # the same rows, predicted, until they are taken in: P, then what is carried; and room to calculate in
+        self._ahead, self._half = np.zeros((size + carried, size)), np.zeros((noisy + carried, size))
+        self._ahead_P, self._ahead_carried = self._ahead[:size], self._ahead[size:]
+        self._half_of_P, self._half_carried = self._half[:noisy], self._half[noisy:]
+        self._seen, self._change = np.zeros(size + carried), np.zeros_like(self._ahead)
         self._since_even = 0
         self._learned_for = self._unfaded = 0.0  # s of learning since the parameters' covariance last faded
 
@@ -129,14 +130,14 @@ class StateFilter(ExtendedKalmanFilter):
     # -- one step
     def predict_step(self, step: Step, learning: bool, load_known: bool) -> None:
         """Look one step ahead: P = F P F' + G W G' with the noises' variances W; parameters also fade to the prior."""
-        motion = self._propagation
-        motion.take(step)
-        motion.move(self._flat, step, self._ahead_x)
+        matrix, acting = self._propagation.matrix, self._acting
+        acting[-1, TORQUE_NOISE], acting[-1, HEAVE_NOISE] = self._propagation.take(step, self.phi)
+        for k, each in enumerate(step.by_sensors):
+            acting[k, TORQUE_NOISE] = each
         self._noises[:] = noise_variances(step, self._config, self._factor.value, load_known)
-        self._by_sensors[:] = step.by_sensors
-        np.dot(self._joint, motion.matrix.T, out=self._half)
-        np.dot(motion.matrix, self._half_of_joint, out=self._ahead_P)
-        self._ahead_sensitivity[:] = self._half_of_sensitivity
+        self._now.dot(matrix.T, out=self._half)
+        matrix.dot(self._half_of_P, out=self._ahead_P)
+        self._ahead_carried[:] = self._half_carried
         self._unfaded = self._learned_for + step.duration if learning else self._learned_for
         if self._unfaded >= FADE_PERIOD:
             self._ahead_P[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
@@ -150,23 +151,22 @@ class StateFilter(ExtendedKalmanFilter):
         torque, so the measured speed is the sum of two states.
         """
         seen = np.add(self._ahead[:, SPEED], self._ahead[:, ENCODER_CHANGE], out=self._seen)
-        expected = self._ahead_x.item(SPEED) + self._ahead_x.item(ENCODER_CHANGE)
-        return measured - expected, seen.item(SPEED) + seen.item(ENCODER_CHANGE) + self.speed_variance
+        return measured - seen.item(-1), seen.item(SPEED) + seen.item(ENCODER_CHANGE) + self.speed_variance
 
     def correct(self, innovation: float, variance: float, learning: bool) -> None:
         """Take the prediction and its measured speed in; learned parameters stay inside their range."""
-        ahead, gain = self._ahead, self._seen[: self.size] * (1.0 / variance)
+        gain, seen, size = self._seen[: self.size] / variance, self._seen, self.size
         if not learning:
             gain[self._phi] = 0.0
         self._learned_for = self._unfaded
-        np.multiply(gain, innovation, out=self._flat)
-        self._flat += self._ahead_x
-        # with the optimal gain of the free states Joseph's form is P - seen gain' there, and P among the considered;
-        # so too for the sensitivities
-        dger(-1.0, gain, self._seen, a=ahead.T, overwrite_x=0, overwrite_y=0, overwrite_a=1)
+        # every row gives up what the measurement shows of it times the gain, x what it does not show yet; with the
+        # optimal gain of the free states Joseph's form of P is that too, and P itself among the considered
+        seen[-1] = -innovation
+        np.multiply(seen[:, None], gain, out=self._change)
+        np.subtract(self._ahead_P, self._change[:size], out=self.P)
+        np.subtract(self._ahead_carried, self._change[size:], out=self._carried)
         if not learning:
-            self._ahead_P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self._ahead_P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
-        self.P[:], self.sensitivity[:] = self._ahead_P, self._ahead_sensitivity
+            self.P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self.P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
         if learning:
             self._keep_sound()
 

@@ -1,12 +1,12 @@
 """The friction feedforward: the friction model at the coming speed, inside its limits, faded and bridged."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.compensation.friction_law import FrictionLaw, check_gains
-from winch_friction.compensation.inputs import missing_inputs, pressure_per_torque
+from winch_friction.compensation.inputs import Needs, pressure_per_torque
 from winch_friction.compensation.load import DrumTorque
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.compensation.speed_predictor import PredictedSpeed, SpeedPredictor
@@ -79,6 +79,7 @@ class FeedforwardCompensator:
         self._ranges = ChannelRanges(crane)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
+        self._needs = self._needed()
         self.output = SafeOutput(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
         self._enabled = True
         self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
@@ -121,6 +122,7 @@ class FeedforwardCompensator:
         self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load.configure(config.load, config.load_filter)
+        self._needs = self._needed()
         self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
 
     def load_model(self, model: FrictionModel) -> None:
@@ -143,6 +145,7 @@ class FeedforwardCompensator:
         elif self._replaced is None:
             self._replaced = self._law
         self._law, self._correct = law, correct
+        self._needs = self._needed()
         self._load.crane = correct.crane
 
     # -- one sample
@@ -159,7 +162,7 @@ class FeedforwardCompensator:
         if dt == 0.0:
             self._predictor.reset()
         sample = self._correct(sample)
-        self._lost = (*self._missing(sample), *distrusted)
+        self._lost = (*self._needs.missing(sample), *distrusted)
         usable = not self._lost and self._aim(sample, dt)
         if not usable:
             self._predictor.reset()
@@ -177,10 +180,8 @@ class FeedforwardCompensator:
         if time - self._last.time <= self.config.max_age:
             return self._last
         torque = self.output.remaining(time)
-        return replace(
-            self._last, time=time, friction_torque=torque, pressure=torque * self._pressure_per_torque, state="stale",
-            valid=False,
-        )  # fmt: skip
+        pressure = torque * self._pressure_per_torque
+        return self._last._replace(time=time, friction_torque=torque, pressure=pressure, state="stale", valid=False)
 
     def decay(self, time: float, state: str = "stale") -> Feedforward:
         """Publish what remains at `time` s: for a watchdog, and for the end."""
@@ -205,10 +206,8 @@ class FeedforwardCompensator:
         }
 
     # -- parts of a step
-    def _missing(self, sample: Sample) -> tuple[str, ...]:
-        return missing_inputs(
-            sample, self._ranges, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load)
-        )
+    def _needed(self) -> Needs:
+        return Needs(self._ranges, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load))
 
     def _speed(self, sample: Sample) -> float:
         return sample.speed_reference if self.config.velocity_source == "reference" else sample.motor_speed

@@ -1,10 +1,9 @@
 """What a compensator says at one instant."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Feedforward:
+class Feedforward(NamedTuple):
     """Friction feedforward at `time` s.
 
     `friction_torque`: N m, total, at the motor shaft, to be added to what the drive needs without friction;

@@ -10,23 +10,29 @@ from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.physics.winch.torque_balance import pressure_feedforward
 
 
-def missing_inputs(
-    sample: Sample, ranges: ChannelRanges, reads: Set[str], source: str, load_known: bool
-) -> tuple[str, ...]:
-    """Columns that the feedforward needs and the sample does not have, or not within what the crane can show."""
-    needed = {"speed_reference" if source == "reference" else "motor_speed"}
-    if "oil_temperature" in reads:
-        needed.add("oil_temperature")
-    lost = [name for name in sorted(needed) if not ranges.plausible(name, getattr(sample, name))]
-    if sample.hook_load == sample.hook_load and not ranges.plausible("hook_load", sample.hook_load):
-        lost.append("hook_load")
-    if not ranges.crane.drum.has(sample.wire_layer):
-        lost.append("wire_layer")
-    drive = ranges.crane.drive
-    if drive.hydraulic:
-        return (*lost, *drive.lacking(sample, ranges.plausible))
-    from_balance = "drum_torque" in reads and not load_known and not math.isfinite(sample.hook_load)
-    return (*lost, *drive.lacking(sample, ranges.plausible)) if from_balance else tuple(lost)
+class Needs:
+    """What a feedforward needs to see.
+
+    `reads` are the signals of its terms, `source` its velocity, `load_known` whether its configuration says the load.
+    """
+
+    def __init__(self, ranges: ChannelRanges, reads: Set[str], source: str, load_known: bool) -> None:
+        self._ranges, self._crane = ranges, ranges.crane
+        speed = "speed_reference" if source == "reference" else "motor_speed"
+        self._scalars = (speed, "oil_temperature") if "oil_temperature" in reads else (speed,)
+        self._balance_for_load = "drum_torque" in reads and not load_known
+
+    def missing(self, sample: Sample) -> tuple[str, ...]:
+        """Columns that the sample does not have, or not within what the crane can show."""
+        plausible, drive = self._ranges.plausible, self._crane.drive
+        lost = [name for name in self._scalars if not plausible(name, getattr(sample, name))]
+        if sample.hook_load == sample.hook_load and not plausible("hook_load", sample.hook_load):
+            lost.append("hook_load")
+        if not self._crane.drum.has(sample.wire_layer):
+            lost.append("wire_layer")
+        if drive.hydraulic or (self._balance_for_load and not math.isfinite(sample.hook_load)):
+            lost += drive.lacking(sample, plausible)
+        return tuple(lost)
 
 
 def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:

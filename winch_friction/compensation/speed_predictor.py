@@ -1,11 +1,10 @@
 """The speed at which the friction is taken: extrapolated by its acceleration and filtered jerk."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class PredictedSpeed:
+class PredictedSpeed(NamedTuple):
     """Speed and acceleration `lead` seconds ahead, rad/s and rad/s^2."""
 
     speed: float

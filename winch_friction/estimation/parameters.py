@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from operator import le
 
 import numpy as np
 
@@ -90,7 +91,8 @@ class ScaledParameters:
 
     def contains(self, phi: FloatArray) -> bool:
         """Whether every scaled parameter is inside its range."""
-        return all(low <= value <= high for low, value, high in zip(self._lows, phi.tolist(), self._highs, strict=True))
+        values = phi.tolist()
+        return all(map(le, self._lows, values)) and all(map(le, values, self._highs))
 
     def faded(self, covariance: FloatArray, duration: float) -> FloatArray:
         """What takes a covariance (m, m) towards the seed's in `duration` s, and never beyond it.

@@ -102,12 +102,12 @@ class Drive:
             return tuple(name for name in self.channels if not plausible(name, getattr(sample, name)))
         if not sample.groups:
             return ("motor groups",)
-        return tuple(
-            f"{name}.{channel}"
-            for name, group in sample.groups.items()
-            for channel in GROUP_CHANNELS
-            if not plausible(channel, getattr(group, channel))
-        )
+        lost = []
+        for name, group in sample.groups.items():
+            for channel in GROUP_CHANNELS:
+                if not plausible(channel, getattr(group, channel)):
+                    lost.append(f"{name}.{channel}")
+        return tuple(lost)
 
     def _torque(self, read: _Read, crane: "Crane", speed: Any) -> Any:
         if self.kind == POWER:

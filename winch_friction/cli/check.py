@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath
 
 PLAUSIBLE, CONTRADICTED = 0, 2
@@ -14,8 +15,10 @@ PLAUSIBLE, CONTRADICTED = 0, 2
 
 def command(
     runs: Annotated[list[Path], typer.Argument(help="Run files, bags, or folders of them.")],
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name.")] = "",
-    model: Annotated[str, typer.Option(help="Model file or shipped name: judges more sharply.")] = "",
+    crane: Annotated[str, typer.Option(help="Crane file or shipped name.", autocompletion=complete_crane)] = "",
+    model: Annotated[
+        str, typer.Option(help="Model file or shipped name: judges more sharply.", autocompletion=complete_model)
+    ] = "",
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     out: Annotated[OptionalPath, typer.Option(help="Folder for check.html and check.json.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Findings as JSON.")] = False,

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.signals import Run
 
@@ -17,7 +18,9 @@ OUT = typer.Argument(help="Where to, one or several: .csv, .parquet, .mcap, .db3
 def run(
     source: Annotated[Path, typer.Argument(help="Run file or bag.")],
     out: Annotated[list[Path], OUT],
-    crane: Annotated[str, typer.Option(help="Crane: for drum speeds and displacement fractions.")] = "",
+    crane: Annotated[
+        str, typer.Option(help="Crane: for drum speeds and displacement fractions.", autocompletion=complete_crane)
+    ] = "",
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
 ) -> None:

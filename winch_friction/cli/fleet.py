@@ -9,6 +9,7 @@ import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
 from winch_friction.cli.fleet_work import VERBS, Task, carry_out, dated_rows, plan
+from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
 from winch_friction.physics.errors import InputError
@@ -20,9 +21,18 @@ def command(
         list[str], typer.Argument(help="Bags, run files, folders of them, or addresses such as s3://bucket/prefix.")
     ],
     out: Annotated[Path, typer.Option(help="Folder for results, fleet.json, the store and the summary page.")],
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name; {crane} is the recording's folder.")],
+    crane: Annotated[
+        str,
+        typer.Option(
+            help="Crane file or shipped name; {crane} is the recording's folder.", autocompletion=complete_crane
+        ),
+    ],
     model: Annotated[
-        str, typer.Option(help="Model file or shipped name (for identify the motor's); {crane} likewise.")
+        str,
+        typer.Option(
+            help="Model file or shipped name (for identify the motor's); {crane} likewise.",
+            autocompletion=complete_model,
+        ),
     ],
     option: Annotated[OptionalTexts, typer.Option(help="Option for the verb, NAME=VALUE or NAME; repeatable.")] = None,
     storage: Annotated[OptionalTexts, typer.Option(help="Option of the storage, NAME=VALUE; repeatable.")] = None,

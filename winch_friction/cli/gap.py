@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table, show_warnings, stepping
+from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.physics.errors import InputError
 
@@ -35,8 +36,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 @app.command("gap", help=HELP)
 def command(
     runs: Annotated[OptionalPaths, typer.Argument(help="Run files: .csv, .parquet, rosbag2.")] = None,
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the model's.")] = "",
-    model: Annotated[str, typer.Option(help="Model file or shipped name.")] = "a6vm215_crane2",
+    crane: Annotated[
+        str, typer.Option(help="Crane file or shipped name; none: the model's.", autocompletion=complete_crane)
+    ] = "",
+    model: Annotated[
+        str, typer.Option(help="Model file or shipped name.", autocompletion=complete_model)
+    ] = "a6vm215_crane2",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
     seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,

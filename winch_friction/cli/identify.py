@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts
 
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
@@ -93,8 +94,10 @@ def motor(
 def system(
     runs: Annotated[list[Path], typer.Argument(help="Logged test cycles, one per test.")],
     out: Annotated[Path, typer.Option(help="Model file to write.")],
-    motor: Annotated[str, typer.Option(help="Motor model: file or shipped name.")],
-    crane: Annotated[str, typer.Option(help="Crane: file or shipped name; none: what the runs say.")] = "",
+    motor: Annotated[str, typer.Option(help="Motor model: file or shipped name.", autocompletion=complete_model)],
+    crane: Annotated[
+        str, typer.Option(help="Crane: file or shipped name; none: what the runs say.", autocompletion=complete_crane)
+    ] = "",
     held_out: Annotated[OptionalPaths, typer.Option(help="Test kept out of the fit; repeat.")] = None,
     resamples: Annotated[int, typer.Option(min=0, help="Bootstrap resamples over tests.")] = 40,
     restarts: Restarts = 3,

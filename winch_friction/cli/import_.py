@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.cli.console import progress, show_json, show_warnings
+from winch_friction.cli.names import complete_crane
 from winch_friction.importing.mapping import LogMap
 from winch_friction.physics.errors import InputError
 
@@ -34,7 +35,9 @@ def command(
     logs: Annotated[list[Path], typer.Argument(help="Logs of one kind.")],
     map_file: Annotated[Path, typer.Option("--map", help="The map: written with --propose, read without.")],
     propose: Annotated[bool, typer.Option("--propose", help="Look at the logs and write the map.")] = False,
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name; without it the map's.")] = "",
+    crane: Annotated[
+        str, typer.Option(help="Crane file or shipped name; without it the map's.", autocompletion=complete_crane)
+    ] = "",
     out: Annotated[Path, typer.Option(help="Folder for the run files.")] = Path("runs"),
     form: Annotated[str, typer.Option("--format", help="Run files as csv or parquet.")] = "csv",
     settings: Annotated[
@@ -83,7 +86,8 @@ def propose_map(
 
     if map_file.exists() and not overwrite:
         raise InputError(f"{map_file}: exists; give another name, or --overwrite")
-    proposal = propose(logs, load_crane(crane) if crane else None, crane, settings)
+    watched = lambda paths: progress(paths, "reading logs")
+    proposal = propose(logs, load_crane(crane) if crane else None, crane, settings, watched)
     log_map, problems = proposal.log_map, list(proposal.problems)
     write_text(map_file, map_text(log_map))
     if as_json:
@@ -132,7 +136,7 @@ def import_logs(
     targets = [out / f"{_stem(path)}.{form}" for path in logs]
     _refuse_existing(logs, targets, overwrite)
     runs, problems = [], []
-    for path, target in zip(logs, targets, strict=True):
+    for path, target in progress(list(zip(logs, targets, strict=True)), "reading logs"):
         try:
             run = import_log(path, log_map, loaded)
         except InputError as error:

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
 from winch_friction.physics.errors import InputError
 
@@ -13,7 +14,9 @@ app = typer.Typer(help="Commented files to begin with, from flags or questions."
 
 Out = Annotated[OptionalPath, typer.Option(help="File to write; NAME.yaml without it.")]
 Force = Annotated[bool, typer.Option(help="Overwrite a file that exists.")]
-OfCrane = Annotated[str, typer.Option(help="Crane file or shipped name that it belongs to.")]
+OfCrane = Annotated[
+    str, typer.Option(help="Crane file or shipped name that it belongs to.", autocompletion=complete_crane)
+]
 FileName = Annotated[str, typer.Option(help="Name in the file.")]
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import typer
 
 from winch_friction import __version__
+from winch_friction.cli.modes import without_modes
 from winch_friction.cli.verbs import VerbGroup
 from winch_friction.physics.errors import InputError
 
@@ -39,16 +40,17 @@ def _common(
     version: bool = typer.Option(
         False, "--version", is_eager=True, callback=_show_version, help="Print the version and exit."
     ),
+    quiet: bool = typer.Option(False, "--quiet", "-q", help="Only results and errors; before or behind the verb."),
+    plain: bool = typer.Option(False, "--plain", help="Tables between tabs, no frames, no colour, no progress."),
 ) -> None:
     """Options before the verb."""
 
 
 def run(arguments: Sequence[str]) -> int:
     """Carry out one command line; returns the exit status and writes errors to stderr."""
+    words = without_modes(arguments)
     try:
-        result = typer.main.get_command(app).main(
-            list(arguments) or ["--help"], "winch-friction", standalone_mode=False
-        )
+        result = typer.main.get_command(app).main(words or ["--help"], "winch-friction", standalone_mode=False)
         return result if isinstance(result, int) else DONE
     except InputError as error:
         return _bad_input(str(error))

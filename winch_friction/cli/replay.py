@@ -9,6 +9,7 @@ import numpy as np
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
+from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalTexts
 
 SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
@@ -17,8 +18,10 @@ MOSTLY = 0.5  # share of active samples below which the reasons are told
 
 def command(
     recording: Annotated[Path, typer.Argument(help="Bag folder, .mcap, .db3, or a run file (.csv, .parquet).")],
-    model: Annotated[str, typer.Option(help="Seed model: file or shipped name.")],
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the model's.")] = "",
+    model: Annotated[str, typer.Option(help="Seed model: file or shipped name.", autocompletion=complete_model)],
+    crane: Annotated[
+        str, typer.Option(help="Crane file or shipped name; none: the model's.", autocompletion=complete_crane)
+    ] = "",
     out: Annotated[OptionalPath, typer.Option(help="Where to: .csv or .parquet for a table, else a bag.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file of the nodes.")] = None,

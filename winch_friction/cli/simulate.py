@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.names import complete_crane, complete_model, complete_scenario
 from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
 
@@ -15,10 +16,21 @@ TRUTH_FOLDER = "truth"  # below the runs', so that `gap runs/*` meets runs alone
 
 def command(
     scenario: Annotated[
-        str, typer.Argument(help="Scenario file, shipped name, or a set: [bold]gap_campaign[/bold], paper_tests.")
+        str,
+        typer.Argument(
+            help="Scenario file, shipped name, or a set: [bold]gap_campaign[/bold], paper_tests.",
+            autocompletion=complete_scenario,
+        ),
     ] = "",
-    crane: Annotated[str, typer.Option(help="Crane file or shipped name; none: the scenario's or the model's.")] = "",
-    model: Annotated[str, typer.Option(help="Model file or shipped name: the friction's truth.")] = "a6vm215_crane2",
+    crane: Annotated[
+        str,
+        typer.Option(
+            help="Crane file or shipped name; none: the scenario's or the model's.", autocompletion=complete_crane
+        ),
+    ] = "",
+    model: Annotated[
+        str, typer.Option(help="Model file or shipped name: the friction's truth.", autocompletion=complete_model)
+    ] = "a6vm215_crane2",
     plant: Annotated[str, typer.Option(help="Plant file or shipped name; none: the scenario's.")] = "",
     out: Annotated[Path, typer.Option(help="Folder for the runs, or the file of a single run.")] = Path("runs"),
     seed: Annotated[int, typer.Option(min=0, help="Seed of sea, sensors and campaign.")] = 0,

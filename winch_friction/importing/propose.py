@@ -1,6 +1,6 @@
 """From logs to a proposed map: time, columns, units, ports and signs, each guess with its reason and confidence."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -33,12 +33,19 @@ class Proposal:
     notes: tuple[str, ...]
 
 
-def propose(paths: Sequence[Path], crane: Crane | None, crane_name: str = "", settings: Sequence[str] = ()) -> Proposal:
+def propose(
+    paths: Sequence[Path],
+    crane: Crane | None,
+    crane_name: str = "",
+    settings: Sequence[str] = (),
+    watched: Callable[[Sequence[Path]], Iterable[Path]] = iter,
+) -> Proposal:
     """A map for logs of one kind, with what the person already says of it (`settings`, as `with_settings` takes them).
 
+    `watched` hands the paths on while somebody looks how far the reading is.
     Raises `InputError` only for logs that cannot be read at all and for settings that say nothing.
     """
-    logs = [read_log(path) for path in paths]
+    logs = [read_log(path) for path in watched(paths)]
     draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
     _refuse_different_names(draft)
     pooled = _pooled(logs)

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from campaign.faults.network import late_joiner, lossy_relay, mismatch
 from campaign.faults.watch import Row
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,6 +32,7 @@ class Probe:
     def __init__(self, folder: Path, seed: int) -> None:
         sys.path.insert(0, str(ROOT / "test" / "ros"))
         from dds_bench import Bench
+        from diagnostic_msgs.msg import DiagnosticArray
         from sensor_msgs.msg import JointState
 
         from winch_friction.nodes.qos import OUTPUT
@@ -41,7 +43,18 @@ class Probe:
         self.torques: list[tuple[float, float, float]] = []  # arrival, stamp, N m
         self.consumer = HeldTorque()
         self.bench.node.create_subscription(JointState, "compensator/friction_torque", self._heard, OUTPUT)
+        self.reports: list[Any] = []
+        self.bench.node.create_subscription(DiagnosticArray, "/diagnostics", self.reports.append, 50)
         self.start()
+
+    def said(self, part: str) -> str:
+        """The latest summary of a node's part in the diagnostics."""
+        statuses = (status for message in reversed(self.reports) for status in message.status)
+        return next((str(status.message) for status in statuses if status.name.endswith(part)), "")
+
+    def settle_after_pause(self) -> None:
+        """The stamps go on where the time is now."""
+        self.bench.time = time.time()
 
     def start(self) -> None:
         """The compensator's process, until it has faded in."""
@@ -181,15 +194,6 @@ def frozen_stamp(probe: Probe, row: Row) -> None:
     probe.bench.time = time.time()
 
 
-def lossy_relay(probe: Probe, row: Row) -> None:
-    """Ticks are lost, or come late and together."""
-    for _ in range(probe.random.randint(3, 8)):
-        probe.bench.drive(probe.random.uniform(0.04, 0.2))
-        lost = probe.random.uniform(0.0, 0.15)
-        probe.bench.spin(lost)
-        probe.bench.time += lost * probe.random.choice((0.0, 1.0))
-
-
 def transitions(probe: Probe, row: Row) -> None:
     """Transitions that the state does not have."""
     from lifecycle_msgs.msg import Transition
@@ -233,24 +237,11 @@ def parameters(probe: Probe, row: Row) -> None:
     node.set({"scale": 0.9, "lead": 0.0, "ramp_time": RAMP})
 
 
-def late_joiner(probe: Probe, row: Row) -> None:
-    """Who comes late hears the torque within a second."""
-    from sensor_msgs.msg import JointState
-
-    from winch_friction.nodes.qos import OUTPUT
-
-    heard: list[Any] = []
-    late = probe.bench.node.create_subscription(JointState, "compensator/friction_torque", heard.append, OUTPUT)
-    probe.bench.drive(1.0)
-    probe.bench.node.destroy_subscription(late)
-    if not heard:
-        row.violations["a late subscriber hears nothing"] += 1
-
-
 KINDS: dict[str, Callable[[Probe, Row], None]] = {
     "silence": silence, "SIGKILL and restart": killed, "SIGINT or SIGTERM": ended, "SIGSTOP": stopped,
     "second publisher": second_publisher, "implausible value": implausible, "frozen stamp": frozen_stamp,
-    "lossy relay": lossy_relay, "illegal transition": transitions, "hostile model": hostile_models,
+    "lossy relay": lossy_relay, "quality of service mismatch": mismatch,
+    "illegal transition": transitions, "hostile model": hostile_models,
     "parameters": parameters, "late joiner": late_joiner,
 }  # fmt: skip
 

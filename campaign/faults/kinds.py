@@ -27,28 +27,24 @@ class Fault:
     spoil: Callable[[Messages, int, np.random.Generator], Messages]
     silences: bool = False  # a needed input is gone, or cannot be believed: the torque must go to zero
     detection: float = 0.0  # s that it may take to see that
+    blind: bool = False  # nothing that arrives shows how the shaft turns now: late as a whole, or all of it wrong
     paused: bool = False  # the process does not run at all; afterwards everything comes at once
     memory: dict[str, Any] = field(default_factory=dict)
 
 
 def draw(rng: np.random.Generator) -> Fault:
     """Any fault."""
-    names = list(KINDS)
-    return KINDS[names[int(rng.integers(len(names)))]](rng)
+    return _one(rng, *KINDS.values())(rng)
 
 
 def _one(rng: np.random.Generator, *choices: Any) -> Any:
     return choices[int(rng.integers(len(choices)))]
 
 
-def _needed(topic: str) -> bool:
-    return topic in NEEDED
-
-
 def drop_out(rng: np.random.Generator) -> Fault:
     """A topic falls silent, or several."""
     topics = set(rng.choice((SPEED, REFERENCE, ACTIVE_A, ACTIVE_B, SWASH, LOAD), size=int(rng.integers(1, 4))).tolist())
-    silent = any(map(_needed, topics))
+    silent = bool(topics & set(NEEDED))
     return Fault(
         "drop-out", ", ".join(sorted(topics)), lambda m, _k, _r: [e for e in m if e[0] not in topics], silences=silent
     )
@@ -97,7 +93,7 @@ def not_a_number(rng: np.random.Generator) -> Fault:
     """NaN or infinity in a field."""
     topic, value = _one(rng, *NEEDED, LOAD), _one(rng, math.nan, math.inf, -math.inf)
     spoil = _edited(topic, lambda m, _k, _r: _set(m, topic, lambda _v: value))
-    return Fault("not a number", f"{topic} {value}", spoil, silences=_needed(topic))
+    return Fault("not a number", f"{topic} {value}", spoil, silences=topic in NEEDED)
 
 
 def absurd(rng: np.random.Generator) -> Fault:
@@ -105,7 +101,7 @@ def absurd(rng: np.random.Generator) -> Fault:
     topic = _one(rng, *NEEDED, LOAD)
     value = {SPEED: 2999.0, REFERENCE: -2999.0, ACTIVE_A: 1.9e8, SWASH: _one(rng, 25.0, -25.0), LOAD: 9.9e6}[topic]
     spoil = _edited(topic, lambda m, _k, _r: _set(m, topic, lambda _v: value))
-    return Fault("absurd value", f"{topic} {value:g}", spoil, silences=_needed(topic), detection=0.05)
+    return Fault("absurd value", f"{topic} {value:g}", spoil, silences=topic in NEEDED, detection=0.05)
 
 
 def wrong_unit(rng: np.random.Generator) -> Fault:
@@ -199,7 +195,8 @@ def clock_set(rng: np.random.Generator) -> Fault:
     step = float(_one(rng, -0.5, -3.0, -1000.0, 0.4, 30.0, 1e6))
     topics = {SPEED, REFERENCE, ACTIVE_A, ACTIVE_B, SWASH, "winch/passive/pressure_a", "winch/passive/pressure_b",
               "winch/passive/displacement"}  # fmt: skip
-    return Fault("clock set", f"{step:g} s", lambda m, _k, _r: _stamped(m, topics, lambda time: time + step))
+    spoil = lambda m, _k, _r: _stamped(m, topics, lambda time: time + step)
+    return Fault("clock set", f"{step:g} s", spoil, blind=True)
 
 
 def other_clocks(rng: np.random.Generator) -> Fault:
@@ -211,7 +208,7 @@ def other_clocks(rng: np.random.Generator) -> Fault:
             messages = _stamped(messages, {topic}, lambda time, by=by: time + by)
         return messages
 
-    return Fault("different clocks", "", spoil)
+    return Fault("different clocks", "", spoil, blind=True)
 
 
 def duplicated(rng: np.random.Generator) -> Fault:
@@ -232,7 +229,7 @@ def reordered(rng: np.random.Generator) -> Fault:
             out.append(waiting.pop(int(r.integers(len(waiting)))))
         return out
 
-    return Fault("reordered", f"depth {depth}", spoil)
+    return Fault("reordered", f"depth {depth}", spoil, blind=True)
 
 
 def delayed(rng: np.random.Generator) -> Fault:
@@ -243,7 +240,7 @@ def delayed(rng: np.random.Generator) -> Fault:
         queue.append(messages)
         return queue.pop(0) if len(queue) > ticks else []
 
-    return Fault("delayed", f"{20 * ticks} ms", spoil)
+    return Fault("delayed", f"{20 * ticks} ms", spoil, blind=True)
 
 
 def flood(rng: np.random.Generator) -> Fault:

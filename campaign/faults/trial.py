@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from campaign.faults.kinds import Fault, Messages, draw
+from campaign.faults.kinds import REFERENCE, SPEED, Fault, Messages, draw
 from campaign.faults.voyages import MESSAGES, PERIOD, Voyage
 from campaign.faults.watch import OutputWatch, Row
 from winch_friction.compensation import CompensatorConfig, Feedforward
@@ -140,6 +140,8 @@ class Trial:
 
     def _say(self, said: Feedforward | None) -> None:
         if said is not None:
+            self.watch.blind = self.fault is not None and self.fault.blind
+            self.watch.lead = max(self.watch.lead, self.service.law.config.lead)
             self.watch.published(said, self.now, self.speed, self.row)
 
     # -- faults come and go
@@ -167,6 +169,7 @@ class Trial:
         return Fault(
             "two at once", f"{first.kind} + {second.kind}",
             lambda m, k, r: second.spoil(first.spoil(m, k, r), k, r), first.silences and first.detection == 0.0,
+            blind=first.blind or second.blind or {SPEED, REFERENCE} <= {first.detail, second.detail},
         )  # fmt: skip
 
     # -- what people and other nodes do

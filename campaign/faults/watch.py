@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from winch_friction.compensation import Feedforward
 
 ROUNDING = 1e-6  # N m
+# s beside the look-ahead: a held input's age, the doubt's patience, the fade, and two periods (docs/safety.md)
+LONGEST_AGAINST = 0.1 + 0.1 + 0.1 + 0.05
 CLEAR = 5.0  # N m and rad/s: below it a torque or a motion has no sign worth speaking of
 
 
@@ -35,6 +37,9 @@ class OutputWatch:
     stamp: float = math.nan
     sequence: int = -1
     against_since: float = math.nan
+    lead: float = 0.0  # s, the look-ahead
+    blind: bool = False  # nothing shows the motion: what began so is timed, and no violation
+    _excused: bool = field(default=False, init=False)
 
     def published(self, said: Feedforward, now: float, speed: float, row: Row) -> None:
         """One published torque at `now` s while the shaft truly turns at `speed` rad/s."""
@@ -63,5 +68,8 @@ class OutputWatch:
         if torque * speed < 0.0 and abs(torque) > CLEAR and abs(speed) > CLEAR:
             self.against_since = now if math.isnan(self.against_since) else self.against_since
             row.against = max(row.against, now - self.against_since)
+            self._excused = self._excused or self.blind
+            if now - self.against_since > self.lead + LONGEST_AGAINST and not self._excused:
+                row.violations["against the motion"] += 1
         else:
-            self.against_since = math.nan
+            self.against_since, self._excused = math.nan, self.blind

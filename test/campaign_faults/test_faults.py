@@ -54,6 +54,19 @@ def test_a_torque_against_the_motion_is_timed():
     for k in range(50):
         watch.published(said(-100.0, 0.02 * k), 0.02 * k, 20.0, row)
     assert row.against == pytest.approx(0.98)
+    assert row.violations["against the motion"] == 50 - 1 - 17  # from 0.36 s on
+
+
+def test_what_shows_the_motion_to_nobody_is_no_violation():
+    watch, row = OutputWatch(2000.0, 1.5e4, blind=True), Row()
+    for k in range(50):
+        watch.blind = k < 10
+        watch.published(said(-100.0, 0.02 * k), 0.02 * k, 20.0, row)
+    assert not row.violations
+    watch.published(said(100.0, 1.0), 1.0, 20.0, row)
+    for k in range(51, 80):
+        watch.published(said(-100.0, 0.02 * k), 0.02 * k, 20.0, row)
+    assert row.violations["against the motion"] > 5
 
 
 def test_an_output_that_is_obeyed_without_its_input_is_seen():

@@ -90,6 +90,10 @@ class Bench:
                 self._publishers[name] = self.node.create_publisher(type(message), name, OUTPUT)
             self._publishers[name].publish(message)
 
+    def sample(self) -> Sample:
+        """The swell now."""
+        return swell(self.time)
+
     def publisher(self, topic: str) -> Any:
         """The publisher of an input that was announced."""
         return self._publishers[topic]

@@ -121,7 +121,8 @@ class SafeOutput:
         elif self._carried:
             self._bridge.start(self._bridge.value() + self.fade.value * self._carried)
             self._carried = 0.0
-        wanted = faded + self._bridge.step(self._dt)
+        # what is carried goes as quickly as what fades
+        wanted = faded + self._bridge.step(self._dt if usable else self._dt * self.ramp_time / self._hurry(reversal))
         wanted = self._not_against(wanted, target)
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)

@@ -1,11 +1,14 @@
 """Real winches and drives through import: the shipped examples by their shipped maps, which propose writes again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from winch_friction.importing.carry_out import import_log
-from winch_friction.importing.mapping import load_map
+from winch_friction.importing.mapping import load_map, with_settings
 from winch_friction.importing.propose import propose
+from winch_friction.physics.errors import InputError
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.emps import read_emps
 from winch_friction.records.paths import config_directory
@@ -14,7 +17,7 @@ EXAMPLES = config_directory() / "examples"
 # folder, crane, what a person must say
 REAL = [
     ("winch_100kw", "winch_100kw", []),
-    ("worm_drive", "worm_drive", ["motor_torque.of=9.84 mN*m"]),
+    ("worm_drive", "worm_drive", ["motor_torque.of=9.84 mN*m", "hook_load.constant=0.096 kg"]),
     ("ship_heave", "", []),
 ]
 
@@ -28,12 +31,19 @@ def test_the_shipped_map_is_what_is_proposed(folder, crane, said):
     assert found.log_map.time == shipped.time
     for name, entry in shipped.columns.items():
         proposed = found.log_map.columns[name]
-        assert (proposed.source, proposed.unit, proposed.sign, proposed.of) == (
-            entry.source,
-            entry.unit,
-            entry.sign,
-            entry.of,
-        )
+        assert replace(proposed, confidence=1.0, because="") == replace(entry, confidence=1.0, because="")
+
+
+def test_a_known_load_that_nobody_logged_is_a_constant_of_the_map():
+    run = run_of("worm_drive", "n20.csv", "worm_drive")
+    assert run["hook_load"] == pytest.approx(np.full(len(run), 0.096))
+
+
+@pytest.mark.parametrize(("constant", "said"), [("heavy", "a number and its unit"), ("0.096 bar", "hook_load")])
+def test_a_constant_that_is_no_load_is_refused(constant, said):
+    given = with_settings(load_map(EXAMPLES / "worm_drive" / "map.yaml"), [f"hook_load.constant={constant}"])
+    with pytest.raises(InputError, match=said):
+        import_log(EXAMPLES / "worm_drive" / "n20.csv", given, load_crane("worm_drive"))
 
 
 def run_of(folder, name, crane=""):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.preparation.motion import at_one_speed
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
@@ -48,11 +49,16 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         rate = (len(time) - 1) / lasts
         if lasts < LIMITS.shortest_record:
             notes.append(f"{run.name} left out: it lasts {lasts:.3g} s, needed {LIMITS.shortest_record:g} s")
-        elif rate < LIMITS.lowest_rate:
+        elif rate < LIMITS.lowest_rate and not _steady(run):
             notes.append(f"{run.name} left out: logged at {rate:.3g} Hz, needed {LIMITS.lowest_rate:g} Hz")
         else:
             kept.append(run)
     return kept, notes
+
+
+def _steady(run: Run) -> bool:
+    """At one speed throughout there is no acceleration and no reversal that a slow log could miss."""
+    return "motor_speed" in run and at_one_speed(run["motor_speed"][np.isfinite(run["motor_speed"])])
 
 
 def of_records(runs: Sequence[Run], kept: Sequence[Run]) -> list[Check]:

@@ -101,7 +101,7 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     tables = [_blocks(old, new, length) for old, new in pairs]
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
     y_before, y_after = blocks.y, blocks.x[:, 0]
-    noise = np.array([_noise(y_after, blocks, k) for k in range(len(pairs))])
+    noise = np.array([_noise(y_after, blocks, k, least_noise_of(old)) for k, (old, _) in enumerate(pairs)])
     floor = np.sqrt(np.mean(noise[blocks.run] ** 2)) if len(blocks.run) else 0.0
     runs = tuple(old for old, _ in pairs)
     torque = np.array([drive_of(run) for run in runs])[blocks.run]
@@ -139,10 +139,10 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
     )
 
 
-def _noise(values: FloatArray, blocks: Blocks, k: int) -> float:
+def _noise(values: FloatArray, blocks: Blocks, k: int, least: float) -> float:
     """Independent noise of one run, in the gap's unit."""
     own = blocks.run == k
-    return noise_of_run(values[own], blocks.position[own]) if own.any() else 0.0
+    return noise_of_run(values[own], blocks.position[own], least) if own.any() else 0.0
 
 
 def drive_of(run: PreparedRun) -> float:

@@ -79,6 +79,11 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
             for parameter in candidate.linear:
                 scales.append(parameter.typical)
                 low, high = shape.bounds or (-most if parameter.lower < 0.0 or present else 0.0, most)
+                if candidate.corrects is not None and parameter.unit == "1":  # a share means what it is declared for
+                    low, high = (
+                        max(low, parameter.lower / parameter.typical),
+                        min(high, parameter.upper / parameter.typical),
+                    )
                 lower.append(low)
                 upper.append(high)
             slots.append(
@@ -91,6 +96,7 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                     (candidate, shape),
                     candidate.law_name,
                     candidate.free,
+                    candidate.plain_in(model),
                 )
             )
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))

@@ -27,7 +27,7 @@ class Thresholds:
     noise_window: int = 12  # blocks; a parabola over two seconds follows any friction, load or wave
     noise_order: int = 2  # of the polynomial that is taken out
     noise_quiet: float = 0.25  # quantile: the quieter windows speak, in the others an oscillation may ring down
-    noise_floor: float = 1e-3  # bar (N m): below it a record is as good as noise-free
+    noise_floor: float = 1e-2  # of what no balance closes: below it a record is as good as noise-free
     # -- the base model's freedom
     prior_bound: float = 2.0  # sigma; a base parameter beyond it is itself a finding
     prior_weight: float = 10.0  # blocks per independent one: correlated noise makes the data count for less (campaign)
@@ -52,6 +52,7 @@ class Thresholds:
     rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
     most_names: int = 3  # in a set
     free_charge: float = 0.05  # of what a flexible member saves, that a law of the literature may save less
+    plain_first: float = 1e-3  # of what is saved: of laws that do the same, the one that every machine has
     grammar_heads: int = 6  # single factors that are tried together with every other
     grammar_judged: int = 12  # laws of one and of two factors whose held-out loss is looked at
     proposal_gain: float = 0.3  # of the gap above the noise that the best law must close to be worth proposing

@@ -35,7 +35,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     implausible = [f.slot.name for f in selection.found if _at_bound(cross, selection, f)]
     if implausible:
         return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
-    if len([f for f in selection.found if not _plain_term(cross, f)]) > LIMITS.most_named:
+    # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
+    if len([f for f in selection.found if not f.slot.plain]) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
     remains = excess > LIMITS.least_excess and excess / before > LIMITS.left_over
     remains |= excess > LIMITS.large_excess and excess / before > LIMITS.small_left_over
@@ -67,12 +68,7 @@ def _steady_excess(cross: CrossFit, explanation: Explanation) -> float:
 
 def _at_bound(cross: CrossFit, selection: Selection, found: Finding) -> bool:
     columns = list(cross.problem.columns(selection.final.slots))
-    most = found.slot.most
-    if _plain_term(cross, found):
-        return False
-    return any(abs(selection.final.beta[columns.index(c)]) >= 0.999 * most for c in found.slot.columns)
-
-
-def _plain_term(cross: CrossFit, found: Finding) -> bool:
-    """A plain term that the model lacked from the start: several of them may be missing without being an imitation."""
-    return cross.problem.unlimited(found.slot)
+    upper = cross.problem.layout.upper
+    most = [upper[c] if found.slot.plain else found.slot.most for c in found.slot.columns]
+    sizes = [abs(selection.final.beta[columns.index(c)]) for c in found.slot.columns]
+    return any(size >= 0.999 * limit for size, limit in zip(sizes, most, strict=True))

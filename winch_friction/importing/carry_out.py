@@ -1,7 +1,7 @@
 """A log and its map become a run in SI: every cell converted, what is no number named, nothing dropped silently."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +44,10 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
     done = convert(log, log_map, crane)
     if done.problems:
         raise InputError(f"{path}: {'; '.join(done.problems)}")
-    metadata = {"source": path.name, "imported": {name: entry.source for name, entry in log_map.columns.items()}}
+    metadata = {
+        "source": path.name,
+        "imported": {name: entry.constant or entry.source for name, entry in log_map.columns.items()},
+    }
     warnings = tuple(f"{path.name}: {note}" for note in (*log.notes, *done.warnings))
     motion = {"heave_velocity"} <= set(done.columns) <= {"time", "heave_velocity"}
     if motion:
@@ -56,7 +59,7 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
 
 def open_with_map(path: Path, log_map: LogMap) -> Log:
     """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found."""
-    wanted = {*log_map.time_from, *(entry.source for entry in log_map.columns.values())}
+    wanted = {*log_map.time_from, *(e.source for e in log_map.columns.values() if not e.constant)}
     kind = str(log_map.log.get("kind", ""))
     try:
         log = read_log(path, log_map.log if kind in ("text", "workbook") and _is_kind(path, kind) else None)
@@ -118,6 +121,8 @@ def _time(log: Log, log_map: LogMap) -> FloatArray:
 
 def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, crane: Crane | None, said: list[str],
             problems: list[str], strict: bool) -> FloatArray:  # fmt: skip
+    if entry.constant:
+        return np.full(len(log), constant_in_si(name, channel, entry, crane))
     column = log.column(entry.source)
     if not column.numeric:
         first = next((str(c) for c in column.text if c is not None and str(c).strip()), "nothing")
@@ -130,6 +135,20 @@ def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, cr
         values = _rate(name, values, _time(log, log_map), entry.differentiate)
     kept = (said, problems) if strict else ([], [])
     return _within_limits(log, name, channel, column, values, *kept)
+
+
+def constant_in_si(name: str, channel: str, entry: Entry, crane: Crane | None) -> float:
+    """The value of an entry without a column, such as the known weight of what hangs on the rope."""
+    number, _, unit = entry.constant.strip().partition(" ")
+    try:
+        value = float(number)
+    except ValueError:
+        raise InputError(f"{name}: constant: '{entry.constant}' must be a number and its unit, e.g. 96 kg") from None
+    scale, offset = scale_and_offset(name, channel, replace(entry, unit=unit.strip() or entry.unit), crane)
+    low, high = limits_of(channel)
+    if not low <= value * scale + offset <= high:
+        raise InputError(f"{name}: constant: '{entry.constant}' is beyond what any winch has; is the unit right?")
+    return value * scale + offset
 
 
 def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None) -> tuple[float, float]:

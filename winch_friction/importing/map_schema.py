@@ -50,10 +50,9 @@ def _entry() -> dict[str, Any]:
         {
             "from": _TEXT, "unit": _TEXT, "sign": {"enum": [1, -1]}, "factor": {"type": "number", "not": {"const": 0}},
             "of": _TEXT, "at": {"enum": list(PLACES)}, "differentiate": {"type": "number", "minimum": 0},
-            "confidence": _SURE, "because": _TEXT,
+            "constant": _TEXT, "confidence": _SURE, "because": _TEXT,
         },
-        ("from",),
-    )  # fmt: skip
+    ) | {"anyOf": [{"required": ["from"]}, {"required": ["constant"]}]}  # fmt: skip
 
 
 def _object(properties: dict[str, Any], required: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -15,6 +15,7 @@ _COLUMNS = """\
 # channel of the run: {from: column of the log, unit: the log's unit}; where needed also
 #   sign: -1        the log counts the other way        factor: a further multiplier
 #   of: 215 cm^3/rev   what a share (%) is of           at: motor | drum | rope   where a speed or torque is measured
+#   constant: 96 kg in place of from and unit, for what is known and not logged
 """
 
 
@@ -64,8 +65,11 @@ def _time_lines(log_map: LogMap) -> Iterable[str]:
 
 
 def _entry_lines(entry: Entry) -> Iterable[str]:
-    yield f"from: {_quoted(entry.source)}"
-    yield f"unit: {_quoted(entry.unit)}"
+    if entry.constant:
+        yield f"constant: {_quoted(entry.constant)}"
+    else:
+        yield f"from: {_quoted(entry.source)}"
+        yield f"unit: {_quoted(entry.unit)}"
     if entry.sign != 1:
         yield f"sign: {entry.sign}"
     if entry.factor != 1.0:

@@ -23,7 +23,8 @@ class Entry:
 
     `sign` +1 or -1, `factor` a further multiplier, `of` what a share is of (`215 cm^3/rev`), `at` where a speed or
     torque is measured; `differentiate` Hz: the column is a position in `unit`, its speed is taken behind a zero-phase
-    low-pass of this frequency; `confidence` 0 ... 1 and `because` are the proposal's, nobody needs them.
+    low-pass of this frequency; `constant`: no column but one value with its unit (`96 kg`), known from elsewhere;
+    `confidence` 0 ... 1 and `because` are the proposal's, nobody needs them.
     """
 
     source: str
@@ -33,6 +34,7 @@ class Entry:
     of: str = ""
     at: str = "motor"
     differentiate: float = 0.0
+    constant: str = ""
     confidence: float = 1.0
     because: str = ""
 
@@ -98,8 +100,10 @@ def _entry(section: Section) -> Entry:
     factor = section.number("factor", 1.0)
     if factor == 0.0:
         raise InputError(f"{section.where}: factor must not be 0")
+    constant = section.text("constant", "")
     entry = Entry(
-        source=section.text("from"),
+        source=section.text("from", "") if constant else section.text("from"),
+        constant=constant,
         unit=section.text("unit", ""),
         sign=int(sign),
         factor=factor,
@@ -173,7 +177,8 @@ def _changed(log_map: LogMap, name: str, attribute: str, value: str, setting: st
     old = log_map.columns.get(name)
     fields = {} if old is None else {
         "from": old.source, "unit": old.unit, "sign": old.sign, "factor": old.factor, "of": old.of, "at": old.at,
-        "differentiate": old.differentiate, "confidence": old.confidence, "because": old.because,
+        "differentiate": old.differentiate, "constant": old.constant, "confidence": old.confidence,
+        "because": old.because,
     }  # fmt: skip
     entry = _entry(Section(fields | {attribute: value}, f"--set '{setting}'"))
     return replace(log_map, columns={**log_map.columns, name: entry})

@@ -58,11 +58,12 @@ _CONSTANTS = {
     "gear_ratio": quantity("1"),
 }  # fmt: skip
 _ENTRY = _object(
-    {"from": TEXT},
+    {},
     {
-        "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "of": TEXT,
+        "from": TEXT, "constant": TEXT, "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "of": TEXT,
         "at": {"enum": ["motor", "drum", "rope"]}, "differentiate": NUMBER, "confidence": NUMBER, "because": TEXT,
     },
+    anyOf=[{"required": ["from"]}, {"required": ["constant"]}],
 )  # fmt: skip
 
 DECLARED: dict[str, Schema] = {

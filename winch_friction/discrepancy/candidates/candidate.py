@@ -141,9 +141,12 @@ class Candidate:
 
     def most_in(self, model: FrictionModel) -> float:
         """Largest amplitude that is believed, in typical sizes: of a bare model nothing is known yet."""
+        return LIMITS.unbounded if self.plain_in(model) else self.plausible
+
+    def plain_in(self, model: FrictionModel) -> bool:
+        """Whether this is what a bare model simply lacks."""
         present = self.term is not None and self.term.name in model.term_names
-        bare = len(model.parameters) <= LIMITS.bare
-        return LIMITS.unbounded if bare and self.plain and not present else self.plausible
+        return len(model.parameters) <= LIMITS.bare and self.plain and not present
 
     def untestable(self, runs: Sequence[PreparedRun]) -> Untestable | None:
         """Why these runs cannot show it; None where they can."""

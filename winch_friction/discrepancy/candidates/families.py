@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Shapes, label_of
-from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, term_columns
+from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, no_load, term_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -53,10 +53,11 @@ def literature() -> list[Candidate]:
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
-        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}),
-        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",)),
-        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}),
-        _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=()),
+        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=no_load),
+        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=no_load),
+        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=no_load),
+        _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
+            blind=no_load),
     ]  # fmt: skip
 
 

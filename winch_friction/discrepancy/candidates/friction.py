@@ -23,6 +23,12 @@ BRISTLE_TRAVEL = (0.009, 0.02, 0.04, 0.09)  # rad of the shaft, 0.5 to 5 degrees
 TYPICAL_DRUM_TORQUE = 4e5  # N m, to weigh the two coefficients of a Stribeck curve
 
 
+def no_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    """What is proportional to the load shows only where something hangs on the drum."""
+    known = any(np.any(run.drum_torque != 0.0) for run in runs)
+    return None if known else ("hook_load", "no run has a load")
+
+
 def shipped_friction() -> list[Candidate]:
     """The catalogue's friction effects and the base terms, each in one line."""
     return [
@@ -30,9 +36,9 @@ def shipped_friction() -> list[Candidate]:
         _of("stribeck", shapes=_stribeck_shapes, continuous=("C4",), merge=_one_stribeck, plain=True,
             reversal_rival=True),
         _of("dwell_stiction", {"g_dw": (0.4,), "d_dw": (0.5, 1.0, 2.0, 5.0)}, reversal_gain=0.1, reversal_rival=True),
-        _of("gear_asymmetry", {"b_g": (0.0,)}),
-        _of("gear_load_loss", plain=True),
-        _of("sheave_bending", presumes=("gear_load_loss",)),
+        _of("gear_asymmetry", {"b_g": (0.0,)}, blind=no_load),
+        _of("gear_load_loss", plain=True, blind=no_load),
+        _of("sheave_bending", presumes=("gear_load_loss",), blind=no_load),
         _of("wear_drift", shapes=_observed_time, presumes=COULOMB),
         _of("low_displacement_loss"),
         _of("port_turbulence", {"n_t": (1.5, 2.0, 2.5)}),

@@ -17,7 +17,8 @@ from winch_friction.discrepancy.thresholds import LIMITS
 class Slot:
     """Where one shape of one candidate has its columns.
 
-    `law` tells the members of one candidate's family apart, `free` marks the flexible one.
+    `law` tells the members of one candidate's family apart, `free` marks the flexible one, `plain` what a bare
+    model simply lacks.
     `brings` names candidates that belong to it, `most` is the largest amplitude (in units of its columns) that is
     believed; `origin` is whatever the caller made the columns of.
     """
@@ -30,6 +31,7 @@ class Slot:
     origin: Any = None
     law: str = ""
     free: bool = False
+    plain: bool = False
 
 
 @dataclass(frozen=True)

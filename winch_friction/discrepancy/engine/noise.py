@@ -11,20 +11,24 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
 
 
-def noise_of_run(values: FloatArray, position: np.ndarray) -> float:
-    """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid."""
+def noise_of_run(values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise) -> float:
+    """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
+
+    A hundredth of what no balance closes better than, `least`, is as good as noise-free.
+    """
+    floor = LIMITS.noise_floor * least
     window, order = LIMITS.noise_window, LIMITS.noise_order
     windows = _windows(values, position, window)
     if len(windows) == 0:
         simple = float(np.std(np.diff(values)) / np.sqrt(2.0)) if len(values) > 2 else 0.0
-        return max(simple, LIMITS.noise_floor)
+        return max(simple, floor)
     grid = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
     projector = np.eye(window) - grid @ np.linalg.pinv(grid)
     freedom = window - order - 1
     variances = ((windows @ projector) ** 2).sum(axis=1) / freedom
     # that quantile of chi-squared, per degree of freedom
     expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
-    return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), LIMITS.noise_floor)
+    return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), floor)
 
 
 def _windows(values: FloatArray, position: np.ndarray, window: int) -> FloatArray:

@@ -91,10 +91,6 @@ class Problem:
         """Columns of the base and of these candidates."""
         return self.base_columns + tuple(c for slot in slots for c in slot.columns)
 
-    def unlimited(self, slot: Slot) -> bool:
-        """Whether a candidate may have any size: a plain term that a bare model lacked from the start."""
-        return all(self.layout.upper[column] >= LIMITS.unbounded for column in slot.columns)
-
     def fit(self, g: FloatArray, b: FloatArray, columns: Sequence[int], start: FloatArray | None = None) -> FloatArray:
         """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments. A `start`
         near the answer saves steps and changes nothing else."""
@@ -122,13 +118,16 @@ def problem_of(
     tables: Sequence[RunBlocks], layout: Layout, least_noise: FloatArray, known: Sequence[Slot] = ()
 ) -> Problem:
     """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise."""
-    noise = {k: noise_of_run(t.y, t.position) for k, t in enumerate(tables)}
+    noise = {
+        k: noise_of_run(t.y, t.position, least) for k, (t, least) in enumerate(zip(tables, least_noise, strict=True))
+    }
     blocks = joined(tables, noise)
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.columns(known))
     beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.columns(known))
-    again = {k: min(noise[k], noise_of_run(t.y - t.x[:, columns] @ beta, t.position)) for k, t in enumerate(tables)}
+    left = [t.y - t.x[:, columns] @ beta for t in tables]
+    again = {k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]))) for k, t in enumerate(tables)}
     return replace(_reweighted(first, again), least_noise=least_noise)
 
 

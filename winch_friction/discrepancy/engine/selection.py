@@ -100,7 +100,7 @@ def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator
     Inertia, Coulomb and viscous friction and a gain stand in for each other: one by one, the first takes what belongs
     to two others, which then bring nothing alone.
     """
-    plain = [slot for slot in cross.problem.slots if cross.problem.unlimited(slot) and not slot.brings]
+    plain = [slot for slot in cross.problem.slots if slot.plain and not slot.brings]
     best = {slot.name: slot for slot in sorted(plain, key=lambda each: -cross.train_loss((each,))[0])}
     return _pruned(cross, cross.explain(tuple(best.values())), rng) if len(best) > 1 else base
 
@@ -181,8 +181,10 @@ def _heads(before: float, trials: Sequence[Explanation]) -> list[Explanation]:
 
 
 def _charged(before: float, after: float, own: Slot) -> float:
-    """Held-out loss, of which a flexible member has to give back a share of what it saves."""
-    return after + (LIMITS.free_charge * max(before - after, 0.0) if own.free else 0.0)
+    """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
+    the least share that decides between two that do the same."""
+    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first
+    return after + share * max(before - after, 0.0)
 
 
 def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
@@ -242,26 +244,30 @@ def _found(
     rest = current.slots[:k] + current.slots[k + 1 :]
     without = cross.explain(rest)
     gain_losses = without.losses - current.losses
-    rivals, frequency = ((), 1.0) if bringers else _rivals(cross, current, without, k, rng)
+    rivals, frequency = _rivals(cross, current, without, k, rng, same=bool(bringers))
     name = own.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
     return Finding(own, rivals, p, float(cross.gain(without, current)), frequency)
 
 
 def _rivals(
-    cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator
+    cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator, same: bool = False
 ) -> tuple[tuple[Slot, ...], float]:
-    """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn."""
+    """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn.
+
+    With `same` only what is the same column in these runs, such as a tare at one load and a torque offset.
+    """
     rest = current.slots[:k] + current.slots[k + 1 :]
     own = current.slots[k]
     fitted = _fitted(cross, rest, current.names)
     trials = _heads(without.loss, [cross.explain((*rest, slot)) for slot in fitted])
     equal = []
     for trial in trials:
-        if does_as_well(trial, current, without, rng):
+        alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)
+        if alike if same else does_as_well(trial, current, without, rng):
             equal.append((trial.loss, trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
-    frequency = _frequency(current.losses, [t.losses for t in trials], rng)
+    frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
     return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
 
 

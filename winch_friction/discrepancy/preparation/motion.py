@@ -12,6 +12,8 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 
 CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder
+FEWEST_STEADY = 50  # samples, for a mean and its noise
+ONLY_NOISE = 1.5  # times the noise of the third differences: white noise has 1, a sine of ten samples 30
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
 GUARD_TIME = 0.08  # s kept away from a reversal on both sides, beyond half a smoothing window
 TOUCH_TIME = 0.1  # s: a touch of zero that short hides in the smoothed speed
@@ -39,6 +41,8 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
     """The moving samples, or with `turning` those just after reversals; `InputError` without a speed column."""
     raw = _motor_speed(grid, crane, name)
     window = speed_window(raw, grid.dt)
+    if not turning and at_one_speed(raw):
+        return _steady(raw, grid, window)
     speed = smooth(raw, window)
     angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
     guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw) / np.sqrt(window / 3.0))
@@ -52,6 +56,24 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
         used = ~dilated(still, window // 2 + max(round(GUARD_TIME / grid.dt), 1))
     # the acceleration is that of the smoothed speed: the same kernel as the pressures'
     return Motion(window, speed, np.gradient(speed, grid.dt), angle, direction, state_speed, used)
+
+
+def at_one_speed(raw: FloatArray) -> bool:
+    """Whether a record's speed varies by no more than its own noise, about a mean that is surely not zero.
+
+    A slow shaft's encoder counts none, one or two steps a sample: what it turns is known from the whole record only.
+    """
+    if len(raw) < FEWEST_STEADY or not np.isfinite(raw).all():
+        return False
+    spread, noise = float(np.std(raw)), float(np.std(np.diff(raw, 3))) / np.sqrt(20.0)
+    return spread <= ONLY_NOISE * noise and abs(float(np.mean(raw))) > CERTAIN * spread / np.sqrt(len(raw))
+
+
+def _steady(raw: FloatArray, grid: Grid, window: int) -> Motion:
+    speed = np.full(len(raw), float(np.mean(raw)))
+    still = np.zeros(len(raw))
+    angle = grid.columns.get("shaft_angle", speed * grid.time)
+    return Motion(window, speed, still, angle, np.sign(speed), speed, np.ones(len(raw), bool))
 
 
 def _motor_speed(grid: Grid, crane: Crane, name: str) -> FloatArray:

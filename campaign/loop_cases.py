@@ -45,7 +45,7 @@ class Sea:
     @property
     def regular(self) -> bool:
         """Whether it is the same for every seed."""
-        return bool(self.content["kind"] == "regular")
+        return self.content["kind"] in ("regular", "measured")
 
 
 def jonswap(height: float, period: float) -> Sea:
@@ -59,6 +59,7 @@ SEAS = (
     jonswap(0.3, 7.0),
     jonswap(1.0, 8.0),
     jonswap(3.0, 10.0),
+    Sea("a ship's heave, measured", 10.7, load_scenario("ahc_measured_heave").sea.dict()),
 )
 LOADS = (15e3, 55e3, 100e3)
 DRIVES = {"primary": "pump-controlled", "secondary": "torque-commanded"}

@@ -1,6 +1,7 @@
 """From scenario, crane and plant file to the records that the compiled loop reads."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -10,11 +11,12 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.control.settings import CONTROL
+from winch_friction.simulation.motion.measured import MeasuredHeave, load_heave
 from winch_friction.simulation.motion.profile import plateau_points, profile_reference
 from winch_friction.simulation.motion.sea import Waves, fade, jonswap_sea, regular_wave
 from winch_friction.simulation.plant.parameters import PLANT, PLANT_FIELDS, record
 from winch_friction.simulation.plant_file import PlantFile
-from winch_friction.simulation.scenario import Jonswap, Regular, Scenario
+from winch_friction.simulation.scenario import Jonswap, Measured, Regular, Scenario
 
 WATER_DENSITY = 1025.0  # kg/m^3
 # gains of every published comparison: position loop 1/s, speed loop N m s/rad, pressure damping m^3/s/Pa, washout s
@@ -201,8 +203,10 @@ def _profile_points(scenario: Scenario, full_speed: float) -> list[tuple[float, 
     return plateau_points(speeds, profile.hold, profile.ramp, profile.rest) if speeds else []
 
 
-def _waves(scenario: Scenario, seed: int) -> tuple[Waves | None, float]:
+def _waves(scenario: Scenario, seed: int) -> tuple[Waves | MeasuredHeave | None, float]:
     sea = scenario.sea
+    if isinstance(sea, Measured):
+        return load_heave(Path(sea.file), sea.start), sea.response
     if isinstance(sea, Regular):
         return regular_wave(sea.amplitude, sea.period), 1.0
     if isinstance(sea, Jonswap):

@@ -73,6 +73,16 @@ class Jonswap(Strict):
     seed: Whole | None = None
 
 
+class Measured(Strict):
+    """The heave that was measured on a ship, from a file with the columns time [s] and heave [m], from `start` s of it
+    on; the crane tip follows it by `response`."""
+
+    kind: Literal["measured"]
+    file: StrictStr
+    start: Seconds = limited(0.0, ge=0.0)
+    response: Number = limited(1.0, gt=0.0, le=2.0)
+
+
 class Profile(Strict):
     """Shaft speed over time: corner points, or plateaus each hoisted and lowered (paper 2 Fig 6), given
     as speeds or as shares of the pump's flow.
@@ -160,7 +170,7 @@ class Scenario(Strict):
     passive_displacement: Displacement | None = None
     wire_layer: Whole = limited(6, ge=1)
     wire_out: Metres = limited(50.0, gt=1.0)
-    sea: Still | Regular | Jonswap = Field(default=Still(), discriminator="kind")
+    sea: Still | Regular | Jonswap | Measured = Field(default=Still(), discriminator="kind")
     sea_ramp: Seconds = limited(10.0, gt=0.0)
     calm_at: Seconds | None = None
     calm_time: Seconds = limited(30.0, gt=0.0)
@@ -211,8 +221,13 @@ def load_scenario(name: str | Path) -> Scenario:
     """A scenario by path or shipped name; raises `InputError` in one line for anything wrong."""
     path = shipped("scenarios", name)
     scenario = scenario_from_content(read_yaml(path), str(path))
-    beside = path.parent / scenario.plant  # a scenario travels with its plant
-    return scenario.override({"plant": str(beside)}) if beside.is_file() else scenario
+    # a scenario travels with its plant and its motion
+    named = {"plant": scenario.plant}
+    if isinstance(scenario.sea, Measured):
+        named["sea.file"] = scenario.sea.file
+    beside = {key: path.parent / name for key, name in named.items()}
+    found = {key: str(own.resolve()) for key, own in beside.items() if own.is_file()}
+    return scenario.override(found) if found else scenario
 
 
 def scenario_from_content(content: Any, where: str = "scenario") -> Scenario:

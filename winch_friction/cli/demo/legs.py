@@ -12,7 +12,7 @@ from winch_friction.physics.units import CM3_PER_REV
 from winch_friction.records.atomic import write_text
 from winch_friction.records.paths import shipped
 from winch_friction.records.strict_yaml import read_yaml
-from winch_friction.simulation.scenario import Scenario, load_scenario, scenario_from_content
+from winch_friction.simulation.scenario import Measured, Scenario, load_scenario, scenario_from_content
 
 # what the legs after the first change; a factor tuned at the first meets a light and a heavy load, and smaller motors
 OTHERS = (
@@ -66,7 +66,9 @@ def voyage_legs(name: str) -> tuple[Leg, ...]:
     first = load_scenario(name)
     if first.mode != "ahc":
         raise InputError(f"scenario '{first.name}' is no heave compensation (mode ahc), which the demo is about")
-    content = read_yaml(shipped("scenarios", name))
+    content = dict(read_yaml(shipped("scenarios", name)))
+    if isinstance(first.sea, Measured):  # the legs are written elsewhere than the scenario that names it
+        content["sea"] = {**content["sea"], "file": first.sea.file}
     return tuple(_leg(k, content, change) for k, change in enumerate(({}, *OTHERS)))
 
 

@@ -85,7 +85,9 @@ class CompiledTerms:
         return symbols.s * sp.diff(self.total, symbols.w) + sp.diff(self.total, symbols.omega)
 
     def _lambdify(self, expression: Any, modules: Any) -> Callable[..., Any]:
-        return sp.lambdify(self._arguments, expression, modules=modules, cse=True)
+        # several values as a tuple: numba would put a list on the heap, three times what the equations cost
+        several = isinstance(expression, Sequence)
+        return sp.lambdify(self._arguments, tuple(expression) if several else expression, modules=modules, cse=True)
 
     @cached_property
     def scalar_torque(self) -> Callable[..., float]:
@@ -93,12 +95,12 @@ class CompiledTerms:
         return self._lambdify(self.total, "math")
 
     @cached_property
-    def scalar_torque_and_gradient(self) -> Callable[..., list[float]]:
-        """[torque, dT/domega, dT/dtheta_0, ...] at one operating point of plain floats."""
+    def scalar_torque_and_gradient(self) -> Callable[..., tuple[float, ...]]:
+        """(torque, dT/domega, dT/dtheta_0, ...) at one operating point of plain floats."""
         return self._lambdify([self.total, self.speed_derivative, *self.gradient], "math")
 
     @cached_property
-    def scalar_contributions(self) -> Callable[..., list[float]]:
+    def scalar_contributions(self) -> Callable[..., tuple[float, ...]]:
         """Torque of each term at one operating point of plain floats."""
         return self._lambdify(list(self.expressions), "math")
 
@@ -108,12 +110,12 @@ class CompiledTerms:
         return self._lambdify(self.total, _NUMPY)
 
     @cached_property
-    def vector_gradient(self) -> Callable[..., list[Any]]:
+    def vector_gradient(self) -> Callable[..., tuple[Any, ...]]:
         """Partial derivatives over arrays (entries that are constant come back as scalars)."""
         return self._lambdify(self.gradient, _NUMPY)
 
     @cached_property
-    def vector_contributions(self) -> Callable[..., list[Any]]:
+    def vector_contributions(self) -> Callable[..., tuple[Any, ...]]:
         """Torque of each term over arrays."""
         return self._lambdify(list(self.expressions), _NUMPY)
 
@@ -135,13 +137,13 @@ class CompiledTerms:
         ]
 
     @cached_property
-    def scalar_state_rates(self) -> Callable[..., list[float]]:
-        """[gain_0, decay_0, gain_1, ...] of the states at one operating point of plain floats."""
+    def scalar_state_rates(self) -> Callable[..., tuple[float, ...]]:
+        """(gain_0, decay_0, gain_1, ...) of the states at one operating point of plain floats."""
         return self._lambdify(self._state_equations, "math")
 
     @cached_property
-    def vector_state_rates(self) -> Callable[..., list[Any]]:
-        """[gain_0, decay_0, gain_1, ...] over arrays."""
+    def vector_state_rates(self) -> Callable[..., tuple[Any, ...]]:
+        """(gain_0, decay_0, gain_1, ...) over arrays."""
         return self._lambdify(self._state_equations, _NUMPY)
 
     @cached_property

@@ -25,8 +25,10 @@ $(READY): setup.py constraints.txt
 demo: $(READY)
 	$(BIN)/winch-friction demo --out out/demo
 
+# whatever only computes shares the cores, file by file; what runs over DDS in real time has the machine to itself
 test: lint browser
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile
+	$(BIN)/python -m pytest -m ros
 
 lint: $(READY)
 	$(BIN)/ruff check .

@@ -51,8 +51,8 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
     else:
         direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
         state_speed = np.where(direction != 0.0, speed, 0.0)
-        # a short touch of zero hides in the smoothed speed
-        still = (np.abs(speed) <= guard) | (np.abs(smooth(raw, samples_of(TOUCH_TIME, grid.dt, 3), 1)) <= guard)
+        still = _near_zero(speed, guard)
+        still |= _near_zero(smooth(raw, samples_of(TOUCH_TIME, grid.dt, 3), 1), guard)  # a short touch hides in `speed`
         used = ~dilated(still, window // 2 + max(round(GUARD_TIME / grid.dt), 1))
     # the acceleration is that of the smoothed speed: the same kernel as the pressures'
     return Motion(window, speed, np.gradient(speed, grid.dt), angle, direction, state_speed, used)
@@ -74,6 +74,15 @@ def _steady(raw: FloatArray, grid: Grid, window: int) -> Motion:
     still = np.zeros(len(raw))
     angle = grid.columns.get("shaft_angle", speed * grid.time)
     return Motion(window, speed, still, angle, np.sign(speed), speed, np.ones(len(raw), bool))
+
+
+def _near_zero(speed: FloatArray, guard: float) -> np.ndarray:
+    """Samples at zero, and those beside a reversal that fell between two of them."""
+    still = np.abs(speed) <= guard
+    turns = speed[1:] * speed[:-1] < 0.0
+    still[1:] |= turns
+    still[:-1] |= turns
+    return still
 
 
 def _motor_speed(grid: Grid, crane: Crane, name: str) -> FloatArray:

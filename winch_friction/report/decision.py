@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import paragraph, table_html, words_html
 
 
 def decision_html(sentence: str, facts: Sequence[tuple[str, str]], after: str = "") -> str:
@@ -16,7 +16,7 @@ def decision_html(sentence: str, facts: Sequence[tuple[str, str]], after: str = 
 def list_html(lines: Sequence[str], ordered: bool = False) -> str:
     """A list of escaped lines; nothing for none."""
     kind = "ol" if ordered else "ul"
-    return f"<{kind}>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</{kind}>" if lines else ""
+    return f"<{kind}>{''.join(f'<li>{words_html(line)}</li>' for line in lines)}</{kind}>" if lines else ""
 
 
 def provenance_html(content: Mapping[str, Any]) -> str:

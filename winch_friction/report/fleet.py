@@ -1,50 +1,86 @@
 """The fleet's page: verdict per crane, who changed and when, who is unlike the others, and the months themselves."""
 
 from collections.abc import Mapping, Sequence
-from datetime import date
 from pathlib import Path
 from typing import Any
 
+from winch_friction.fleet.drift import Series, month_text, monthly
 from winch_friction.fleet.fingerprint import TRAITS
 from winch_friction.fleet.ledger import Outcome, verdict_of
 from winch_friction.report.base import Section, TextSection, write_report
-from winch_friction.report.figures import figure_html, legend_above, new_figure
+from winch_friction.report.decision import decision_html, list_html
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.tables import paragraph, table_html
 
 MOST_DRAWN = 60  # cranes in one figure; more are said, not drawn
-MOST_NAMED = 12  # lines that a legend can tell apart
-_OTHERS: dict[str, Any] = {"linewidth": 0.7, "color": "0.55", "zorder": 0}
+MOST_NAMED = 6  # changes in the first sentence; the table has them all
+MONTH = "month"
+# trait -> what it is, and what to look at when it jumps
+TRAIT_WORDS = {
+    "friction": ("friction beyond the model's", "seals, brake, bearings, or new parts that run in"),
+    "constant_torque": (
+        "torque that does not change sign with the motion",
+        "a pressure transducer's zero, or the load",
+    ),
+}
 
 
 def write_fleet_report(
     path: Path, verb: str, outcomes: Sequence[Outcome], content: Mapping[str, Any], store: Path
 ) -> Path:
     """Write the page atomically; `content` is that of fleet.json."""
-    failed = sum(each.status != 0 for each in outcomes)
-    summary = f"{len(outcomes)} results, {failed} without; {len(content['steps'])} sudden changes"
+    cranes = len({each.crane for each in outcomes})
     sections: list[Section] = [
+        TextSection("Decision", _decision(outcomes, content, cranes)),
         TextSection("What changed", _changes(content)),
         TextSection("Over the months", _months(store, content)),
         TextSection("Per crane", _per_crane(outcomes)),
         TextSection("Per recording", table_html(("recording", "exit", "s", "outcome"), _outcome_rows(outcomes))),
     ]
-    return write_report(path, f"Fleet: {verb}", sections, summary)
+    return write_report(path, f"Fleet: {verb}", sections, f"{cranes} cranes, {len(outcomes)} results of {verb}")
+
+
+def _decision(outcomes: Sequence[Outcome], content: Mapping[str, Any], cranes: int) -> str:
+    """Who changed and when, how many recordings gave nothing, what to look at."""
+    steps, unlike = content["steps"], content["unlike"]
+    failed = sum(each.status != 0 for each in outcomes)
+    changed = len({step["crane"] for step in steps})
+    said = [f"{s['crane']} {s['month']} ({s['trait'].replace('_', ' ')} {_size(s)})" for s in steps]
+    more = f" and {len(said) - MOST_NAMED} more" if len(said) > MOST_NAMED else ""
+    sentence = (
+        f"{changed} of {cranes} cranes changed suddenly: {', '.join(said[:MOST_NAMED])}{more}."
+        if steps
+        else f"No crane of {cranes} changed suddenly."
+    )
+    facts = [
+        ("Cranes unlike the others", ", ".join(dict.fromkeys(u["crane"] for u in unlike)) or "none"),
+        ("Recordings without a result", f"{failed} of {len(outcomes)}" if failed else ""),
+    ]
+    looked = [f"{words[0].capitalize()} jumped: look at {words[1]}." for trait, words in TRAIT_WORDS.items()
+              if any(step["trait"] == trait for step in steps)]  # fmt: skip
+    looked += ["Read the messages of the recordings that gave no result, below."] if failed else []
+    return decision_html(sentence, facts, "<h3>What to do next</h3>" + list_html(looked) if looked else "")
+
+
+def _size(step: Mapping[str, Any]) -> str:
+    return f"{step['size']:+.3g} {step['unit'].replace('*', '·')}"
 
 
 def _changes(content: Mapping[str, Any]) -> str:
     steps = [
-        (s["crane"], s["trait"], s["month"], f"{s['size']:+.1f} {s['unit']}", f"{s['p_value']:.1g}")
+        (s["crane"], s["trait"].replace("_", " "), s["month"], _size(s), f"{s['p_value']:.1g}")
         for s in content["steps"]
     ]
     unlike = [
-        (u["crane"], u["trait"], f"{u['level']:.1f} {u['unit']}", f"{u['fleet']:.1f} {u['unit']}")
+        (
+            u["crane"],
+            u["trait"].replace("_", " "),
+            *(f"{u[k]:.3g} {u['unit'].replace('*', '·')}" for k in ("level", "fleet")),
+        )
         for u in content["unlike"]
     ]
-    words = (
-        "<p><b>friction</b>: friction beyond the model's, in % of it (seals, wear). "
-        "<b>constant_torque</b>: what does not change sign with the motion (transducers, weight).</p>"
-    )
-    parts = [words, "<p>No sudden change.</p>" if not steps else ""]
+    parts = [paragraph(f"{trait.replace('_', ' ')}: {words}.", "faint") for trait, (words, _) in TRAIT_WORDS.items()]
+    parts += [] if steps else [paragraph("No sudden change.")]
     if steps:
         parts.append(table_html(("crane", "what", "first month after", "size", "p"), steps))
     if unlike:
@@ -68,8 +104,7 @@ def _outcome_rows(outcomes: Sequence[Outcome]) -> list[tuple[str, ...]]:
 
 
 def _months(store: Path, content: Mapping[str, Any]) -> str:
-    """One small figure per trait: a line per crane, those that changed drawn strongly."""
-    from winch_friction.fleet.drift import month_text, monthly
+    """One figure per trait: a line per crane, those that changed drawn strongly."""
     from winch_friction.fleet.store import read_store
 
     if not store.is_dir():
@@ -86,21 +121,23 @@ def _months(store: Path, content: Mapping[str, Any]) -> str:
     figures = []
     for trait in sorted({each.trait for each in series}):
         own = [each for each in series if each.trait == trait and each.crane in drawn]
-        lines = [
-            (each.crane, [f"{month_text(m)}-15" for m in each.months.tolist()], each.values.tolist()) for each in own
-        ]
-        figures.append(_figure(trait, lines, changed))
+        figures.append(plot_html(_plot(trait, own, {s["crane"] for s in content["steps"] if s["trait"] == trait})))
     left = len(cranes) - len(drawn)
     return "".join(figures) + (f"<p>{left} further cranes are not drawn.</p>" if left > 0 else "")
 
 
-def _figure(trait: str, lines: Sequence[tuple[str, list[str], list[float]]], changed: set[str]) -> str:
-    """The lines as a picture: cranes that changed in colour, the others thin and grey."""
-    figure, axes = new_figure(height=3.4)
-    for crane, days, values in lines:
-        strong = {"linewidth": 1.8, "label": crane} if crane in changed else _OTHERS
-        axes.plot([date.fromisoformat(day) for day in days], values, **strong)
-    axes.set_ylabel(f"{trait.replace('_', ' ')}, {TRAITS[trait].replace('*', ' ')}")
-    if 0 < len(changed) <= MOST_NAMED:
-        legend_above(axes, columns=4)
-    return figure_html(figure, f"{trait.replace('_', ' ')} beyond the model, by month and crane")
+def _plot(trait: str, series: Sequence[Series], changed: set[str]) -> Plot:
+    """A line per crane, those that changed strongly, the others faint."""
+    label = f"{trait.replace('_', ' ')} [{TRAITS[trait].replace('*', '·')}]"
+    frames = [
+        Frame(each.crane, {MONTH: [f"{month_text(m)}-15" for m in each.months.tolist()], label: each.values})
+        for each in series
+    ]
+    lines = [
+        Line(each.crane if each.crane in changed else "no change", MONTH, label, k,
+             role="plain" if each.crane in changed else "other")
+        for k, each in enumerate(series)
+    ]  # fmt: skip
+    said = f"{TRAIT_WORDS[trait][0].capitalize()}, by month; a line is a crane, those that changed in colour."
+    title = trait.replace("_", " ").capitalize()
+    return Plot(title, frames, sorted(lines, key=lambda e: e.role), MONTH, [label], said, "months", height=300)

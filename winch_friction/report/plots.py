@@ -50,6 +50,7 @@ class Line:
     role: str = "plain"
     kind: str = "lines"
     upper: str = ""
+    like: int = -1  # the number of the plain line whose colour it takes; -1: its own
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,7 @@ def _content(plot: Plot, most_points: int) -> dict[str, Any]:
     return {
         "title": plot.title, "x": plot.x, "rows": list(plot.rows), "link": plot.link,
         "frames": [_frame(frame, most_points) for frame in plot.frames],
-        "lines": [[e.label, e.x, e.y, e.frame, e.row, e.role, e.kind, e.upper] for e in plot.lines],
+        "lines": [[e.label, e.x, e.y, e.frame, e.row, e.role, e.kind, e.upper, e.like] for e in plot.lines],
         "heats": [
             {"x": _packed(h.x), "y": _packed(h.y), "z": [_packed(row) for row in np.asarray(h.values, float)],
              "title": h.title, "xl": h.x_label, "yl": h.y_label, "unit": h.unit} for h in plot.heats

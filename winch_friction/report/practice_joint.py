@@ -1,16 +1,11 @@
 """Report of the practice: the joint fit, what it determines and what it cannot."""
 
-from typing import Any
-
 from winch_friction.identification.fit_data import contributions
 from winch_friction.identification.friction_curve import curve_data
 from winch_friction.identification.practice import Practice
 from winch_friction.physics.units import RPM
-from winch_friction.report.figures import figure_html, new_figure
-from winch_friction.report.practice_look import (
-    below_legend,
-    curve_label,
-)
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
+from winch_friction.report.practice_look import SPEED, curve_label
 from winch_friction.report.tables import paragraph, table_html
 
 
@@ -36,17 +31,21 @@ def joint_html(practice: Practice) -> str:
         )
         + table_html(columns, rows)
         + table_html(("sensor error", "estimate", "σ"), sensors, "Systematic errors found beside (relative, and Pa)")
-        + figure_html(joint_breakdown_figure(practice), "Contributions in the joint fit: the heaviest fitted test.")
+        + joint_breakdown_html(practice)
     )
 
 
-def joint_breakdown_figure(practice: Practice) -> Any:
+def joint_breakdown_html(practice: Practice) -> str:
     """What makes up the total friction of the heaviest test."""
-    figure, axes = new_figure(height=3.2)
     curve = max((test.curve for test in practice.system.tests), key=lambda each: each.load_torque)
     parts = contributions(practice.system.joint.model, curve_data([curve]))
-    axes.stackplot(curve.speed / RPM, *parts.values(), labels=list(parts), alpha=0.6)
-    axes.plot(curve.speed / RPM, curve.friction_torque, "ko", ms=2.5, label="measured")
-    axes.set(xlabel="motor speed [rpm]", ylabel="T_ft per motor [N·m]", title=curve_label(curve))
-    below_legend(axes, 5)
-    return figure
+    columns = {SPEED: curve.speed / RPM, **{f"{key} [N·m]": part for key, part in parts.items()}}
+    columns["measured [N·m]"] = curve.friction_torque
+    lines = [Line(key.replace("_", " "), SPEED, f"{key} [N·m]", kind="area") for key in parts]
+    lines.append(Line("measured", SPEED, "measured [N·m]", role="measured", kind="dots"))
+    said = f"Contributions in the joint fit: the heaviest fitted test, {curve_label(curve)}."
+    return plot_html(
+        Plot(
+            "Joint fit by term", [Frame("joint fit", columns)], lines, SPEED, ["T_ft per motor [N·m]"], said, height=340
+        )
+    )

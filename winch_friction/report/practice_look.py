@@ -1,24 +1,42 @@
-"""Colours, legends and names that the practice's figures and tables share."""
+"""Figures, names and units that the practice's figures and tables share."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from winch_friction.identification.friction_curve import FrictionCurve
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.units import CM3_PER_REV, RPM
-from winch_friction.report.figures import COLOURS
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
 
+SPEED = "motor speed [rpm]"
 MOTOR = ("K1", "K2", "K3", "K4", "K5")
 SYSTEM = ("C1", "C2", "C3", "C4", "C5", "C6")
 
 
-def colour(number: int) -> str:
-    """The report's colour of this number, starting again after the last."""
-    return COLOURS[number % len(COLOURS)]
+@dataclass(frozen=True)
+class Curve:
+    """One line of a figure: its numbers, panel, look, and whose colour it takes (-1: its own)."""
+
+    label: str
+    x: Any
+    y: Any
+    row: int = 0
+    role: str = "plain"
+    kind: str = "lines"
+    like: int = -1
 
 
-def below_legend(axes: Any, columns: int = 4) -> None:
-    """A legend under the axes, where it covers no curve."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=columns, fontsize=8)
+def curves_html(title: str, x: str, rows: Sequence[str], curves: Sequence[Curve], caption: str, height: int = 300,
+                link: str = "") -> str:  # fmt: skip
+    """An interactive figure of curves over one quantity; each curve's numbers are a frame of the CSV."""
+    frames = [Frame(each.label, {x: np.asarray(each.x, float), rows[each.row]: np.asarray(each.y, float)})
+              for each in curves]  # fmt: skip
+    lines = [Line(each.label, x, rows[each.row], k, each.row, each.role, each.kind, like=each.like)
+             for k, each in enumerate(curves)]  # fmt: skip
+    return plot_html(Plot(title, frames, lines, x, list(rows), caption, link, height=height))
 
 
 def name(run: str) -> str:

@@ -11,13 +11,13 @@ from winch_friction.identification.practice import Practice
 from winch_friction.identification.supplier_table import motor_points
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
-from winch_friction.report.figures import figure_html, new_figure
 from winch_friction.report.practice_look import (
     MOTOR,
+    SPEED,
     SYSTEM,
-    below_legend,
-    colour,
+    Curve,
     curve_label,
+    curves_html,
     label,
     shown,
 )
@@ -40,15 +40,9 @@ def loop_html(practice: Practice) -> str:
     return (
         paragraph(_loop_verdict(practice), "verdict")
         + table_html(columns, rows, "Optimized friction parameters (paper 2 Table 4)")
-        + figure_html(motor_change_figure(practice), "Motor loss before and after the loops; paper 2 Fig 10.")
-        + figure_html(
-            derived_figure(practice),
-            "System friction derived from the measurements by subtracting the motor: equal loads should coincide; "
-            "paper 2 Fig 11, 12, 14.",
-        )
-        + figure_html(
-            map_derived_figure(practice), "System friction derived with the model and with the map; paper 2 Fig 13."
-        )
+        + motor_change_html(practice)
+        + derived_html(practice)
+        + map_derived_html(practice)
     )
 
 
@@ -64,51 +58,56 @@ def _loop_verdict(practice: Practice) -> str:
     return said + "."
 
 
-def motor_change_figure(practice: Practice) -> Any:
+def motor_change_html(practice: Practice) -> str:
     """Paper 2 Fig 10: motor loss with old and new parameters."""
-    figure, axes = new_figure(height=3.2)
     speed = np.linspace(50, 2000, 79) * RPM
     first, last = practice.system.loops[0].motor, practice.system.loops[-1].motor
+    curves = []
     for k, cm3 in enumerate((215.0, 145.0, 70.0)):
         points = motor_points(speed, np.full_like(speed, 200 * BAR), np.full_like(speed, cm3 * CM3_PER_REV))
-        axes.plot(speed / RPM, first.torque(points), color=colour(k), label=f"{cm3:.0f} cm³/rev")
-        axes.plot(speed / RPM, last.torque(points), color=colour(k), ls="--")
-    axes.set(xlabel="motor speed [rpm]", ylabel="torque loss [N·m]", title="200 bar; dashed: after the loops")
-    axes.legend()
-    return figure
+        curves.append(Curve(f"{cm3:.0f} cm³/rev", speed / RPM, first.torque(points)))
+        after = last.torque(points)[::4]
+        curves.append(Curve(f"{cm3:.0f} cm³/rev, after", speed[::4] / RPM, after, kind="dots", like=k))
+    said = "Motor loss at 200 bar before (lines) and after the loops (dots); paper 2 Fig 10."
+    return curves_html("Motor before and after", SPEED, ["torque loss [N·m]"], curves, said)
 
 
 def _derived(curves: Sequence[FrictionCurve], motor: FrictionModel) -> list[np.ndarray]:
     return [curve.friction_torque - modelled(motor, curve_data([curve])) for curve in curves]
 
 
-def derived_figure(practice: Practice) -> Any:
-    """Paper 2 Fig 11, 12, 14: derived system friction by load, first loop (solid) and last (dashed)."""
-    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
-    loads = sorted({round(curve.drum_torque, -3) for curve in curves})
-    figure, axes = new_figure(1, len(loads), height=3.4, squeeze=False)
-    for axis, load in zip(axes[0], loads, strict=True):
-        chosen = [curve for curve in curves if round(curve.drum_torque, -3) == load]
+def derived_html(practice: Practice) -> str:
+    """Paper 2 Fig 11, 12, 14: derived system friction by load, first loop (lines) and last (dots)."""
+    every = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    figures = []
+    for load in sorted({round(curve.drum_torque, -3) for curve in every}):
+        chosen = [curve for curve in every if round(curve.drum_torque, -3) == load]
         first = _derived(chosen, practice.system.loops[0].motor)
         last = _derived(chosen, practice.system.loops[-1].motor)
+        curves = []
         for k, (curve, before, after) in enumerate(zip(chosen, first, last, strict=True)):
-            axis.plot(curve.speed / RPM, before * curve.motors, color=colour(k), label=_short(curve))
-            axis.plot(curve.speed / RPM, after * curve.motors, color=colour(k), ls="--")
-        axis.set(xlabel="motor speed [rpm]", title=f"T_d = {load / 1e3:.0f} kN·m")
-        below_legend(axis, 2)
-    axes[0][0].set(ylabel="T_fs, all motors [N·m]")
-    return figure
+            curves.append(Curve(_short(curve), curve.speed / RPM, before * curve.motors))
+            curves.append(
+                Curve(f"{_short(curve)}, after", curve.speed / RPM, after * curve.motors, kind="dots", like=k)
+            )
+        said = (
+            f"T_d = {load / 1e3:.0f} kN·m: system friction derived by subtracting the motor, before (lines) and after "
+            "the loops (dots); equal loads should coincide; paper 2 Fig 11, 12, 14."
+        )
+        title = f"System friction at {load / 1e3:.0f} kN·m"
+        figures.append(curves_html(title, SPEED, ["T_fs, all motors [N·m]"], curves, said, 280, "derived"))
+    return "".join(figures)
 
 
 def _short(curve: FrictionCurve) -> str:
     return f"{curve.displacement / CM3_PER_REV:.0f} cm³/rev"
 
 
-def map_derived_figure(practice: Practice) -> Any:
+def map_derived_html(practice: Practice) -> str:
     """Paper 2 Fig 13: derived system friction with the parametric model and with the black-box map."""
-    figure, axes = new_figure(height=3.4)
-    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
-    for k, curve in enumerate(_extremes(curves)):
+    every = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    curves = []
+    for k, curve in enumerate(_extremes(every)):
         displacement = np.full_like(curve.speed, curve.displacement)
         sides = [
             practice.map.torque_loss(curve.speed, side, displacement)
@@ -116,11 +115,11 @@ def map_derived_figure(practice: Practice) -> Any:
         ]
         by_model = _derived([curve], practice.system.loops[0].motor)[0]
         by_map = curve.friction_torque - 0.5 * (sides[0] + sides[1])
-        axes.plot(curve.speed / RPM, by_model * curve.motors, color=colour(k), label=curve_label(curve))
-        axes.plot(curve.speed / RPM, by_map * curve.motors, color=colour(k), ls=":")
-    axes.set(xlabel="motor speed [rpm]", ylabel="T_fs, all motors [N·m]", title="solid: model; dotted: map")
-    below_legend(axes, 2)
-    return figure
+        curves.append(Curve(curve_label(curve), curve.speed / RPM, by_model * curve.motors))
+        label = f"{curve_label(curve)}, map"
+        curves.append(Curve(label, curve.speed / RPM, by_map * curve.motors, kind="dots", like=k))
+    said = "System friction derived with the model (lines) and with the map (dots); paper 2 Fig 13."
+    return curves_html("Model and map in the loop", SPEED, ["T_fs, all motors [N·m]"], curves, said, 340)
 
 
 def _extremes(curves: Sequence[FrictionCurve]) -> list[FrictionCurve]:

@@ -12,8 +12,8 @@ from winch_friction.identification.supplier_table import motor_points
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.report.base import TextSection
-from winch_friction.report.figures import figure_html, new_figure
-from winch_friction.report.practice_look import below_legend, colour
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
+from winch_friction.report.practice_look import SPEED, Curve, curves_html
 from winch_friction.report.tables import paragraph, table_html
 
 
@@ -25,12 +25,7 @@ def motor_sections(practice: Practice) -> list[TextSection]:
         TextSection("Motor parameters", parameters_html(motor)),
         TextSection(
             "Motor model, map and contributions",
-            figure_html(map_figure(practice), "Torque loss at 200 bar: model (lines) and map (dots); paper 2 Fig 3.")
-            + figure_html(error_figure(motor), "Model error in % of D Δp; paper 1 Fig 8 and 9.")
-            + figure_html(
-                contributions_figure(motor.chosen.fitted.model),
-                "Contribution of each term at 200 bar and 88 % of D_max; paper 1 Fig 6 and 7.",
-            ),
+            map_html(practice) + error_html(motor) + contributions_html(motor.chosen.fitted.model),
         ),
     ]
 
@@ -96,54 +91,48 @@ def parameter_table(fitted: FitResult, by_complex: FitResult | None = None) -> s
     return table_html(columns, rows)
 
 
-def map_figure(practice: Practice) -> Any:
+def map_html(practice: Practice) -> str:
     """Paper 2 Fig 3: model against linear interpolation of the table."""
-    figure, axes = new_figure(height=3.4)
     table, model = practice.motor.table, practice.motor.chosen.fitted.model
     speed = np.asarray(np.linspace(100, 2500, 97) * RPM, float)
+    curves = []
     for k, displacement in enumerate(np.unique(table.displacement.round(9))[::-1]):
-        pressure = np.full_like(speed, 200 * BAR)
-        setting = np.full_like(speed, displacement)
+        pressure, setting = np.full_like(speed, 200 * BAR), np.full_like(speed, displacement)
         label = f"{displacement / CM3_PER_REV:.0f} cm³/rev"
-        axes.plot(speed / RPM, model.torque(motor_points(speed, pressure, setting)), color=colour(k), label=label)
+        curves.append(Curve(label, speed / RPM, model.torque(motor_points(speed, pressure, setting))))
         every = speed[::4]
         loss = practice.map.torque_loss(every, pressure[::4], setting[::4])
-        held = np.asarray(practice.map.outside(every, pressure[::4], setting[::4]), bool)
-        axes.plot(every[~held] / RPM, loss[~held], "o", ms=3, color=colour(k))
-        axes.plot(every[held] / RPM, loss[held], "x", ms=3, color=colour(k), alpha=0.6)
-    axes.set(xlabel="motor speed [rpm]", ylabel="torque loss [N·m]", title="dots: map; crosses: outside the table")
-    below_legend(axes, 6)
-    return figure
+        inside = ~np.asarray(practice.map.outside(every, pressure[::4], setting[::4]), bool)
+        curves.append(Curve(f"{label}, map", every[inside] / RPM, loss[inside], kind="dots", like=k))
+    said = "Torque loss at 200 bar: model (lines) and the table's map (dots, within the table); paper 2 Fig 3."
+    return curves_html("Motor model and map", SPEED, ["torque loss [N·m]"], curves, said, 340)
 
 
-def error_figure(motor: MotorIdentification) -> Any:
-    """Paper 1 Fig 8 and 9: error in % of nominal torque over displacement."""
-    figure, axes = new_figure(height=3.0)
+def error_html(motor: MotorIdentification) -> str:
+    """Paper 1 Fig 8 and 9: error in % of nominal torque over displacement, a colour per range of speed."""
     table = motor.table
     points = motor_points(table.speed, table.pressure, table.displacement)
     error = 100.0 * (motor.chosen.fitted.model.torque(points) - table.torque_loss) / table.nominal_torque
-    shown = axes.scatter(table.displacement / CM3_PER_REV, error, c=table.speed / RPM, s=10, cmap="viridis")
-    axes.axhline(1.0, lw=0.8, ls="--", color="gray")
-    axes.axhline(-1.0, lw=0.8, ls="--", color="gray")
-    axes.set(xlabel="displacement [cm³/rev]", ylabel="error [% of D Δp]", title="dashed: paper 1's 1 %")
-    figure.colorbar(shown, label="motor speed [rpm]")
-    return figure
+    edges = np.quantile(table.speed, (0.0, 0.25, 0.5, 0.75, 1.0))
+    curves = []
+    for low, high in zip(edges[:-1], edges[1:], strict=True):
+        own = (table.speed >= low) & ((table.speed < high) | (high == edges[-1]))
+        label = f"{low / RPM:.0f} to {high / RPM:.0f} rpm"
+        curves.append(Curve(label, table.displacement[own] / CM3_PER_REV, error[own], kind="dots"))
+    said = "Model error in % of D Δp; paper 1 finds about 1 %; paper 1 Fig 8 and 9."
+    return curves_html("Motor model error", "displacement [cm³/rev]", ["error [% of D Δp]"], curves, said)
 
 
-def contributions_figure(model: FrictionModel) -> Any:
-    """Paper 1 Fig 6 and 7: share of each term over 300-2500 rpm, and the terms over speed."""
-    figure, (left, right) = new_figure(1, 2, height=3.2)
+def contributions_html(model: FrictionModel) -> str:
+    """Paper 1 Fig 6 and 7: the terms over speed, stacked, and each one's share over 300-2500 rpm."""
     speed = np.asarray(np.arange(300, 2501, 10) * RPM, float)
     setting = np.full_like(speed, 0.88 * model.constants["max_displacement"])
     parts = model.contributions(motor_points(speed, np.full_like(speed, 200 * BAR), setting))
     total = sum(part.sum() for part in parts.values())
-    names = list(parts)
-    left.barh(
-        names, [100.0 * parts[name].sum() / total for name in names], color=[colour(k) for k in range(len(names))]
-    )
-    left.invert_yaxis()
-    left.set(xlabel="share [%]")
-    for k, name in enumerate(names):
-        right.plot(speed / RPM, parts[name], color=colour(k))
-    right.set(xlabel="motor speed [rpm]", ylabel="torque [N·m]")
-    return figure
+    frame = Frame("terms", {SPEED: speed / RPM, **{f"{name} [N·m]": part for name, part in parts.items()}})
+    lines = [Line(name.replace("_", " "), SPEED, f"{name} [N·m]", kind="area") for name in parts]
+    said = "What each term gives at 200 bar and 88 % of D_max; paper 1 Fig 6 and 7."
+    rows = [(name.replace("_", " "), 100.0 * part.sum() / total) for name, part in parts.items()]
+    return plot_html(
+        Plot("Motor losses by term", [frame], lines, SPEED, ["torque [N·m]"], said, height=300)
+    ) + table_html(("term", "share of the loss [%]"), rows, digits=3)

@@ -1,7 +1,6 @@
 """Report sections of the practice, steps 2 to 4: tests, friction curves, system model, loops, joint fit."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -11,13 +10,14 @@ from winch_friction.identification.system_fit import system_start
 from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.records.model_file import load_model
 from winch_friction.report.base import TextSection
-from winch_friction.report.figures import figure_html, new_figure
+from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_joint import joint_html
 from winch_friction.report.practice_look import (
+    SPEED,
     SYSTEM,
-    below_legend,
-    colour,
+    Curve,
     curve_label,
+    curves_html,
     label,
     name,
     shown,
@@ -30,9 +30,8 @@ def system_sections(practice: Practice) -> list[TextSection]:
     """Steps 2 to 4, the second loop and the joint fit."""
     return [
         TextSection("Tests and plateaus", _tests_html(practice)),
-        TextSection("Total friction from hoisting and lowering", figure_html(
-            friction_figure([test.curve for test in practice.system.tests]),
-            "T_ft per motor (eq 2-6) of the fitted tests; paper 2 Fig 7.")),
+        TextSection("Total friction from hoisting and lowering",
+                    friction_html([test.curve for test in practice.system.tests])),
         TextSection("System model", _system_html(practice)),
         TextSection("Second loop", loop_html(practice)),
         TextSection("Joint fit of motor and system", joint_html(practice)),
@@ -50,34 +49,31 @@ def _tests_html(practice: Practice) -> str:
         for test in (*practice.system.tests, *practice.system.held_out)
     ]  # fmt: skip
     columns = ("name", "displacement cm³/rev", "load t", "plateaus", "from rpm", "to rpm", "use")  # fmt: skip
-    return table_html(columns, rows, "Evaluated test scenarios (paper 2 Tables 2 and 5)") + figure_html(
-        plateau_figure(practice), "A test cycle; marked: the plateaus whose means are used; paper 2 Fig 6."
-    )
+    return table_html(columns, rows, "Evaluated test scenarios (paper 2 Tables 2 and 5)") + plateau_html(practice)
 
 
-def plateau_figure(practice: Practice) -> Any:
+def plateau_html(practice: Practice) -> str:
     """Paper 2 Fig 6: speed and pressure drop of one cycle with its plateaus."""
     test = practice.system.tests[min(2, len(practice.system.tests) - 1)]
-    figure, (above, below) = new_figure(2, 1, height=2.2, sharex=True)
     run = test.run
-    above.plot(run.time, run["motor_speed"] / RPM, lw=0.8)
-    below.plot(run.time, (run["main.pressure_a"] - run["main.pressure_b"]) / BAR, lw=0.6, color=colour(1))
-    for plateau in test.plateaus:
-        above.plot([plateau.start, plateau.end], [plateau.speed / RPM] * 2, color=colour(2), lw=3)
-        below.plot([plateau.start, plateau.end], [plateau.pressure_drop / BAR] * 2, color=colour(2), lw=3)
-    above.set(ylabel="motor speed [rpm]", title=name(run.name))
-    below.set(ylabel="Δp [bar]", xlabel="time [s]")
-    return figure
+    drop = (run["main.pressure_a"] - run["main.pressure_b"]) / BAR
+    curves = [Curve("logged", run.time, run["motor_speed"] / RPM, 0, "measured"),
+              Curve("logged", run.time, drop, 1, "measured")]  # fmt: skip
+    for row, values in enumerate(
+        ((p.speed / RPM for p in test.plateaus), (p.pressure_drop / BAR for p in test.plateaus))
+    ):
+        times = np.concatenate([[p.start, p.end, np.nan] for p in test.plateaus] or [[np.nan]])
+        means = np.concatenate([[value, value, np.nan] for value in values] or [[np.nan]])
+        curves.append(Curve("plateau", times, means, row, "after"))
+    said = f"{name(run.name)}: a test cycle, and the plateaus whose means are used; paper 2 Fig 6."
+    return curves_html("A test cycle", "time [s]", [SPEED, "Δp [bar]"], curves, said, 200)
 
 
-def friction_figure(curves: Sequence[FrictionCurve]) -> Any:
+def friction_html(curves: Sequence[FrictionCurve]) -> str:
     """Paper 2 Fig 7: measured total friction per motor over speed."""
-    figure, axes = new_figure(height=3.4)
-    for curve in curves:
-        axes.plot(curve.speed / RPM, curve.friction_torque, "o-", ms=2.5, lw=0.9, label=curve_label(curve))
-    axes.set(xlabel="motor speed [rpm]", ylabel="T_ft per motor [N·m]", ylim=(0, None))
-    below_legend(axes, 2)
-    return figure
+    shown_curves = [Curve(curve_label(each), each.speed / RPM, each.friction_torque) for each in curves]
+    said = "T_ft per motor (eq 2-6) of the fitted tests; paper 2 Fig 7."
+    return curves_html("Total friction of the tests", SPEED, ["T_ft per motor [N·m]"], shown_curves, said, 360)
 
 
 def _system_html(practice: Practice) -> str:
@@ -91,31 +87,26 @@ def _system_html(practice: Practice) -> str:
     return (
         paragraph(said)
         + table_html(columns, rows, "Optimized system friction parameters (paper 2 Table 3)")
-        + figure_html(
-            breakdown_figure(practice),
-            "System friction at 100 t on the outer layer: fit, and the papers' two cranes; paper 2 Fig 8.",
-        )
+        + breakdown_html(practice)
     )
 
 
-def breakdown_figure(practice: Practice) -> Any:
+def breakdown_html(practice: Practice) -> str:
     """Paper 2 Fig 8: Coulomb, stiction and viscous parts of the system friction at 100 t."""
-    figure, axes = new_figure(height=3.2)
     crane, system = practice.folder.crane, practice.system.loops[0].system
     speed = np.linspace(0.0, 2000.0, 201) * RPM
     motors = practice.system.tests[0].curve.motors
     torque = np.full_like(speed, crane.drum_torque(100e3))
     points = winch_points(speed, np.zeros_like(speed), np.full_like(speed, crane.max_displacement), torque, motors)
-    bottom = np.zeros_like(speed)
-    for term, part in system.contributions(points).items():
-        axes.fill_between(speed / RPM, bottom / motors, (bottom + part) / motors, alpha=0.5, label=term)
-        bottom = bottom + part
-    for crane_name, values in _paper_cranes().items():
-        model = system_start().with_values(values)
-        axes.plot(speed / RPM, model.torque(points) / motors, ls="--", lw=1.0, label=f"paper 2 {crane_name}")
-    axes.set(xlabel="motor speed [rpm]", ylabel="T_fs per motor [N·m]")
-    axes.legend()
-    return figure
+    parts = {term: part / motors for term, part in system.contributions(points).items()}
+    papers = {f"paper 2 {k}": system_start().with_values(v).torque(points) / motors for k, v in _paper_cranes().items()}
+    columns = {SPEED: speed / RPM, **{f"{key} [N·m]": value for key, value in {**parts, **papers}.items()}}
+    lines = [Line(term.replace("_", " "), SPEED, f"{term} [N·m]", kind="area") for term in parts]
+    lines += [Line(label, SPEED, f"{label} [N·m]") for label in papers]
+    said = "System friction at 100 t on the outer layer: fit, and the papers' two cranes; paper 2 Fig 8."
+    return plot_html(
+        Plot("System friction", [Frame("system", columns)], lines, SPEED, ["T_fs per motor [N·m]"], said, height=320)
+    )
 
 
 def _paper_cranes() -> dict[str, dict[str, float]]:

@@ -2,14 +2,11 @@
 
 from typing import Any
 
-import numpy as np
-
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.verification import STANDSTILL, PressureCheck
 from winch_friction.physics.units import BAR, RPM
 from winch_friction.report.base import TextSection
-from winch_friction.report.figures import figure_html, new_figure
-from winch_friction.report.practice_look import below_legend, colour, name
+from winch_friction.report.practice_look import SPEED, Curve, curves_html, name
 from winch_friction.report.tables import paragraph, table_html
 
 _SHORT = {"first loop": "1st", "second loop": "2nd", "joint fit": "joint"}
@@ -43,45 +40,35 @@ def _friction_html(practice: Practice) -> str:
             "test's where only the hook hung)."
         )
         + table_html(columns, rows, digits=3)
-        + figure_html(compared_figure(practice), "Measured (dots) and modelled friction; paper 2 Fig 16.")
-        + figure_html(percent_figure(practice), "Error in % of nominal torque; paper 2 Fig 17.")
+        + compared_html(practice)
+        + percent_html(practice)
     )
 
 
-def compared_figure(practice: Practice) -> Any:
+def compared_html(practice: Practice) -> str:
     """Paper 2 Fig 16: all motors' friction, measured and modelled (joint fit)."""
-    figure, axes = new_figure(height=3.8)
-    curves = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
-    for k, (error, curve) in enumerate(zip(practice.errors["joint fit"], curves, strict=True)):
-        axes.plot(error.speed / RPM, error.modelled * curve.motors, color=colour(k), lw=1.0)
-        axes.plot(
-            error.speed[::2] / RPM,
-            error.measured[::2] * curve.motors,
-            "o",
-            ms=2.5,
-            color=colour(k),
-            label=name(error.test),
-        )
-    axes.set(xlabel="motor speed [rpm]", ylabel="T_ft, all motors [N·m]")
-    below_legend(axes, 6)
-    return figure
+    curves = []
+    tests = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
+    for k, (error, test) in enumerate(zip(practice.errors["joint fit"], tests, strict=True)):
+        speed, label = error.speed / RPM, name(error.test)
+        curves.append(Curve(label, speed, error.modelled * test.motors))
+        curves.append(Curve(f"{label}, measured", speed, error.measured * test.motors, kind="dots", like=k))
+    said = "Measured (dots) and modelled friction (joint fit); paper 2 Fig 16."
+    return curves_html("Friction per test", SPEED, ["T_ft, all motors [N·m]"], curves, said, 400)
 
 
-def percent_figure(practice: Practice) -> Any:
+def percent_html(practice: Practice) -> str:
     """Paper 2 Fig 17: error over speed for each winch model."""
-    names = list(practice.errors)
-    figure, axes = new_figure(1, len(names), height=3.2, sharey=True)
     fitted = len(practice.system.tests)
-    for axis, model in zip(np.atleast_1d(axes), names, strict=True):
-        for k, error in enumerate(practice.errors[model]):
-            axis.plot(
-                error.speed / RPM, error.percent, lw=0.9, color=colour(1) if k >= fitted else colour(0), alpha=0.8
-            )
-        axis.axvline(250, lw=0.7, color="gray")
-        axis.set(xlabel="motor speed [rpm]", title=model)
-    np.atleast_1d(axes)[0].set(ylabel="error [% of nominal]")
-    figure.suptitle("blue: fitted tests; orange: held out", fontsize=9, x=0.01, ha="left")
-    return figure
+    rows = [f"{model}, error [%]" for model in practice.errors]
+    curves = [
+        Curve("held out" if k >= fitted else "fitted", error.speed / RPM, error.percent, row,
+              "before" if k >= fitted else "after")
+        for row, errors in enumerate(practice.errors.values())
+        for k, error in enumerate(errors)
+    ]  # fmt: skip
+    said = "Error in % of nominal torque, a line per test; below 250 rpm apart in the table; paper 2 Fig 17."
+    return curves_html("Error by speed", SPEED, rows, curves, said, 190)
 
 
 def _check_rows(checks: dict[str, list[PressureCheck]]) -> list[list[Any]]:
@@ -98,20 +85,17 @@ _COLUMNS = ("run", "model", "RMS turning, bar", "RMS all, bar", "mean hoisting, 
 
 def _normal_html(practice: Practice) -> str:
     checks = {model: [check] for model, check in practice.normal_mode.items()}
-    return table_html(_COLUMNS, _check_rows(checks), digits=3) + figure_html(
-        pressure_figure(practice.normal_mode),
-        "Speed, and measured and predicted pressure drop in normal mode; paper 2 Fig 18 and 19.",
-    )
+    said = "speed, and measured and predicted pressure drop in normal mode; paper 2 Fig 18 and 19."
+    return table_html(_COLUMNS, _check_rows(checks), digits=3) + pressure_html(practice.normal_mode, said)
 
 
 def _ahc_html(practice: Practice) -> str:
     figures = "".join(
-        figure_html(
-            pressure_figure({model: checks[k] for model, checks in practice.ahc.items()}),
-            f"{name(run.name)}: speed, and measured and predicted active pressure drop by each winch model; paper 2 "
-            "Fig 15, 20-23.",
+        pressure_html(
+            {model: checks[k] for model, checks in practice.ahc.items()},
+            "speed, and measured and predicted active pressure drop by each winch model; paper 2 Fig 15, 20-23.",
         )
-        for k, run in enumerate(practice.folder.ahc)
+        for k in range(len(practice.folder.ahc))
     )
     return (
         paragraph(
@@ -125,17 +109,13 @@ def _ahc_html(practice: Practice) -> str:
     )
 
 
-def pressure_figure(checks: dict[str, PressureCheck]) -> Any:
+def pressure_html(checks: dict[str, PressureCheck], said: str) -> str:
     """Speed above, measured and predicted pressure drop in the middle, the errors below."""
-    figure, (above, middle, below) = new_figure(3, 1, height=1.9, sharex=True)
     first = next(iter(checks.values()))
-    above.plot(first.time, first.speed / RPM, lw=0.8)
-    middle.plot(first.time, first.measured / BAR, lw=1.4, color=colour(0), label="measured")
-    for k, (model, check) in enumerate(checks.items(), start=1):
-        middle.plot(check.time, check.predicted / BAR, lw=0.8, color=colour(k), label=model)
-        below.plot(check.time, (check.predicted - check.measured) / BAR, lw=0.7, color=colour(k))
-    above.set(ylabel="motor speed [rpm]", title=name(first.run))
-    middle.set(ylabel="Δp [bar]")
-    below.set(ylabel="error [bar]", xlabel="time [s]")
-    middle.legend(ncols=4, loc="upper right", fontsize=8)
-    return figure
+    curves = [Curve("speed", first.time, first.speed / RPM, 0, "other"),
+              Curve("measured", first.time, first.measured / BAR, 1, "measured")]  # fmt: skip
+    for k, (model, check) in enumerate(checks.items()):
+        curves.append(Curve(model, check.time, check.predicted / BAR, 1))
+        curves.append(Curve(model, check.time, (check.predicted - check.measured) / BAR, 2, like=k))
+    run = name(first.run)
+    return curves_html(run, "time [s]", [SPEED, "Δp [bar]", "error [bar]"], curves, f"{run}: {said}", 170)

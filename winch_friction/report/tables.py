@@ -1,5 +1,6 @@
 """Tables and text of a report as HTML, escaped."""
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 from math import isfinite
@@ -22,7 +23,12 @@ def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: s
 
 def paragraph(text: str, kind: str = "") -> str:
     """A paragraph of escaped text; `kind` is a class of the style: faint, good, bad, verdict."""
-    return f'<p class="{escape(kind)}">{escape(text)}</p>' if kind else f"<p>{escape(text)}</p>"
+    return f'<p class="{escape(kind)}">{words_html(text)}</p>' if kind else f"<p>{words_html(text)}</p>"
+
+
+def words_html(text: str) -> str:
+    """Escaped text in which `words` to be typed stand out."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -36,6 +42,7 @@ def number(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}"
 
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # the unit that people read a quantity in; one per quantity on every page and in every table
 _PEOPLE = {"rad/s": ("rpm", 1.0 / RPM), "Pa": ("bar", 1.0 / BAR), "kg": ("t", 1e-3), "degC": ("°C", 1.0),
            "1": ("–", 1.0),
@@ -44,7 +51,9 @@ _PEOPLE = {"rad/s": ("rpm", 1.0 / RPM), "Pa": ("bar", 1.0 / BAR), "kg": ("t", 1e
 
 def for_people(unit: str) -> str:
     """A unit as people read it: rpm, bar, t, °C, with dots and exponents."""
-    return _PEOPLE[unit][0] if unit in _PEOPLE else unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+    if unit in _PEOPLE:
+        return _PEOPLE[unit][0]
+    return re.sub(r"\^(-?\d+)", lambda found: found[1].translate(_RAISED), unit).replace("*", "·")
 
 
 def value_for_people(value: float, unit: str) -> float:

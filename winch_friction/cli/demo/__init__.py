@@ -134,7 +134,7 @@ def _evaluate(plan: Any, search: Any, elapsed: float) -> dict[str, Any]:
     save_figure(picture, plan.out / "demo.png")
     save_model(recording.models[-1], plan.out / "learned_model.yaml")
     parameters = learned_parameters(plan.seed, recording.models[-1], truth)
-    page = sections(plan, recording, rows, agreements, parameters, search, picture)
+    page = sections(plan, recording, rows, agreements, parameters, search)
     write_report(plan.out / "demo.html", "The loop closes", page, f"{plan.scenario}, sea {plan.sea}")
     results = _results(plan, rows, agreements, elapsed)
     results["parameters"] = [each.as_dict() for each in parameters]

@@ -1,18 +1,19 @@
 """The demo's HTML page: figures, picture, what was learned, and whether the replay agrees."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from winch_friction.cli.demo.learned import LearnedParameter
 from winch_friction.cli.demo.measures import BINS, SETTLING, PhaseFigures, bin_label, of_feedforward, of_leg
 from winch_friction.cli.demo.plan import DemoPlan
+from winch_friction.cli.demo.plots import leg_plots
 from winch_friction.cli.demo.recording import Recording
 from winch_friction.cli.demo.tuning import EfficiencySearch
 from winch_friction.replay.live import AGREEMENT, Comparison
 from winch_friction.report.base import Section, TextSection
-from winch_friction.report.figures import figure_html
+from winch_friction.report.decision import decision_html
+from winch_friction.report.plots import plot_html
 from winch_friction.report.tables import paragraph, table_html
 
 
@@ -23,12 +24,12 @@ def sections(
     agreements: Sequence[Comparison],
     parameters: Sequence[LearnedParameter],
     search: EfficiencySearch,
-    picture: Any,
 ) -> list[Section]:
     """The page's sections."""
     return [
+        TextSection("Decision", _decision(plan, rows, agreements)),
         TextSection("What was done", _story(plan)),
-        TextSection("Compensation", residual_table(plan, rows) + figure_html(picture, _CAPTION)),
+        TextSection("Compensation", residual_table(plan, rows) + "".join(map(plot_html, leg_plots(plan, recording)))),
         TextSection("Friction torque by speed", error_table(plan, rows)),
         TextSection("How the efficiency factor was tuned", search_table(plan, search)),
         TextSection("What was learned", learned_table(parameters)),
@@ -37,11 +38,24 @@ def sections(
     ]
 
 
-_CAPTION = (
-    "One column per leg, the same waves in each. Top: position error of the load over the last seconds. Middle: the "
-    "plant's true friction and the feedforward as sent. Bottom: RMS of the position error, and how much less than "
-    "without feedforward."
-)
+def _decision(plan: DemoPlan, rows: list[PhaseFigures], agreements: Sequence[Comparison]) -> str:
+    """What the learned feedforward leaves of the heave, beside what one would have without it."""
+    last = of_feedforward(rows, plan.feedforwards[-1].name)
+    gains = sorted(row.gain for row in last)
+    sentence = (
+        f"{plan.feedforwards[-1].title} leaves {min(r.residual for r in last) * 1e3:.1f} to "
+        f"{max(r.residual for r in last) * 1e3:.1f} mm RMS of the heave: {gains[0]:.0%} to {gains[-1]:.0%} less than "
+        "without feedforward."
+    )
+    facts = [(each.title, _range(of_feedforward(rows, each.name))) for each in plan.feedforwards]
+    same = all(each.equal for each in agreements)
+    facts.append(("Live equals replay", "yes" if same else "NO"))
+    return decision_html(sentence, facts)
+
+
+def _range(rows: Sequence[PhaseFigures]) -> str:
+    """What is left of the heave, leg by leg."""
+    return ", ".join(f"{row.residual * 1e3:.1f}" for row in rows) + " mm"
 
 
 def _story(plan: DemoPlan) -> str:
@@ -101,7 +115,7 @@ def search_table(plan: DemoPlan, search: EfficiencySearch) -> str:
         f"Tried on the first leg ({plan.legs[0].title}) with the true plant, in one process. A factor cannot know "
         "that friction hardly falls with the load, nor that it changes with displacement and speed."
     )
-    columns = ("efficiency factor", "residual heave RMS [mm]", "")
+    columns = ("efficiency factor", "residual heave RMS [mm]", "chosen")
     return table_html(columns, body, "Search for the efficiency factor", digits=3) + paragraph(words, "faint")
 
 

@@ -40,7 +40,7 @@ def draw(plan: DemoPlan, recording: Recording, rows: list[PhaseFigures]) -> Any:
     return figure
 
 
-def _shown(part: Recording, rows: Any) -> tuple[Any, Any]:
+def shown(part: Recording, rows: Any) -> tuple[Any, Any]:
     """Time since the leg's start and the rows inside the window."""
     time = rows[:, 0] - part.truth[0, 0]
     end = part.truth[-1, 0] - part.truth[0, 0]  # after it the compensator is switched off
@@ -50,15 +50,15 @@ def _shown(part: Recording, rows: Any) -> tuple[Any, Any]:
 
 def _draw_residual(axes: Any, titles: list[str], parts: list[Recording]) -> None:
     for colour, title, part in zip(COLOURS, titles, parts, strict=False):
-        time, truth = _shown(part, part.truth)
+        time, truth = shown(part, part.truth)
         axes.plot(time, truth[:, 1] * 1e3, color=colour, label=title)
 
 
 def _draw_torque(axes: Any, titles: list[str], parts: list[Recording]) -> None:
-    time, truth = _shown(parts[-1], parts[-1].truth)
+    time, truth = shown(parts[-1], parts[-1].truth)
     axes.plot(time, truth[:, 3], color=GREY, linewidth=3.5, alpha=0.6, label="true friction")
     for colour, title, part in list(zip(COLOURS, titles, parts, strict=False))[1:]:
-        time, fed = _shown(part, part.fed)
+        time, fed = shown(part, part.fed)
         axes.plot(time, fed[:, 1], color=colour, label=title)
     axes.set_xlabel("time since the leg began [s]")
 

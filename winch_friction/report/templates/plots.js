@@ -63,8 +63,8 @@
     const axis = (row) => (row ? String(row + 1) : "");
     // what was measured lies as a broad shadow under the models, so that both show where they agree
     const shadowed = (row) => content.lines.some((line) => line[4] === row && line[5] === "after");
-    return content.lines.map(([label, x, y, frame, row, role, kind, upper]) => {
-      const columns = content.frames[frame].columns, k = role === "plain" ? next++ : 0;
+    return content.lines.map(([label, x, y, frame, row, role, kind, upper, like]) => {
+      const columns = content.frames[frame].columns, k = role !== "plain" ? 0 : like >= 0 ? like : next++;
       const colour = role === "plain" ? c.plain[k % c.plain.length] : c[role];
       const dash = role === "plain" ? CYCLE[Math.floor(k / c.plain.length) % CYCLE.length] : DASH[role] || "solid";
       const first = !legends.has(label) && label !== "";

@@ -9,7 +9,7 @@ import io
 import re
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +92,9 @@ def base_run(name: str) -> Run:
         return read_run(EXAMPLES / f"{name}.parquet")
     _, folder, log = name.split("/")
     place = EXAMPLES.parent / folder
-    return import_log(place / f"{log}.csv", load_map(place / "map.yaml"), load_crane(REAL[name]))
+    given = load_map(place / "map.yaml")
+    logged = {channel: entry for channel, entry in given.columns.items() if not entry.constant}
+    return import_log(place / f"{log}.csv", replace(given, columns=logged), load_crane(REAL[name]))
 
 
 def _timed(*arguments: str) -> tuple[int, float, str]:

@@ -30,6 +30,7 @@ Examples:
   [cyan]winch-friction gap runs/*.mcap --crane my_crane.yaml --model my_model.yaml --out gap/ --effects mine.py[/cyan]
 """
 
+MODEL = "a6vm215_crane2"  # of the 150 t crane, where none is named
 app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
 
@@ -40,8 +41,11 @@ def command(
         str, typer.Option(help="Crane file or shipped name; none: the model's.", autocompletion=complete_crane)
     ] = "",
     model: Annotated[
-        str, typer.Option(help="Model file or shipped name.", autocompletion=complete_model)
-    ] = "a6vm215_crane2",
+        str,
+        typer.Option(
+            help="Model file or shipped name; none: a6vm215_crane2, of the 150 t crane.", autocompletion=complete_model
+        ),
+    ] = "",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
     seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,
@@ -61,6 +65,7 @@ def command(
         from winch_friction.cli.gap_blind import blind_trials
         from winch_friction.records.model_file import load_model
 
+        model = model or MODEL
         blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json)
         return
     files = (fmu, fmu_map, params_file)
@@ -102,8 +107,10 @@ def run_gap(
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
+    asked = model  # without a model the crane is what the runs or the person say, never the default model's
+    model = model or MODEL
     seed_model = load_model(model)
-    loaded_crane = crane_of(crane, seed_model, paths)
+    loaded_crane = crane_of(crane, seed_model if asked else None, paths)
     refuse_other_crane(seed_model, loaded_crane)
     show_warnings(unstated(seed_model))
     mapping = bag_options_of(params_file)

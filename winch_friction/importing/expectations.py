@@ -10,6 +10,7 @@ from winch_friction.physics.winch.crane import Crane
 _PRESSURE = (5.0e5, 6.0e7)  # Pa: above the boost of an idle line, below a burst hose
 _HYDRAULIC_SPEED = (1.0, 500.0)  # rad/s: a winch hardly moving, an axial piston motor at 4800 rpm
 _FASTEST_ROPE = 12.0  # m/s: three times the fastest hoist at sea
+_LIGHTEST = 1e-3  # of what a drive's torque limit holds: less is no load that a person would log
 _HIGHEST_PRESSURE = 4.5e7  # Pa, of the largest motors; what a crane's load is bounded by
 
 
@@ -44,6 +45,9 @@ def usual_size(channel: str, crane: Crane | None) -> tuple[float, float]:
         return 1.0, float(len(crane.drum.layer_radii))
     if channel == "hook_load" and crane.drive.hydraulic:
         return 100.0, 1.2 * largest_load(crane)
+    if channel == "hook_load" and np.isfinite(crane.absolute_torque_limit):
+        most = crane.absolute_torque_limit * crane.gear_ratio / (crane.drum.layer_radii[0] * GRAVITY)
+        return _LIGHTEST * most, 1.2 * most
     return table.get(channel, (0.0, top))
 
 

@@ -5,14 +5,17 @@ import json
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from gap_rig import runs_with
 
 from winch_friction.cli.main import run as winch_friction
+from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import write_run
+from winch_friction.simulation import load_scenario, simulate
 
 OWN_EFFECT = """
 from winch_friction.physics.friction import Parameter, Scope, Term, register
@@ -125,3 +128,14 @@ def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys):
     assert hashlib.sha256(seal.encode()).hexdigest() == promised
     assert json.loads(seal)["effect"] == told["trials"][0]["hidden"]
     assert told["right"] == int(told["trials"][0]["hidden"] in told["trials"][0]["found"])
+
+
+def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_path, capsys):
+    """Nothing is silently taken for the 150 t crane."""
+    other = replace(load_crane("crane_150t"), gear_ratio=120.0, name="other")
+    model = replace(load_model("a6vm215_crane2"), crane="", constants={})
+    scenario = load_scenario("ahc_55t_215").override({"duration": 60.0, "load": 12e3, "crane": ""})
+    write_run(simulate(scenario, other, model, seed=1).run, tmp_path / "run.csv")
+    assert winch_friction(["gap", str(tmp_path / "run.csv"), "--out", str(tmp_path / "out")]) == 2
+    assert "no --crane and no --model were given" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -107,10 +107,10 @@ def run_gap(
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
-    asked = model  # without a model the crane is what the runs or the person say, never the default model's
+    assumed = not (model or crane)
     model = model or MODEL
     seed_model = load_model(model)
-    loaded_crane = crane_of(crane, seed_model if asked else None, paths)
+    loaded_crane = crane_of(crane, seed_model, paths)
     refuse_other_crane(seed_model, loaded_crane)
     show_warnings(unstated(seed_model))
     mapping = bag_options_of(params_file)
@@ -118,7 +118,15 @@ def run_gap(
     for run in read:
         show_warnings(run.warnings)
     read = _simulated(read, fmu, fmu_map)
-    forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
+    try:
+        forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
+    except InputError as error:
+        if not assumed:
+            raise
+        raise InputError(
+            f"no --crane and no --model were given, and these runs are not of crane '{loaded_crane.name}', which is "
+            f"taken then: name your own ({error})"
+        ) from None
     with stepping("comparing with the model", STEPS) as tell:
         result = find_gap(read, loaded_crane, seed_model, replace(options, told=tell))
     made = provenance_of(paths, loaded_crane.name, model, seed) | forced

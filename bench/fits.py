@@ -1,7 +1,13 @@
-"""What a fit takes: variable projection beside Box's complex method, on the same table."""
+"""What a fit takes: variable projection beside Box's complex method and differential evolution, on the same table."""
+
+from typing import Any
+
+import numpy as np
+from scipy.optimize import differential_evolution
 
 from bench.measuring import Row, paired, seconds
-from winch_friction.identification.fit import fit
+from winch_friction.identification.fit import fit, search_box
+from winch_friction.identification.fit_data import CountedModel
 from winch_friction.identification.motor_models import initial_model, motor_model_named
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.records.paths import config_directory
@@ -14,7 +20,14 @@ def measure(smoke: bool = False) -> list[Row]:
     table = read_supplier_table(config_directory() / "suppliers" / TABLE)
     start, data = initial_model(motor_model_named(MODEL), float(table.displacement.max())), table.fit_data()
     ours = fit(start, data, method="least_squares")
+    counted = CountedModel(start, data)
+    box = list(zip(*search_box(start, data), strict=True))
+
+    def evolved(generations: int = 1000) -> Any:
+        return differential_evolution(counted.cost, box, seed=0, maxiter=generations)
+
     if smoke:
+        assert np.isfinite(evolved(2).fun)
         return [Row("fit of MJ4: time", seconds(lambda: fit(start, data, method="least_squares")), "s")]
     theirs = fit(start, data, method="complex")
     time = paired(
@@ -22,9 +35,16 @@ def measure(smoke: bool = False) -> list[Row]:
     )
     faster, spread = time.inverse
     note = f"the complex method's cost is {theirs.cost / ours.cost:.6f} x ours"
+    evolution = evolved()
+    evolving = paired(lambda: fit(start, data, method="least_squares"), evolved, repeats=1)
+    how = f"scipy's defaults, {evolution.nfev} evaluations; its cost is {evolution.fun / ours.cost:.6f} x ours"
     fewer = theirs.evaluations / ours.evaluations
     against = "Box's complex method"
     return [
         Row("fit of MJ4: time", time.ours, "s", against, time.theirs, faster, spread, at_least=50.0, note=note),
+        Row(
+            "fit of MJ4: time beside evolution", evolving.ours, "s", "differential_evolution", evolving.theirs,
+            *evolving.inverse, at_least=50.0, note=how,
+        ),
         Row("fit of MJ4: model evaluations", ours.evaluations, "1", against, theirs.evaluations, fewer, at_least=100.0),
-    ]
+    ]  # fmt: skip

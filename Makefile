@@ -53,6 +53,7 @@ docs: $(READY)
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs out/site
 
 bench: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[bench]'
 	$(BIN)/winch-friction bench --page docs/benchmarks.md $(ARGS)
 
 colcon: $(READY)

@@ -1,4 +1,17 @@
 """Speed as ratios against what one would use instead: `winch-friction bench`, `make bench`."""
 
 # in the order of the table
-NAMES = ("estimator", "compensator", "model", "simulator", "integrators", "fits", "replay", "size", "startup", "memory")
+NAMES = (
+    "estimator",
+    "compensator",
+    "model",
+    "simulator",
+    "integrators",
+    "fits",
+    "replay",
+    "dds",
+    "size",
+    "naming",
+    "startup",
+    "memory",
+)

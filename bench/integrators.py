@@ -153,8 +153,8 @@ def measure(smoke: bool = False) -> list[Row]:
         rows.append(
             Row(
                 f"simulator: a sea of {len(each.command) * each.simulator.period:g} s, {language}",
-                min(a for a, _ in times), "s", f"LSODA with its right-hand side in {language}", min(b for _, b in times), ratios[len(ratios) // 2],
-                (ratios[0], ratios[-1]), at_least=goal,
+                min(a for a, _ in times), "s", f"LSODA with its right-hand side in {language}",
+                min(b for _, b in times), ratios[len(ratios) // 2], (ratios[0], ratios[-1]), at_least=goal,
                 note=f"{NOTE}: {tolerance:g}, error {error:.1e} against {ours_error:.1e}",
             )
         )  # fmt: skip

@@ -3,7 +3,7 @@
 import urllib.parse
 
 import pytest
-from pages import SCHEMES, SIZES, small_gap, violations
+from pages import SCHEMES, SIZES, check_page, demo_page, fleet_page, practice_page, small_gap, violations
 
 import winch_friction as wf
 from winch_friction.cli.main import run
@@ -42,6 +42,25 @@ def test_replay_and_comparison_are_accessible_too(pages, visit):
         page, said = visit(path.as_uri(), width, scheme)
         assert violations(page) == []
         assert said == []
+
+
+@pytest.fixture(scope="module", params=[practice_page, check_page, fleet_page, demo_page], ids=lambda f: f.__name__)
+def other_page(request, tmp_path_factory):
+    return request.param(tmp_path_factory.mktemp("pages"))
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1400, "light"), (768, "dark"), (420, "light")])
+def test_every_other_report_is_accessible_and_drawn(other_page, visit, width, scheme):
+    assert other_page.stat().st_size < 5e6
+    page, said = visit(other_page.as_uri(), width, scheme)
+    assert page.inner_text("section h2 >> nth=0") in ("Decision", "Result")
+    drawn = page.evaluate("globalThis.drawEveryPlot ? drawEveryPlot() : 0")
+    page.wait_for_function(f"document.querySelectorAll('.canvas .plot-container').length === {drawn}")
+    assert drawn >= 1
+    assert page.locator("figure:not(.plot)").count() == 0  # no still picture is left
+    assert violations(page) == []
+    assert said == []
+    assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
 
 
 def test_a_page_works_offline_with_every_plot_drawn(gap_page, chromium):

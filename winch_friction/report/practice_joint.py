@@ -6,7 +6,7 @@ from winch_friction.identification.practice import Practice
 from winch_friction.physics.units import RPM
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_look import SPEED, curve_label
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import for_people, paragraph, table_html, value_for_people
 
 
 def joint_html(practice: Practice) -> str:
@@ -14,8 +14,8 @@ def joint_html(practice: Practice) -> str:
     joint, system = practice.system.joint, practice.system
     boot = dict(zip(system.bootstrap.names, system.bootstrap.std, strict=True)) if system.bootstrap else {}
     rows = [
-        [p.name, p.unit, joint.prior.value(p.name), prior_std or float("nan"), value, std,
-         boot.get(p.name, float("nan"))]
+        [p.name, for_people(p.unit), *(value_for_people(each, p.unit) for each in (
+            joint.prior.value(p.name), prior_std or float("nan"), value, std, boot.get(p.name, float("nan"))))]
         for p, prior_std, value, std in zip(
             joint.model.parameters, joint.prior.std, joint.model.values, joint.model.std, strict=True)
     ]  # fmt: skip

@@ -14,7 +14,7 @@ from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_look import SPEED, Curve, curves_html
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import for_people, paragraph, table_html, value_for_people
 
 
 def motor_sections(practice: Practice) -> list[TextSection]:
@@ -80,14 +80,21 @@ def parameter_table(fitted: FitResult, by_complex: FitResult | None = None) -> s
     """Values with standard errors beside the complex method's values."""
     model = fitted.model
     rows: list[list[Any]] = [
-        [p.name, p.unit, value, std, 100.0 * std / abs(value) if value else float("nan"), p.doc]
+        [
+            p.name,
+            for_people(p.unit),
+            value_for_people(value, p.unit),
+            value_for_people(std, p.unit),
+            100.0 * std / abs(value) if value else float("nan"),
+            p.doc,
+        ]
         for p, value, std in zip(model.parameters, model.values, model.std, strict=True)
     ]
     columns = ["parameter", "unit", "least squares", "standard error", "%", "meaning"]
     if by_complex is not None:
         columns.insert(5, "complex")
-        for row in rows:
-            row.insert(5, by_complex.model.value(row[0]))
+        for row, p in zip(rows, model.parameters, strict=True):
+            row.insert(5, value_for_people(by_complex.model.value(p.name), p.unit))
     return table_html(columns, rows)
 
 

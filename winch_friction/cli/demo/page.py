@@ -43,8 +43,9 @@ def _decision(plan: DemoPlan, rows: list[PhaseFigures], agreements: Sequence[Com
     last = of_feedforward(rows, plan.feedforwards[-1].name)
     gains = sorted(row.gain for row in last)
     sentence = (
-        f"{plan.feedforwards[-1].title} leaves {min(r.residual for r in last) * 1e3:.1f} to "
-        f"{max(r.residual for r in last) * 1e3:.1f} mm RMS of the heave: {gains[0]:.0%} to {gains[-1]:.0%} less than "
+        f"The feedforward of the learned model ({plan.feedforwards[-1].title}) leaves "
+        f"{min(r.residual for r in last) * 1e3:.1f} to {max(r.residual for r in last) * 1e3:.1f} mm RMS of the heave: "
+        f"{gains[0]:.0%} to {gains[-1]:.0%} less than "
         "without feedforward."
     )
     facts = [(each.title, _range(of_feedforward(rows, each.name))) for each in plan.feedforwards]

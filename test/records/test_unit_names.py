@@ -1,5 +1,7 @@
 """Units as people write them: every spelling of the table is the unit it stands under, ambiguous ones are refused."""
 
+import time
+
 import pytest
 
 from winch_friction.physics.errors import InputError
@@ -78,3 +80,14 @@ def test_columns_without_a_unit_that_look_like_another_are_remarked(tmp_path):
     remarks = " ".join(read_run(path).warnings)
     assert "215 Pa at most; if it is bar" in remarks
     assert "hook_load [t]" in remarks
+
+
+@pytest.mark.parametrize(
+    "unit", ["rad/s**9**9**9**9", "10**10**10 rad/s", "9**(9**(9**9)) Pa", "(9**99)**99 bar", "9^9^9^9", "(" * 3000]
+)
+def test_a_unit_that_is_a_sum_to_work_out_is_refused_at_once(unit):
+    """`9**9**9**9` had kept a reader busy for ever."""
+    began = time.monotonic()
+    with pytest.raises(InputError, match="cannot be read as rad/s"):
+        conversion_to_si(unit, "rad/s", "log.csv")
+    assert time.monotonic() - began < 2.0

@@ -3,6 +3,7 @@
 Angle is a dimension of its own here: `Hz` or `cm^3` alone would leave open whether a revolution or a radian is meant.
 """
 
+import re
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -20,6 +21,11 @@ _EXAMPLES = {each.unit: each.display for each in CHANNELS if each.display != eac
     "rad": "deg",
     "N*m": "kN*m",
 }
+
+LONGEST_UNIT = 80  # characters; `kilogram * meter ** 2 / second ** 2 / radian` has half of it
+MOST_POWERS = 4
+# one digit, in brackets or not, and no power of a power
+_EXPONENT = re.compile(r"\s*(?:[-+]?\d(?:\.\d+)?|\(\s*[-+]?\d(?:\.\d+)?\s*\))(?![\d.])(?!\s*$)")
 
 _SI_NAMES = {"1": "dimensionless"}
 _DEFINITIONS = (
@@ -75,11 +81,19 @@ def conversion_to_si(unit: str, expected: str, where: str) -> tuple[float, float
     """Scale and offset that take values in `unit` to `expected`; raises `InputError` for a unit that does not fit."""
     registry, name = _registry(), pint_name(unit, expected, where)
     try:
+        _refuse_arithmetic(name)
         at = [registry.Quantity(np.float64(value), name).to(_SI_NAMES.get(expected, expected)) for value in (0.0, 1.0)]
     except Exception as error:  # pint raises whatever its tokenizer and parser meet
         example = f", e.g. '{_EXAMPLES[expected]}'" if expected in _EXAMPLES else ""
         raise InputError(f"{where}: unit '{unit}' cannot be read as {expected}{example}") from error
     return float(at[1].magnitude - at[0].magnitude), float(at[0].magnitude)
+
+
+def _refuse_arithmetic(name: str) -> None:
+    """pint works out what a unit says in whole numbers: `9**9**9**9` would keep it busy for ever."""
+    powers = re.split(r"\*\*|\^", f"{name} .")[1:]
+    if len(name) > LONGEST_UNIT or len(powers) > MOST_POWERS or not all(map(_EXPONENT.match, powers)):
+        raise ValueError("not a unit")
 
 
 @lru_cache(maxsize=1)

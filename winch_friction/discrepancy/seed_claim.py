@@ -13,9 +13,11 @@ from scipy.stats import chi2, norm
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.verdict import keeps_something, steady_excess
 from winch_friction.physics.friction import FrictionModel
 
 # exact ties of the equations (docs/physics.md): what a parameter's shift would pass for
@@ -47,26 +49,41 @@ class SeedRefuted:
         }  # fmt: skip
 
 
-def refuted_seed(search: Search) -> SeedRefuted | None:
-    """Whether the training runs refute the seed's stated uncertainty, and nothing but that."""
+@dataclass(frozen=True)
+class SeedTrial:
+    """The base with its prior on trial: whether it explains the gap as well as the names do, and what that refutes."""
+
+    enough: bool = False
+    refuted: SeedRefuted | None = None
+
+
+def try_seed(search: Search, rng: np.random.Generator) -> SeedTrial:
+    """Whether the training runs want the base beyond its prior's box, and nothing but that.
+
+    A shift that the stated covariance does not make surprising refutes nothing; an effect that only does what the box
+    forbids is no effect all the same.
+    """
     model = search.given.model
     if model.covariance is None:
-        return None
+        return SeedTrial()
     wide = _wide(search)
     loss, beta = wide.train_loss(())
     base = wide.problem.base
     count = base.parameters
     shift = beta[:count] + base.shift[:count]
     sigma, marginal = _surprise(wide, shift, count)
-    if sigma < LIMITS.seed_sigma and np.abs(marginal).max(initial=0.0) < LIMITS.seed_marginal:
-        return None
+    surprising = sigma >= LIMITS.seed_sigma or np.abs(marginal).max(initial=0.0) >= LIMITS.seed_marginal
+    if not surprising and not search.selection.final.slots:
+        return SeedTrial()
     explanation = Explanation((), np.zeros(0), beta, loss, np.zeros((0, len(beta))))
-    if _excess(wide, explanation) > max(LIMITS.least_excess, LIMITS.left_over * _excess(wide, search.selection.base)):
-        return None  # something else is wrong as well, and comes first
+    if _something_else(wide, explanation, search, rng):
+        return SeedTrial()  # it comes first
     named = _cost(search.cross, search.selection.final, count)
     allowed = LIMITS.effect_price if np.abs(shift).max() <= LIMITS.ordinary_shift else 0.0
     if search.selection.final.slots and _inflated(loss, shift) > named + allowed:
-        return None
+        return SeedTrial()
+    if not surprising:
+        return SeedTrial(enough=True)
     order = np.argsort(-np.abs(shift))
     names = [model.parameter_names[k] for k in order if abs(shift[k]) > LIMITS.prior_bound] or [
         model.parameter_names[order[0]]
@@ -74,7 +91,7 @@ def refuted_seed(search: Search) -> SeedRefuted | None:
     shifts = {name: float(shift[model.parameter_names.index(name)]) for name in names}
     found = [n for f in search.selection.found for n in (f.slot.name, *(r.name for r in f.rivals))]
     mimics = tuple(dict.fromkeys([*found, *(m for name in names for m in MIMICS.get(name, ()))]))
-    return SeedRefuted(shifts, max(sigma, float(np.abs(marginal).max())), mimics)
+    return SeedTrial(True, SeedRefuted(shifts, max(sigma, float(np.abs(marginal).max())), mimics))
 
 
 def widened(given: Given) -> Given:
@@ -128,6 +145,17 @@ def _cost(cross: CrossFit, explanation: Explanation, count: int) -> float:
     shift = explanation.beta[:count] + cross.problem.base.shift[:count]
     price = LIMITS.effect_price * len(explanation.slots)
     return explanation.train_loss / LIMITS.prior_weight + float(shift @ shift) + price
+
+
+def _something_else(wide: CrossFit, freed: Explanation, search: Search, rng: np.random.Generator) -> bool:
+    """Whether the freed base keeps something that the names, if there are any, do not keep."""
+    base, final = search.selection.base, search.selection.final
+    if final.slots and _excess(wide, freed) <= LIMITS.as_much * _excess(search.cross, final):
+        return False
+    left = dependences(wide, wide.remainder(freed), rng)
+    depends = [d for d in left if d.p_value <= LIMITS.remainder_p and d.size >= wide.problem.matters]
+    excess = max(_excess(wide, freed), steady_excess(wide, freed))
+    return keeps_something(excess, max(_excess(wide, base), 1e-9), depends)
 
 
 def _excess(cross: CrossFit, explanation: Explanation) -> float:

@@ -67,6 +67,7 @@ class Thresholds:
     seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand
     seed_marginal: float = 2.5  # the same for one parameter
     told: float = 0.3  # share of its prior variance that the data must take off a direction to have a say in it
+    as_much: float = 1.05  # times the excess that the names leave, which the freed base may leave beside them
     ordinary_shift: float = 4.0  # stated deviations: further off it is more likely an effect than a careless seed
     effect_price: float = 12.0  # twice the log-likelihood that a name must be worth: one of sixty, and its size
     # -- remainder

@@ -24,9 +24,9 @@ class Verdict:
 
 def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], rippled: bool = False) -> Verdict:
     """`left`: what signals predict of the final explanation's remainder; `rippled`: a ripple may be part of it."""
-    before, excess = _steady_excess(cross, selection.base), _steady_excess(cross, selection.final)
+    before, excess = steady_excess(cross, selection.base), steady_excess(cross, selection.final)
     before = max(before, 1e-9)
-    depends = [d for d in left if d.p_value <= LIMITS.remainder_p]
+    depends = [d for d in left if d.p_value <= LIMITS.remainder_p and d.size >= cross.problem.matters]
     if not selection.found:
         strong = any(d.share >= LIMITS.least_unexplained for d in depends) or (
             before > LIMITS.never_noise and not rippled
@@ -38,23 +38,30 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len([f for f in selection.found if not f.slot.plain]) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
-    remains = excess > LIMITS.least_excess and excess / before > LIMITS.left_over
-    remains |= excess > LIMITS.large_excess and excess / before > LIMITS.small_left_over
-    obvious = excess > LIMITS.obvious_excess or any(d.share >= 0.5 * LIMITS.least_unexplained for d in depends)
     count = float(cross.problem.grams.count.sum())
     floor = count + cross.unresolved
     whole = (selection.final.loss - floor) / count
     whole_before = max((selection.base.loss - floor) / count, 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)
-    if (remains and obvious) or elsewhere:
+    if keeps_something(excess, before, depends) or elsewhere:
         excess, before = max((excess, before), (whole, whole_before), key=lambda pair: pair[0] / pair[1])
         names = ", ".join(f.slot.name for f in selection.found)
         return Verdict(UNEXPLAINED, f"{names} leaves {100 * excess / before:.0f} % of the gap above the noise floor")
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
 
 
-def _steady_excess(cross: CrossFit, explanation: Explanation) -> float:
+def keeps_something(excess: float, before: float, depends: Sequence[Dependence]) -> bool:
+    """Whether what an explanation leaves above the noise is more than it may: a share of the excess `before` that is
+    large in itself or hangs on a signal."""
+    remains = excess > LIMITS.least_excess and excess / before > LIMITS.left_over
+    remains |= excess > LIMITS.large_excess and excess / before > LIMITS.small_left_over
+    return remains and (
+        excess > LIMITS.obvious_excess or any(d.share >= 0.5 * LIMITS.least_unexplained for d in depends)
+    )
+
+
+def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
     """Excess of the remainder over the noise variance where the shaft hardly accelerates.
 
     There the balance holds whatever swings on the wire or rings in the oil, which no friction model is to answer for.

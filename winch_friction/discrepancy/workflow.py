@@ -20,7 +20,7 @@ from winch_friction.discrepancy.preparation.own_simulation import against_simula
 from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
 from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.seed_claim import refuted_seed, widened
+from winch_friction.discrepancy.seed_claim import try_seed, widened
 from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -50,15 +50,15 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         return insufficient(checks, notes, crane, model, (given, split))
     options.told("searching")
     search = search_runs(split, given, options, rng)
-    refuted = refuted_seed(search)
-    if refuted is not None:
+    seed = try_seed(search, rng)
+    if seed.enough:
         search = search_runs(split, widened(given), options, rng)
     options.told("proving on the locked runs")
     trial = _proven(split, crane, options, _replicated(search, split, rng), rng)
     options.told("planning")
     result = assemble(split, options, trial)
     result = replace(
-        result, seed_model=model, seed_refuted=() if refuted is None else (refuted,), adequacy=tuple(checks),
+        result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
         notes=(*notes, *result.notes),
     )  # fmt: skip
     if not options.proposals:

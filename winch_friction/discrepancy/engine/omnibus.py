@@ -22,6 +22,7 @@ class Dependence:
     signal: str
     share: float  # of the remainder's sum of squares
     p_value: float
+    size: float = float("inf")  # RMS of what it predicts, in the gap's unit
 
 
 def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> list[Dependence]:
@@ -38,7 +39,11 @@ def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> 
     table = np.array(gains)
     p = flip_p_values(table, rng)
     total = float((left**2).sum()) + cross.unresolved
-    found = [Dependence(n, float(row.sum() / total), float(q)) for n, row, q in zip(names, table, p, strict=True)]
+    unit = float(np.mean(blocks.weight**-2.0)) / len(left)  # from noises to the gap's unit, squared
+    found = [
+        Dependence(n, float(row.sum() / total), float(q), float(np.sqrt(max(row.sum(), 0.0) * unit)))
+        for n, row, q in zip(names, table, p, strict=True)
+    ]
     better: dict[str, Dependence] = {}
     for each in sorted(found, key=lambda each: -each.share):
         better.setdefault(each.signal, each)

@@ -87,6 +87,11 @@ class Problem:
         noise = np.array([self.noise[k] for k in range(len(self.noise))])
         return np.maximum((self.least_noise / noise) ** 2 - 1.0, 0.0)[self.blocks.run]
 
+    @property
+    def matters(self) -> float:
+        """Size in the gap's unit below which what is left matters to nobody."""
+        return 0.0 if self.least_noise is None else float(np.min(self.least_noise))
+
     def columns(self, slots: Sequence[Slot]) -> tuple[int, ...]:
         """Columns of the base and of these candidates."""
         return self.base_columns + tuple(c for slot in slots for c in slot.columns)

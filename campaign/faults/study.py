@@ -22,7 +22,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
 from campaign.commit import commit  # noqa: E402
 from campaign.faults.trial import Trial  # noqa: E402
 from campaign.faults.voyages import SCENARIOS, voyage  # noqa: E402
-from campaign.faults.watch import Row  # noqa: E402
+from campaign.faults.watch import LONGEST_AGAINST, Row  # noqa: E402
 
 SECONDS = 120.0  # of a trial
 SEAS = 4  # voyages of each scenario
@@ -109,7 +109,9 @@ deactivates. Ramp time 0.5 s, age limit 0.1 s. A draw is one fault.
 Checked at every published torque: finite; within the absolute limit and 1.3 times the seed's friction at the worst
 corner of what the crane's channels can show; no faster than the slew limit, resets and the end included; zero within
 age limit, ramp and detection once a needed input is gone, frozen or impossible; diagnostics no longer `active` a second
-after that; a refused sample leaves the estimator as it was; its covariance stays positive; nothing raised.
+after that; against the motion no longer than the look-ahead and {LONGEST_AGAINST:.2f} s, except where nothing that
+arrives shows the motion (delayed, reordered, clock set, different clocks, speed and command wrong at once, and what is
+left of these afterwards: timed in the table, no violation); a refused sample leaves the estimator as it was; its covariance stays positive; nothing raised.
 
 {table(rows)}
 

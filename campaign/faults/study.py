@@ -111,7 +111,8 @@ corner of what the crane's channels can show; no faster than the slew limit, res
 age limit, ramp and detection once a needed input is gone, frozen or impossible; diagnostics no longer `active` a second
 after that; against the motion no longer than the look-ahead and {LONGEST_AGAINST:.2f} s, except where nothing that
 arrives shows the motion (delayed, reordered, clock set, different clocks, speed and command wrong at once, and what is
-left of these afterwards: timed in the table, no violation); a refused sample leaves the estimator as it was; its covariance stays positive; nothing raised.
+left of these afterwards: timed in the table, no violation); a refused sample leaves the estimator as it was; its
+covariance stays positive; nothing raised.
 
 {table(rows)}
 

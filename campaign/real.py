@@ -71,7 +71,13 @@ def studies() -> list[Study]:
     position = ("motor_speed.from=qm", "motor_speed.unit=rad", "motor_speed.differentiate=100")
     found = [
         Study("winch_100kw", "winch_100kw", "rope_force_alone", tuple(kite), every=2),
-        Study("worm_drive", "worm_drive", "worm_viscous", tuple(worm), ("motor_torque.of=9.84 mN*m",)),
+        Study(
+            "worm_drive",
+            "worm_drive",
+            "worm_viscous",
+            tuple(worm),
+            ("motor_torque.of=9.84 mN*m", "hook_load.constant=0.096 kg"),
+        ),
         Study("emps", "emps", "emps_viscous", emps, volts + position),
     ]
     return [study for study in found if study.logs]
@@ -89,6 +95,8 @@ def carried_through(study: Study, folder: Path) -> Outcome:
     force = ["--force"] if status else []
     seen = [str(path) for path in out.runs[:: study.every]]
     _step(out, " ".join(["gap", *force]), ["gap", *seen, *named, "--out", str(folder / "gap"), *force])
+    aside = ["--crane", study.crane, "--motor", study.model, "--out", str(folder / "identified.yaml")]
+    _step(out, " ".join(["identify system", *force]), ["identify", "system", *seen, *aside, *force])
     if out.written.is_file():
         out.gap = json.loads((folder / "gap" / "gap.json").read_text(encoding="utf-8"))
         asked = ["--crane", study.crane, "--model", str(out.written), "--out", str(folder / "replay.csv"), "--json"]

@@ -47,7 +47,11 @@ def test_the_real_winch_goes_the_whole_way(tmp_path, shared_data):
     """From the rope force alone: every verb answers, and the power of cycles that were not used is far better told."""
     study = next(each for each in studies() if each.name == "winch_100kw")
     out = carried_through(study, tmp_path)
-    assert [status for verb, status, _ in out.steps if verb != "check"] == [0, 0, 0, 0]
+    said = {verb: (status, sentence) for verb, status, sentence in out.steps}
+    status, sentence = said.pop("identify system")
+    assert status == 2
+    assert "identify fits what hydraulic motors lose" in sentence
+    assert [status for status, _ in said.values()] == [0, 0, 0, 0, 0], "nothing needs --force"
     others = [path for k, path in enumerate(out.runs) if k % study.every]
     crane = load_crane(study.crane)
-    assert power_error(others, crane, out.written) < 0.4 * power_error(others, crane, study.model)
+    assert power_error(others, crane, out.written) <= 0.26 < 0.4 * power_error(others, crane, study.model)

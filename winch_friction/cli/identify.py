@@ -116,6 +116,7 @@ def system(
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
+    from winch_friction.physics.errors import InputError
     from winch_friction.physics.identity import refuse_other_motor
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
@@ -124,6 +125,11 @@ def system(
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     supplied = load_model(motor).only("motor")
     known = crane_of(crane, supplied, runs)
+    if not known.drive.hydraulic:
+        raise InputError(
+            f"crane '{known.name}' has a drive of kind '{known.drive.kind}': identify fits what hydraulic motors lose; "
+            "for this drive winch-friction gap finds inertia, Coulomb and viscous friction and a gain of the load"
+        )
     refuse_other_motor(supplied, known)
     mapping = bag_options_of(params_file)
     tests, others = read_runs(runs, known, **mapping), read_runs(held_out, known, **mapping)

@@ -94,7 +94,7 @@ def check(
         for c, s, view in zip(diagnosis.closures, diagnosis.scores, views, strict=True)
     ]
     lessons: tuple[list[Taught], list[str]] = ([], [])
-    if model is not None and first_contradiction(findings) is None:
+    if model is not None and model.parameters and first_contradiction(findings) is None:
         parameters, information = taught(views, model)
         lessons = parameters, log_next(crane, views, model, information) if crane.drive.hydraulic else []
     return CheckResult(

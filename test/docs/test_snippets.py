@@ -51,6 +51,31 @@ def test_every_verb_and_option_that_a_page_names_exists(page):
             assert option in options or words[0] == "fleet", f"{page.name}: winch-friction {line}: {option}"
 
 
+def typed(path):
+    """Command lines of a page: fenced or indented, without comments; outlines with dots or brackets are left out."""
+    lines = re.findall(r"^(?: {4}|)(?:\$ )?(?:\.venv/bin/)?winch-friction (.+)$", path.read_text(), re.MULTILINE)
+    bare = [line.split(" #")[0].strip() for line in lines]
+    return [line for line in bare if not re.search(r"\.\.\.|…|\[|\\$", line)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_every_command_of_a_page_is_understood(page):
+    """Each one is parsed as when it is typed: verb, arguments, options and their types; what is required is there."""
+    known = {verb.name: verb for verb in VERBS}
+    for line in typed(page):
+        verb, *words = [word for word in shlex.split(line) if word not in ("--quiet", "--plain")]
+        command = known[verb].load() if verb in known else None
+        assert command or verb.startswith("-"), f"{page.name}: winch-friction {line}"
+        while command and getattr(command, "commands", None) and words and words[0] in command.commands:
+            command, *words = [command.commands[words[0]], *words[1:]]
+        if command and "--help" not in words and not getattr(command, "commands", None):
+            command.make_context(verb, list(words))
+
+
+def test_the_pages_hold_commands():
+    assert sum(len(typed(page)) for page in PAGES) > 40
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
 def test_links_between_pages_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text()):

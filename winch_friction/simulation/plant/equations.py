@@ -255,7 +255,7 @@ def water_force(p, state, share):
 @compiled
 def rates(p, hidden, address, theta, z, memory, x, state, rate, time, command, heave_rate, surface, oil_temperature):
     """Time derivatives of all states into `rate`. Returns friction torque, tension, drum torque."""
-    rate[:] = 0.0
+    rate[E_IN] = rate[E_LOST] = 0.0  # the only ones that are summed
     dp = torque_drive(p, state, rate, command) if p.secondary > 0.0 else closed_loop(p, state, rate, command)
     passive_torque, dp_passive, passive_sum = passive_side(p, state, rate)
     tension, elastic, stretch_rate = wire_tension(p, state, heave_rate)

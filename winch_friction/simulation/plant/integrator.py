@@ -10,7 +10,9 @@ from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.plant.equations import rates
 from winch_friction.simulation.plant.friction_kernel import friction_state_rates
 from winch_friction.simulation.plant.point import X_ACCELERATION
-from winch_friction.simulation.plant.state import DIRECTION, DWELL, SPEED
+from winch_friction.simulation.plant.state import DIRECTION, DWELL, SPEED, STATES
+
+COUNT = len(STATES)  # a constant, so that the compiler unrolls its loops
 
 
 @compiled
@@ -75,7 +77,7 @@ def integrate_period(
             offset = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
             at = start + offset / substeps
             trial = stages[4]
-            for k in range(len(state)):
+            for k in range(COUNT):
                 trial[k] = state[k] + (offset * dt * stages[stage - 1, k] if stage > 0 else 0.0)
             speed = hermite(at, period, heave[0, 0], heave[0, 1], heave[1, 0], heave[1, 1])
             surface = heave[0, 2] + at * (heave[1, 2] - heave[0, 2])
@@ -83,7 +85,7 @@ def integrate_period(
                 p, hidden, addresses[0], theta, z, memory, x, trial, stages[stage], time + at * period, command,
                 speed, surface, oil,
             )  # fmt: skip
-        for k in range(len(state)):
+        for k in range(COUNT):
             state[k] += dt / 6.0 * (stages[0, k] + 2.0 * stages[1, k] + 2.0 * stages[2, k] + stages[3, k])
         x[X_ACCELERATION] = stages[3, SPEED]
     return friction, tension, drum, stages[3, SPEED]

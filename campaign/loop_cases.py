@@ -163,21 +163,26 @@ def tuned_efficiency(drive: str, truth: FrictionModel) -> float:
 @dataclass(frozen=True)
 class Learned:
     """A learned model, the worst error of its friction over the visited speed bins, and the NIS share inside its
-    band."""
+    band; NEES of all parameters together, and the share of them within three stated sigma of the truth."""
 
     model: FrictionModel
     worst_bin: float
     nis_inside: float
+    nees: float
+    within: float
 
 
-def learn(drive: str, load: float, sea: Sea, truth: FrictionModel) -> Learned:
+def learn(drive: str, load: float, sea: Sea, truth: FrictionModel, **changes: Any) -> Learned:
     """Twenty wave periods of the estimator beside the seed's feedforward, on a sea that is not scored."""
-    case = scenario(drive, load, sea, duration=LEARNING_PERIODS * sea.period)
+    case = scenario(drive, load, sea, duration=LEARNING_PERIODS * sea.period, **changes)
     estimator = FrictionEstimator(CRANE, SEED)
     crane = closed_loop(case, truth, LEARNING_SEED, compensator(SEED), watch=estimator.step)
     model = estimator.model()
     errors = friction_errors(crane.result().run, truth, model)
-    return Learned(model, max(map(abs, errors.values())), float(estimator.consistency.share_inside))
+    off = np.array(model.values) - np.array(truth.values)
+    nees = float(off @ np.linalg.solve(model.covariance, off))
+    within = float(np.mean(np.abs(off) < 3.0 * model.std))
+    return Learned(model, max(map(abs, errors.values())), float(estimator.consistency.share_inside), nees, within)
 
 
 def friction_errors(run: Run, truth: FrictionModel, model: FrictionModel) -> dict[int, float]:

@@ -2,18 +2,26 @@
 nobody told
 the estimator."""
 
+import math
+from collections.abc import Iterable, Sequence
+from statistics import mean
 from typing import Any
 
 from campaign.loop_cases import (
     CRANE,
+    DRIVES,
     LEARNING_PERIODS,
     LEARNING_SEED,
+    LOADS,
     SEAS,
     SEED,
+    Learned,
     closed_loop,
     compensator,
     friction_errors,
+    learn,
     scenario,
+    score,
 )
 from winch_friction.estimation import FrictionEstimator
 from winch_friction.physics.friction import FrictionModel
@@ -23,6 +31,7 @@ SEA = SEAS[3]  # JONSWAP, Hs 1 m
 BOTH = ("active", "passive")
 ERRORS: dict[str, dict[str, Any]] = {
     "none": {},
+    "displacements read 1 % high": {"sensors.displacement_scale": {f"{g}.displacement": 1.01 for g in BOTH}},
     "displacements read 2 % high": {"sensors.displacement_scale": {f"{g}.displacement": 1.02 for g in BOTH}},
     "active pressure offset 1.5 bar": {"sensors.pressure_offset": {"active.pressure_a": 1.5e5}},
     "active pressures 40 ms late": {"sensors.skew": {"active.pressure_a": 0.04, "active.pressure_b": 0.04}},
@@ -47,6 +56,42 @@ def learning_errors(truth: FrictionModel, quick: bool) -> list[list[str]]:
         errors = friction_errors(clean, truth, estimator.model())
         inside = 100.0 * float(estimator.consistency.share_inside)
         lines.append([name, f"{100.0 * max(map(abs, errors.values())):.1f} %", f"{inside:.0f} %"])
+    return lines
+
+
+def consistency(learned: Iterable[Learned], truth: FrictionModel, quick: bool) -> list[list[str]]:
+    """NEES and the share of parameters within three stated sigma: in the cases of the study, and with displacements
+    that read 1 % too much or too little."""
+    rows = {"none": list(learned)}
+    for scale in (1.01, 0.99):
+        error = {"sensors.displacement_scale": {f"{group}.displacement": scale for group in BOTH}}
+        cases = [(drive, load, sea) for drive in DRIVES for load in LOADS for sea in SEAS][: 2 if quick else None]
+        rows[f"displacements x {scale:g}"] = [learn(*case, truth, **error) for case in cases]
+    lines = []
+    for name, each in rows.items():
+        nees, within = [one.nees for one in each], [one.within for one in each]
+        worst = f"{max(nees):.0f}, {100.0 * min(within):.0f} %"
+        lines.append([name, str(len(each)), f"{mean(nees):.1f}", f"{100.0 * mean(within):.0f} %", worst])
+    return lines
+
+
+def transfer(truth: FrictionModel, seeds: Sequence[int]) -> list[list[str]]:
+    """What is learned at 55 t for other loads: the error of its friction there, and what it gains beside the truth."""
+    lines = []
+    for drive, name in DRIVES.items():
+        model = learn(drive, LOADS[1], SEA, truth).model
+        for load in (LOADS[0], LOADS[2]):
+            case = scenario(drive, load, SEA)
+            errors = [
+                math.sqrt(
+                    mean(score(closed_loop(case, truth, seed, each and compensator(each))).overall for seed in seeds)
+                )
+                for each in (None, model, truth)
+            ]
+            run = closed_loop(case, truth, LEARNING_SEED, None).result().run
+            off = max(friction_errors(run, truth, model).values(), key=abs)
+            gains = [f"{100.0 * (1.0 - error / errors[0]):.0f} %" for error in errors[1:]]
+            lines.append([name, f"{load / 1e3:g} t", f"{100.0 * off:+.1f} %", *gains])
     return lines
 
 

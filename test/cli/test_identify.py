@@ -71,7 +71,7 @@ def test_the_report_is_one_page_with_the_papers_tables(practice):
         assert f"paper 2 Fig {figure}" in page, figure
     for figures in ("paper 2 Fig 11, 12, 14", "paper 2 Fig 18 and 19", "paper 2 Fig 15, 20-23"):
         assert figures in page
-    assert page.count("<figure>") >= 14
+    assert page.count('<figure class="plot"') >= 14
     assert "nan" not in re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL).lower().split()
 
 

@@ -67,13 +67,13 @@ def parameter_estimates(
 ) -> list[ParameterEstimate]:
     """Value, standard deviation and status of every parameter of the learned model."""
     seed = parameters.seed
-    seed_std, prior_std = (
-        np.sqrt(np.diag(parameters.covariance(each))).tolist() for each in (parameters.seed_prior, parameters.prior)
+    std, seed_std, prior_std = (
+        model.std.tolist(),
+        parameters.std(parameters.seed_prior),
+        parameters.std(parameters.prior),
     )
     return [
-        ParameterEstimate(
-            p.name, p.unit, model.values[k], float(model.std[k]), seed.values[k], seed_std[k], text, prior_std[k]
-        )
+        ParameterEstimate(p.name, p.unit, model.values[k], std[k], seed.values[k], seed_std[k], text, prior_std[k])
         for k, (p, text) in enumerate(zip(seed.parameters, statuses, strict=True))
     ]
 

@@ -89,6 +89,12 @@ class ScaledParameters:
         full[np.ix_(self.free, self.free)] = np.outer(self.scale, self.scale) * 0.5 * (scaled + scaled.T)
         return full
 
+    def std(self, scaled: FloatArray) -> list[float]:
+        """Standard deviations of all parameters, SI, from the filter's covariance; zero where it has none."""
+        full = np.zeros(len(self.center))
+        full[self.free] = self.scale * np.sqrt(scaled.diagonal())
+        return full.tolist()
+
     def contains(self, phi: FloatArray) -> bool:
         """Whether every scaled parameter is inside its range."""
         values = phi.tolist()

@@ -13,7 +13,7 @@ from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import _significant, does_as_well, select
-from winch_friction.discrepancy.proof import at_the_floor, nothing_compared, prove, worse_runs
+from winch_friction.discrepancy.proof import adds, at_the_floor, nothing_compared, prove, worse_runs
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, decide
 
 RUNS, BLOCKS = 8, 300
@@ -214,6 +214,21 @@ def test_one_run_that_gets_worse_refuses_a_name():
 @pytest.mark.parametrize(("left", "floor"), [(0.0, True), (0.3, True), (2.0, False)])
 def test_nothing_is_missing_only_at_the_floor(left, floor):
     assert at_the_floor(side(3.0 * WAVE + noise(), left * WAVE + noise())) is floor
+
+
+def test_a_wide_interval_does_not_excuse_what_is_plainly_more():
+    """One of eight locked runs is far off: redrawn runs may miss it, its size does not."""
+    left = side(3.0 * WAVE + noise(), noise() + np.where(RUN == 0, 7.0 * WAVE, 0.0))
+    assert left.size_after.interval[0] <= 1.5
+    assert left.size_after.value > 2.0
+    assert not at_the_floor(left)
+
+
+@pytest.mark.parametrize(("more", "worth"), [(0.0, False), (0.02, False), (0.8, True)])
+def test_every_further_name_must_take_something_off_the_locked_gap(more, worth):
+    fewer = side(3.0 * WAVE + noise(), more * WAVE + noise(1))
+    full = replace(side(3.0 * WAVE + noise(), noise(1)), least_noise=0.1)
+    assert adds(fewer, full, np.random.default_rng(0)) is worth
 
 
 def test_nothing_compared_has_no_size():

@@ -60,6 +60,13 @@ def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> 
     return Proof() if len(own.y) else Proof(f"{named}: the locked runs have no usable block")
 
 
+def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
+    """Whether the names that `more` has beside those of `fewer` take something off the locked gap, surely and by an
+    amount that a balance of a winch can tell."""
+    removed = np.sqrt(max(fewer.size_after.value**2 - more.size_after.value**2, 0.0))
+    return bool(removed >= more.least_noise and chance_of_no_gain(*_common(fewer, more), rng) <= LIMITS.proof_p)
+
+
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
     """Locked runs whose gap grows significantly, beyond what matters to anybody."""
     found = []
@@ -76,8 +83,11 @@ def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
 
 
 def at_the_floor(side: Side) -> bool:
-    """Whether what is left is noise and what no balance of a winch closes, within its interval."""
-    return side.size_after.interval[0] <= LIMITS.at_the_floor * float(np.hypot(side.noise_floor, side.least_noise))
+    """Whether what is left is noise and what no balance of a winch closes, within its interval; a wide interval does
+    not excuse what is plainly more."""
+    floor = float(np.hypot(side.noise_floor, side.least_noise))
+    after = side.size_after
+    return after.interval[0] <= LIMITS.at_the_floor * floor and after.value <= LIMITS.far_off_the_floor * floor
 
 
 def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.ndarray, np.ndarray]:

@@ -99,6 +99,7 @@ class Thresholds:
     at_the_floor: float = (
         1.5  # times the floor (noise and what no balance closes) that nothing missing may leave (campaign)
     )
+    far_off_the_floor: float = 2.0  # times the floor: more is something, however few segments show it
     # -- regions
     most_regions: int = 3
     smallest_region: float = 0.03  # of the blocks

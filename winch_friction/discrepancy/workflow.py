@@ -1,7 +1,8 @@
 """Locate, name, add, prove: the whole workflow on runs in memory."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,17 +12,18 @@ from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, t
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.expansion import Expansion, expand_around, meet
 from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
-from winch_friction.discrepancy.proof import at_the_floor, prove, worse_runs
+from winch_friction.discrepancy.proof import adds, at_the_floor, prove, worse_runs
 from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.seed_claim import try_seed, widened
-from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -99,13 +101,37 @@ def _proven(split: Split, crane: Crane, options: GapOptions, search: Search, rng
         proof = prove(names, refit.holdout, full.holdout, rng) if search.explanation.slots else None
         why = proof.why if proof else "".join(worse_runs(full.holdout, rng))
         if not why:
-            return full
+            return _each_proven(full, partial(tried, split, crane, options, rng=rng), rng)
     beside = replace(_nameless(search), ripple=search.ripple, leakage=search.leakage)
     if search.ripple or search.leakage:
         trial = tried(split, crane, options, beside, rng)
         if not worse_runs(trial.holdout, rng):
             refit = trial
     return replace(refit, search=_judged(refit, why, rng))
+
+
+def _each_proven(full: Trial, trial_of: Callable[[Search], Trial], rng: np.random.Generator) -> Trial:
+    """The trial without those names, the last found first, that the locked runs do not need beside the others."""
+    for slot in reversed(full.search.selection.final.slots):
+        search, final = full.search, full.search.selection.final
+        brought = any(slot.name in each.brings for each in final.slots)
+        if len(final.slots) == 1 or brought or slot.plain:
+            continue
+        fewer = trial_of(_without(search, slot))
+        if not adds(fewer.holdout, full.holdout, rng):
+            full = fewer
+    return full
+
+
+def _without(search: Search, slot: Slot) -> Search:
+    """The search without one of its names."""
+    rest = tuple(each for each in search.selection.final.slots if each is not slot)
+    found = tuple(each for each in search.selection.found if each.slot is not slot)
+    verdict = search.verdict
+    if verdict.kind in (MISSING, AMBIGUOUS):
+        verdict = replace(verdict, kind=AMBIGUOUS if any(each.rivals for each in found) else MISSING)
+    selection = replace(search.selection, final=search.cross.explain(rest), found=found)
+    return replace(search, selection=selection, verdict=verdict)
 
 
 def _nameless(search: Search) -> Search:

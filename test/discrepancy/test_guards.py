@@ -218,7 +218,7 @@ def test_nothing_is_missing_only_at_the_floor(left, floor):
 
 def test_a_wide_interval_does_not_excuse_what_is_plainly_more():
     """One of eight locked runs is far off: redrawn runs may miss it, its size does not."""
-    left = side(3.0 * WAVE + noise(), noise() + np.where(RUN == 0, 7.0 * WAVE, 0.0))
+    left = side(3.0 * WAVE + noise(), noise() + np.where(RUN == 0, 9.0 * WAVE, 0.0))
     assert left.size_after.interval[0] <= 1.5
     assert left.size_after.value > 2.0
     assert not at_the_floor(left)

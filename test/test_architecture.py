@@ -49,3 +49,10 @@ def test_hidden_effects_do_not_know_the_candidates():
             assert "friction.terms" not in module
             assert "discrepancy" not in module
             assert "registry" not in module
+
+
+def test_a_file_can_be_read_at_a_sitting():
+    """Median at most 120 lines, none above 300."""
+    lines = sorted(len(path.read_text().splitlines()) for path in (ROOT / "winch_friction").rglob("*.py"))
+    assert lines[len(lines) // 2] <= 120
+    assert lines[-1] <= 300

@@ -10,13 +10,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from winch_friction.commissioning.view import GroupView, RunView
+from winch_friction.commissioning.repairs import (
+    Repair,
+    displacement_times,
+    drop_times,
+    load_times,
+    motor_torque_times,
+    speed_times,
+    speeds_times,
+)
+from winch_friction.commissioning.view import RunView
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.winch.crane import Crane
-
-Repair = Callable[[RunView], RunView]
 
 UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 12.0, 6.0, 12.0  # prior costs
 
@@ -62,56 +69,6 @@ class Mistake:
     factor: float = float("nan")
 
 
-def speed_times(factor: float) -> Repair:
-    """The speed and what follows from it, times a factor."""
-    return lambda view: replace(view, speed=view.speed * factor, acceleration=view.acceleration * factor)
-
-
-def speeds_times(factor: float, *also: str) -> Repair:
-    """The speed and other channels that tell it, times a factor: what one logger writes in one unit."""
-
-    def undo(view: RunView) -> RunView:
-        rates = {name: rate * factor if name in also else rate for name, rate in view.rates.items()}
-        return replace(speed_times(factor)(view), rates=rates)
-
-    return undo
-
-
-def load_times(factor: float) -> Repair:
-    """The load times a factor."""
-
-    def undo(view: RunView) -> RunView:
-        torque = None if view.load_torque is None else view.load_torque * factor
-        return replace(view, load=view.load * factor, load_torque=torque)
-
-    return undo
-
-
-def groups_changed(change: Callable[[str, GroupView], GroupView]) -> Repair:
-    """Every motor group changed by its name."""
-    return lambda view: replace(view, groups={name: change(name, group) for name, group in view.groups.items()})
-
-
-def drop_times(factor: float, only: str = "") -> Repair:
-    """Pressures times a factor, of one group or of all."""
-
-    def change(name: str, group: GroupView) -> GroupView:
-        if only and name != only:
-            return group
-        return replace(group, drop=group.drop * factor, pressure_sum=group.pressure_sum * abs(factor))
-
-    return groups_changed(change)
-
-
-def displacement_times(factor: float, only: str = "") -> Repair:
-    """Displacements times a factor, of one group or of all."""
-
-    def change(name: str, group: GroupView) -> GroupView:
-        return group if only and name != only else replace(group, displacement=group.displacement * factor)
-
-    return groups_changed(change)
-
-
 def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
     """All mistakes without a free number that these runs can hold."""
     groups = tuple(dict.fromkeys(name for view in views for name in view.groups))
@@ -143,7 +100,7 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
         words = "drum_speed (or its gear ratio) holds the motor's speed"
         yield Mistake("unit", "motor_speed", words, UNIT + 1.0, speed_times(1.0 / ratio), 1.0 / ratio)
     if crane.drive.channels:
-        yield from each(crane.drive.channels[0], THOUSANDS, _motor_torque_times)
+        yield from each(crane.drive.channels[0], THOUSANDS, motor_torque_times)
     if not groups:
         return
     yield from each("pressure", PRESSURE_UNITS, drop_times)
@@ -155,10 +112,6 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
             for factor, words in table:
                 said = f"{name}.{channel} holds {words}"
                 yield Mistake("unit", f"{name}.{channel}", said, UNIT + 2.0, undo(factor, name), factor)
-
-
-def _motor_torque_times(factor: float) -> Repair:
-    return lambda v: v if v.motor_torque is None else replace(v, motor_torque=v.motor_torque * factor)
 
 
 def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
@@ -187,7 +140,7 @@ def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> I
         yield Mistake("sign", "heave_velocity", said, SIGN, _heave_times(-1.0), -1.0)
     for channel in crane.drive.channels:
         said = f"the sign of {channel} is flipped: positive must hold the load"
-        yield Mistake("sign", channel, said, SIGN, _motor_torque_times(-1.0), -1.0)
+        yield Mistake("sign", channel, said, SIGN, motor_torque_times(-1.0), -1.0)
     if groups:
         said = "the ports are swapped: pressure_a must be the port that holds the load"
         yield Mistake("ports", "pressure", said, PORTS, drop_times(-1.0), -1.0)

@@ -290,13 +290,11 @@ class WinchNode(Guarded, LifecycleNode):
 
     def _report(self, parts: Sequence[Health]) -> None:
         name = self.get_fully_qualified_name().lstrip("/")
-        statuses = [
-            diagnostic_status(f"{name}: {each.part}", self.crane.name, each.level, each.summary, each.values)
-            for each in parts
-        ]
+        crane = self.crane.name
+        statuses = [diagnostic_status(f"{name}: {p.part}", crane, p.level, p.summary, p.values) for p in parts]
         self._diagnostics.publish(diagnostic_array(self.get_clock().now().to_msg(), statuses))
 
 
 def _threshold() -> JumpThreshold:
-    forward, backward = Duration(nanoseconds=int(FORWARD_JUMP * 1e9)), Duration(nanoseconds=-1)
-    return JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
+    forward = Duration(nanoseconds=int(FORWARD_JUMP * 1e9))
+    return JumpThreshold(min_forward=forward, min_backward=Duration(nanoseconds=-1), on_clock_change=True)

@@ -196,11 +196,11 @@ def report(studies: dict[str, Study], extra: str, command: str, measured: str, s
 
 
 INTRODUCTION = """The same crane, controller gains, sea and noise in every row; only the feedforward differs. Seas:
-regular of 0.5 m / 8 s and 1.5 m / 10 s amplitude, JONSWAP of Hs 0.3, 1 and 3 m (crane tip response 0.6); loads 15,
-55 and 100 t; {seeds} seed(s) per irregular sea and up to 3 per regular one, where only the noise differs, used
-nowhere else; every case weighs the same. The learned model is the estimator's after 20 wave periods on another
-realisation of the same sea, run beside the seed's feedforward. Reversal window: -0.2 ... +1 s around each sign
-change of the reference."""
+regular of 0.5 m / 8 s and 1.5 m / 10 s amplitude, JONSWAP of Hs 0.3, 1 and 3 m (crane tip response 0.6), and a ship's
+measured heave; loads 15, 55 and 100 t; {seeds} seed(s) per irregular sea and up to 3 per regular one, where only the
+noise differs, used nowhere else; every case weighs the same. The learned model is the estimator's after 20 wave periods
+on another realisation of the same sea, run beside the seed's feedforward. Reversal window: -0.2 ... +1 s around each
+sign change of the reference."""
 
 SYSTEM_ONLY = """Here the motors' friction is right in the seed, and only gears, drum and wire have 30 % more: 6 to
 14 % of the whole. The seed at 0.9 is then little worse than the truth at

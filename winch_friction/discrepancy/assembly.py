@@ -1,7 +1,7 @@
 """From a search to the result: the repaired model, the proof on locked runs, regions and the next experiment."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from winch_friction.discrepancy.next_experiment import NextExperiment, plan_expe
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import compare, nothing_compared, read_back
-from winch_friction.discrepancy.repair import Repair, draft, polished
+from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.ties import Company, company, known_combination
@@ -67,7 +67,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
         depends=_named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
-        untestable=search.untestable, model=repaired.model, seed_model=given.model,
+        untestable=search.untestable, model=_concluded(repaired.model, given.model, kind), seed_model=given.model,
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
         notes=(
@@ -143,6 +143,13 @@ def _provenance(train: Sequence[str], verdict: Verdict, options: GapOptions) -> 
     return {
         "repaired_by": "winch-friction gap", "verdict": verdict.kind, "trained_on": list(train), "seed": options.seed,
     }  # fmt: skip
+
+
+def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> FrictionModel:
+    """The model under the verdict that stands; where nothing was put right it is called refitted."""
+    changed = model.term_names != given.term_names or model.corrections != given.corrections
+    name = model.name if changed else model.name.removesuffix(REPAIRED) + REFITTED
+    return replace(model, name=name, provenance={**model.provenance, "verdict": verdict})
 
 
 def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:

@@ -30,6 +30,8 @@ from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
+REPAIRED, REFITTED = "_repaired", "_refitted"  # behind the name of the given model
+
 
 @dataclass(frozen=True)
 class Repair:
@@ -189,7 +191,7 @@ def _model_of(
     names = {p.name for p in declared}
     bounds = {name: each for name, each in {**own.bare, **seed.bounds}.items() if name in names}
     model = FrictionModel(
-        f"{seed.name.removesuffix('_repaired')}_repaired", tuple(own.terms), tuple(values),
+        seed.name.removesuffix(REFITTED).removesuffix(REPAIRED) + REPAIRED, tuple(own.terms), tuple(values),
         np.diag(deviations) ** 2 if values else None,
         bounds, seed.constants, {**seed.provenance, **provenance}, tuple(own.corrections), seed.crane or crane.name,
     )  # fmt: skip

@@ -79,7 +79,9 @@ def try_seed(search: Search, rng: np.random.Generator) -> SeedTrial:
     if _something_else(wide, explanation, search, rng):
         return SeedTrial()  # it comes first
     named = _cost(search.cross, search.selection.final, count)
-    allowed = LIMITS.effect_price if np.abs(shift).max() <= LIMITS.ordinary_shift else 0.0
+    # a careless seed is off in several parameters, and in none by much; one alone is what an effect does
+    careless = (np.abs(shift) > LIMITS.prior_bound).sum() > 1 and np.abs(shift).max() <= LIMITS.ordinary_shift
+    allowed = LIMITS.effect_price if careless else 0.0
     if search.selection.final.slots and _inflated(loss, shift) > named + allowed:
         return SeedTrial()
     if not surprising:

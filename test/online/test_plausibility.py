@@ -97,6 +97,20 @@ def test_nothing_pushes_against_the_motion_for_long(
     check_invariants(fed)
 
 
+@pytest.mark.parametrize("left", [0.08, 0.1, 0.12])
+def test_what_is_left_against_the_motion_goes_at_once_when_the_speed_falls_silent(left: float) -> None:
+    """A wrong command for a moment, then nothing any more: what it left had faded out over the whole ramp time."""
+    fed = Fed(config=CompensatorConfig(ramp_time=1.0))
+    fed.run(1.4)
+    fed.run(left, lambda sample: setattr(sample, "speed_reference", -sample.speed_reference))
+    assert fed.torque * swell(fed.now).motor_speed < 0.0
+    began = fed.now
+    while fed.torque * swell(fed.now).motor_speed < 0.0 and fed.now - began < 1.0:
+        fed.wait(PERIOD)
+    assert fed.now - began <= fed.options.watchdog_timeout + 0.1 + PERIOD
+    check_invariants(fed)
+
+
 def _slower(sample: Sample, size: float) -> None:
     sample.motor_speed *= size
     sample.speed_reference *= size

@@ -22,7 +22,7 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.physics.winch.ranges import ChannelRanges
 
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
-AGAINST_SPEED, AGAINST_FADE = 5.0, 0.1  # rad/s, s: what turns faster against a fading target lets it go in this time
+AGAINST_SPEED, AGAINST_FADE = 5.0, 0.1  # rad/s, s: what fades against a faster motion is let go in this time
 
 
 @dataclass(slots=True)
@@ -168,8 +168,10 @@ class FeedforwardCompensator:
             self._predictor.reset()
             self._turn(sample)
         self._counts["stale"] += not usable
-        target = self._target
-        self.output.follow(target.torque, target.envelope, usable, self._enabled, target.reversal)
+        target, reversal = self._target, self._target.reversal
+        if self.output.torque * sample.motor_speed < 0.0 and abs(sample.motor_speed) > AGAINST_SPEED:
+            reversal = min(reversal, AGAINST_FADE)
+        self.output.follow(target.torque, target.envelope, usable, self._enabled, reversal)
         self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
 
@@ -251,14 +253,11 @@ class FeedforwardCompensator:
             self.output.restrict(max(self.config.envelope, 1.0) * size / self.config.reversal_time)
 
     def _turn(self, sample: Sample) -> None:
-        """A target without its inputs still turns with the motion, as long as the speed is there; against what is
-        measured it goes quickly."""
+        """A target without its inputs still turns with the motion, as long as the speed is there."""
         target, speed = self._target, self._speed(sample)
         if self._ranges.plausible("motor_speed", speed):
             target.torque = min(target.size, target.envelope) * smooth_sign(speed, self.config.reversal_speed)
             target.reversal = math.inf
-        if target.torque * sample.motor_speed < 0.0 and abs(sample.motor_speed) > AGAINST_SPEED:
-            target.reversal = min(target.reversal, AGAINST_FADE)
 
     def _without_time(self) -> Feedforward:
         """A sample that cannot be placed in time changes nothing but the counts."""

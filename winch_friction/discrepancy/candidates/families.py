@@ -24,6 +24,7 @@ TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may 
 STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
+LOADS_APART = 1.3  # times the least load, for a law of the load to have a shape
 POWERS = (0.5, 1.5, 2.0, 3.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL = ("oil_temperature",)
@@ -58,10 +59,17 @@ def literature() -> list[Candidate]:
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=no_load),
         # under its tension the rope sinks into the layer below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
-            needs=("hook_load",), blind=no_load),
+            needs=("hook_load",), blind=_one_load),
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
             blind=no_load),
     ]  # fmt: skip
+
+
+def _one_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    loads = [float(np.median(run.load)) for run in runs]
+    if max(loads) > LOADS_APART * min(loads):
+        return None
+    return "runs with different loads", "at one load what depends on it is a constant"
 
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:

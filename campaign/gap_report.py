@@ -7,9 +7,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from campaign.gap_cases import Counts
+from campaign.gap_cases import Counts, all_cases
 from campaign.gap_report_drawn import drawn_worlds
-from campaign.rig import OUTSIDE
 
 Row = dict[str, Any]
 COST = Path("out/campaign_gap/cost.json")  # written by campaign.gap_cost
@@ -58,21 +57,12 @@ def _head(rows: Sequence[Row], failed: Sequence[Row], counts: Counts, note: str)
             "",
             "* Command: `make campaign-gap` (`python -m campaign.gap`; resumable)",
             f"* Commit: {', '.join(f'{name} ({n} data sets)' for name, n in commits.items())}",
-            f"* Data sets: {len(rows)} of {_planned(counts)} planned"
+            f"* Data sets: {len(rows)} of {len(all_cases(counts, 0))} planned"
             f" ({', '.join(f'{n} {k}' for k, n in kinds.items())}), seeds"
             f" {min(seeds, default=0)}–{max(seeds, default=0)}, flavours in turn",
             f"* Ended with an error: {len(failed)}",
             *([f"* {note}"] if note else []),
         ]
-    )
-
-
-def _planned(c: Counts) -> int:
-    return (
-        c.nulls
-        + 27 * (c.seeds + c.small_seeds + c.tiny_seeds)
-        + c.pairs * c.pair_seeds
-        + len(OUTSIDE) * c.outside_seeds
     )
 
 

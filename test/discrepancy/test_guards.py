@@ -1,10 +1,11 @@
 """The guards of the workflow, each on the smallest data that can break it: no winch, no simulator."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.assembly import Trial
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
@@ -12,9 +13,10 @@ from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.selection import _significant, does_as_well, select
+from winch_friction.discrepancy.engine.selection import Finding, Selection, _significant, does_as_well, select
 from winch_friction.discrepancy.proof import adds, at_the_floor, nothing_compared, prove, worse_runs
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, decide
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.workflow import _each_proven
 
 RUNS, BLOCKS = 8, 300
 SPEED = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
@@ -229,6 +231,30 @@ def test_every_further_name_must_take_something_off_the_locked_gap(more, worth):
     fewer = side(3.0 * WAVE + noise(), more * WAVE + noise(1))
     full = replace(side(3.0 * WAVE + noise(), noise(1)), least_noise=0.1)
     assert adds(fewer, full, np.random.default_rng(0)) is worth
+
+
+@dataclass(frozen=True)
+class _Search:
+    cross: CrossFit
+    selection: Selection
+    verdict: Verdict = Verdict(MISSING)
+
+
+@pytest.mark.parametrize(("more", "stay"), [(0.0, ["wave"]), (0.8, ["wave", "other"])])
+def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, stay):
+    cross = crossfit(2.0 * WAVE + OTHER + noise())
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(SLOTS), found))
+
+    def trial_of(own):
+        """Without the first name the locked gap is large, without the second by `more`."""
+        names = own.selection.final.names
+        left = 3.0 * WAVE * ("wave" not in names) + more * OTHER * ("other" not in names) + noise(1)
+        return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
+
+    proven = _each_proven(trial_of(search), trial_of, np.random.default_rng(0))
+    assert list(proven.search.selection.final.names) == stay
+    assert [each.slot.name for each in proven.search.selection.found] == stay
 
 
 def test_nothing_compared_has_no_size():

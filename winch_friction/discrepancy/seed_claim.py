@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import keeps_something, steady_excess
+from winch_friction.discrepancy.verdict import keeps_something, steady_excess, telling
 from winch_friction.physics.friction import FrictionModel
 
 # exact ties of the equations (docs/physics.md): what a parameter's shift would pass for
@@ -154,8 +154,7 @@ def _something_else(wide: CrossFit, freed: Explanation, search: Search, rng: np.
     base, final = search.selection.base, search.selection.final
     if final.slots and _excess(wide, freed) <= LIMITS.as_much * _excess(search.cross, final):
         return False
-    left = dependences(wide, wide.remainder(freed), rng)
-    depends = [d for d in left if d.p_value <= LIMITS.remainder_p and d.size >= wide.problem.matters]
+    depends = telling(wide, dependences(wide, wide.remainder(freed), rng))
     excess = max(_excess(wide, freed), steady_excess(wide, freed))
     return keeps_something(excess, max(_excess(wide, base), 1e-9), depends)
 

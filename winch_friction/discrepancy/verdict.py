@@ -26,7 +26,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     """`left`: what signals predict of the final explanation's remainder; `rippled`: a ripple may be part of it."""
     before, excess = steady_excess(cross, selection.base), steady_excess(cross, selection.final)
     before = max(before, 1e-9)
-    depends = [d for d in left if d.p_value <= LIMITS.remainder_p and d.size >= cross.problem.matters]
+    depends = telling(cross, left)
     if not selection.found:
         strong = any(d.share >= LIMITS.least_unexplained for d in depends) or (
             before > LIMITS.never_noise and not rippled
@@ -49,6 +49,11 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
         names = ", ".join(f.slot.name for f in selection.found)
         return Verdict(UNEXPLAINED, f"{names} leaves {100 * excess / before:.0f} % of the gap above the noise floor")
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
+
+
+def telling(cross: CrossFit, left: Sequence[Dependence]) -> list[Dependence]:
+    """Of what signals predict of a remainder that which is sure and large enough to matter to anybody."""
+    return [d for d in left if d.p_value <= LIMITS.remainder_p and d.size >= cross.problem.matters]
 
 
 def keeps_something(excess: float, before: float, depends: Sequence[Dependence]) -> bool:

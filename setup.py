@@ -58,6 +58,7 @@ EXTRAS = {
         "rich>=13",
     ],
     "fmu": ["fmpy>=0.3.20"],
+    "foxglove": ["foxglove-sdk>=0.30,<1"],
     "docs": ["sphinx>=8", "furo>=2024.8", "myst-nb>=1.2"],
     "test": [
         "pytest>=7.4",
@@ -71,6 +72,7 @@ EXTRAS = {
         "flask-cors>=5",
         "import-linter>=2",
         "mcap-ros2-support>=0.5",
+        "websockets>=12",
         "jsonschema>=4",
         "playwright>=1.49",
         "ruff==0.17.6",
@@ -80,7 +82,7 @@ EXTRAS = {
 }
 EXTRAS["all"] = [
     requirement
-    for extra in ("desk", "import", "fmu", "xarray", "ros", "fleet", "docs", "test")
+    for extra in ("desk", "import", "fmu", "foxglove", "xarray", "ros", "fleet", "docs", "test")
     for requirement in EXTRAS[extra]
 ]
 

@@ -68,6 +68,21 @@ def test_the_foxglove_layout_names_topics_and_fields_that_exist(topics):
         assert topic in topics
 
 
+def test_the_servers_layout_names_channels_and_fields_that_its_schemas_hold():
+    from winch_friction.records.foxglove_channels import OWN_CHANNELS
+
+    content = (LAYOUTS / "foxglove_server.json").read_text()
+    panels = json.loads(content)["configById"]
+    assert set(re.findall(r'"(\w+![a-z]+)"', json.dumps(json.loads(content)["layout"]))) == set(panels)
+    paths = re.findall(r'"(?:value|topicPath)": "(/[^"]+)"', content)
+    assert len(paths) >= 8
+    for path in paths:
+        topic, *fields = re.sub(r"\[\d+\]", "", path).split(".")
+        schema = OWN_CHANNELS[topic]
+        for field in fields:
+            schema = schema.get("items", schema)["properties"][field]
+
+
 @pytest.mark.ros
 def test_the_plotjuggler_layout_names_topics_fields_and_parameters_that_exist(topics):
     import winch_friction as wf

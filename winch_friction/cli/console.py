@@ -21,6 +21,7 @@ from rich.progress import (
 from rich.table import Table
 
 from winch_friction.cli.modes import Modes
+from winch_friction.records.plain import finite as finite
 
 T = TypeVar("T")
 PIPED_WIDTH = 140  # columns where nobody says: a file or a pipe has no edge, but people read it later
@@ -105,14 +106,3 @@ def _plain(value: Any) -> str:
 
 def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else escape(str(value))  # [s] is a unit, no markup
-
-
-def finite(value: Any) -> Any:
-    """Plain content with null for what JSON has no number for: not-a-number and infinity."""
-    if isinstance(value, dict):
-        return {str(key): finite(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [finite(each) for each in value]
-    if hasattr(value, "tolist"):
-        return finite(value.tolist())
-    return None if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))) else value

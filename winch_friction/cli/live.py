@@ -1,5 +1,6 @@
-"""Frames of telemetry for `watch` and `dashboard`: from running nodes, or from a bag at its own pace."""
+"""What `watch`, `dashboard` and `foxglove` show: from running nodes, or from a bag at its own pace."""
 
+import base64
 import contextlib
 import importlib.util
 import json
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.errors import InputError
+from winch_friction.records.raw import RawMessage
 
 BAG_PERIOD = 0.2  # s of the bag per frame
 
@@ -22,11 +24,21 @@ def frames(bag: Path | None, namespace: str, rate: float) -> Iterator[dict[str, 
 
 def live_frames(namespace: str) -> Iterator[dict[str, Any]]:
     """Frames of the running nodes, from a listener in a process of its own; ends with it."""
+    return _listened(namespace)
+
+
+def live_messages(namespace: str) -> Iterator[RawMessage]:
+    """Every message of the winch's topics and /diagnostics, serialised as it came, from the same listener."""
+    for line in _listened(namespace, "--raw"):
+        yield RawMessage(line["topic"], line["type"], line["receipt"], base64.b64decode(line["data"]))
+
+
+def _listened(namespace: str, *options: str) -> Iterator[dict[str, Any]]:
     if importlib.util.find_spec("rclpy") is None:
         raise InputError(
             "running nodes are heard with rclpy: source ROS 2, or pip install 'winch_friction[ros]'; or give --bag"
         )
-    command = [sys.executable, "-m", "winch_friction.nodes.telemetry", "--namespace", namespace]
+    command = [sys.executable, "-m", "winch_friction.nodes.telemetry", "--namespace", namespace, *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
         try:
             for line in listener.stdout or ():
@@ -38,22 +50,12 @@ def live_frames(namespace: str) -> Iterator[dict[str, Any]]:
 
 def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
     """Frames of a bag, one per 0.2 s of its time."""
-    from rosbags.highlevel import AnyReader
-    from rosbags.typesys import Stores, get_typestore
-
     from winch_friction.records.telemetry import TOPICS, Telemetry
 
-    if not path.exists():
-        raise InputError(f"{path}: no such bag")
     prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
     names = {topic if topic.startswith("/") else prefix + topic: topic for topic in TOPICS}
     telemetry = Telemetry()
-    try:
-        reader: Any = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
-    except Exception as error:  # rosbags raises its own kinds for what is no bag
-        raise InputError(f"{path}: not a bag that can be read ({error})") from error
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(reader)
+    with _opened(path) as reader:
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:
             raise InputError(f"{path}: none of the winch's topics is in it ({', '.join(names)})")
@@ -66,3 +68,38 @@ def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, An
                 last = stamp
                 yield telemetry.frame()
         yield telemetry.frame()
+
+
+def bag_topics(path: Path) -> dict[str, str]:
+    """Topics of a bag with their types."""
+    with _opened(path) as reader:
+        return {each.topic: each.msgtype for each in reader.connections}
+
+
+def bag_messages(path: Path, rate: float) -> Iterator[RawMessage]:
+    """Every message of a bag, serialised as it is there, at its own pace (`rate` times as fast; 0: at once)."""
+    with _opened(path) as reader:
+        began, first = time.monotonic(), None
+        for connection, stamp, raw in reader.messages():
+            first = stamp if first is None else first
+            if rate > 0.0:
+                time.sleep(max(0.0, began + (stamp - first) * 1e-9 / rate - time.monotonic()))
+            yield RawMessage(connection.topic, connection.msgtype, stamp, bytes(raw))
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    if not path.exists():
+        raise InputError(f"{path}: no such bag")
+    try:
+        reader: Any = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
+        reader.open()
+    except Exception as error:  # rosbags raises its own kinds for what is no bag
+        raise InputError(f"{path}: not a bag that can be read ({error})") from error
+    try:
+        yield reader
+    finally:
+        reader.close()

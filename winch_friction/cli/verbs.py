@@ -48,6 +48,7 @@ VERBS = (
     Verb("load", "load", "A repaired model into the running compensator."),
     Verb("watch", "watch", "The running nodes in the terminal: state, torque, estimates, rates, faults."),
     Verb("dashboard", "dashboard", "The running nodes, or a bag, as a live page on this machine."),
+    Verb("foxglove", "foxglove", "The running nodes, or a bag, for the Foxglove app; or as an MCAP file."),
     Verb("terms", "terms", "The declared friction terms: equations, parameters, sources."),
     Verb("import", "import_", "Logs of any origin become run files, by a map that is proposed and read."),
     Verb("convert", "convert", "Run files from one format to another; the EMPS benchmark to a run."),

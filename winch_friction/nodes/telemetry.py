@@ -1,33 +1,40 @@
-"""Listens to the nodes and prints frames as JSON lines: what `watch` and `dashboard` read from a process of its own."""
+"""Listens to the nodes and prints JSON lines, for `watch`, `dashboard` and `foxglove`, which read from a process of
+its own: frames, or with `--raw` every message of the winch's topics as it came."""
 
 import argparse
+import base64
 import json
 import sys
 from functools import partial
+from typing import Any
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 
 from winch_friction.nodes.messages import message_type
 from winch_friction.records.telemetry import TOPICS, Telemetry
+from winch_friction.records.topics import FLOAT64, FLUID_PRESSURE, JOINT_STATE, TEMPERATURE
 
 PERIOD = 0.2  # s between frames
+LOOK_AROUND = 1.0  # s between looks at which topics there are
+BATCH = 0.05  # s for which raw messages are gathered
+SHOWN = {FLOAT64, FLUID_PRESSURE, JOINT_STATE, TEMPERATURE, TOPICS["/diagnostics"]}
 
 
 def main() -> int:
-    """Print a frame every 0.2 s until the reader goes away."""
+    """Print until the reader goes away."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--namespace", default="")
+    parser.add_argument("--raw", action="store_true")
     options = parser.parse_args()
     rclpy.init(args=[])
     node = rclpy.create_node("winch_friction_telemetry", namespace=options.namespace, start_parameter_services=False)
-    telemetry = Telemetry()
-    for topic, type_name in TOPICS.items():
-        node.create_subscription(
-            message_type(type_name), topic, partial(telemetry.take, topic), qos_profile_sensor_data
-        )
-    node.create_timer(PERIOD, lambda: print(json.dumps(telemetry.frame()), flush=True))
+    if options.raw:
+        Raw(node)
+    else:
+        _frames(node)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
@@ -38,6 +45,45 @@ def main() -> int:
         node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+def _frames(node: Node) -> None:
+    telemetry = Telemetry()
+    for topic, type_name in TOPICS.items():
+        node.create_subscription(
+            message_type(type_name), topic, partial(telemetry.take, topic), qos_profile_sensor_data
+        )
+    node.create_timer(PERIOD, lambda: print(json.dumps(telemetry.frame()), flush=True))
+
+
+class Raw:
+    """Every message of the topics below the winch's namespace, and /diagnostics, as JSON lines."""
+
+    def __init__(self, node: Node) -> None:
+        self._node, self._heard, self._lines = node, set[str](), list[str]()
+        self._prefix = "/" if node.get_namespace() == "/" else f"{node.get_namespace()}/"
+        self._look_around()
+        node.create_timer(LOOK_AROUND, self._look_around)
+        node.create_timer(BATCH, self._print)
+
+    def _look_around(self) -> None:
+        for topic, types in self._node.get_topic_names_and_types():
+            ours = topic == "/diagnostics" or topic.startswith(self._prefix)
+            if ours and topic not in self._heard and types[0] in SHOWN:
+                self._heard.add(topic)
+                take = partial(self._take, topic, types[0])
+                kind = message_type(types[0])
+                self._node.create_subscription(kind, topic, take, qos_profile_sensor_data, raw=True)
+
+    def _take(self, topic: str, type_name: str, data: Any) -> None:
+        receipt = self._node.get_clock().now().nanoseconds
+        content = base64.b64encode(bytes(data)).decode()
+        self._lines.append(json.dumps({"topic": topic, "type": type_name, "receipt": receipt, "data": content}))
+
+    def _print(self) -> None:
+        if self._lines:
+            print("\n".join(self._lines), flush=True)
+            self._lines.clear()
 
 
 if __name__ == "__main__":

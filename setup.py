@@ -78,6 +78,12 @@ EXTRAS = {
         "ruff==0.17.6",
         "mypy==2.4.1",
         "colcon-common-extensions>=0.3",
+        "ros-ament-flake8>=0.17.3",  # these two do not say themselves what they need: the next two
+        "ros-ament-pep257>=0.17.3",
+        "flake8>=7",
+        "pydocstyle>=6.3",
+        "ament-xmllint>=0.14.2",
+        "catkin-pkg>=1",
     ],
 }
 EXTRAS["all"] = [

@@ -12,7 +12,7 @@ from winch_friction.physics.winch.crane import Crane
 
 
 def read_run(path: str | Path, crane: Crane | None = None, **bag_options: Any) -> Run:
-    """A run in SI from .csv, .parquet, or a rosbag2 (folder, .mcap, .db3).
+    r"""A run in SI from .csv, .parquet, or a rosbag2 (folder, .mcap, .db3).
 
     The crane is needed where the file speaks of the drum or of displacement fractions. What was noticed while reading
     is in `run.warnings`. Raises `InputError` in one line with file, row and column.
@@ -21,7 +21,7 @@ def read_run(path: str | Path, crane: Crane | None = None, **bag_options: Any) -
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = f"{folder}/test.csv"
     ...     header = "time [s],motor_speed [rpm],motor_torque [N*m]"
-    ...     _ = open(path, "w").write(header + "\\n0,60,5\\n0.1,60,5\\n0.2,60,6\\n")
+    ...     _ = open(path, "w").write(header + "\n0,60,5\n0.1,60,5\n0.2,60,6\n")
     ...     run = wf.read_run(path, wf.load_crane("emps"))
     >>> run["motor_speed"].round(3)
     array([6.283, 6.283, 6.283])

@@ -40,7 +40,8 @@ _load = sp.Abs(T_d) / LOAD_SCALE + _tiny
 
 
 def _system(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], source: str, **more: object) -> Term:
-    return register(Term(name, equation, parameters, Scope.SYSTEM, source, "gear and drum", **more))  # type: ignore[arg-type]
+    term = Term(name, equation, parameters, Scope.SYSTEM, source, "gear and drum", **more)  # type: ignore[arg-type]
+    return register(term)
 
 
 stribeck_gauss = _system(

@@ -1,6 +1,7 @@
 """The estimator's parts, each against what it must be by itself."""
 
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy.linalg import expm
 
 from winch_friction.estimation import EstimatorConfig
 from winch_friction.estimation.answers import ParameterStatus
+from winch_friction.estimation.compiled_filter import CompiledFilter
 from winch_friction.estimation.dynamics import (
     DISTURBANCE,
     ENCODER,
@@ -21,6 +23,7 @@ from winch_friction.estimation.dynamics import (
     noise_variances,
     wire_step,
 )
+from winch_friction.estimation.estimator import filter_class
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import mean_direction
 from winch_friction.estimation.parameters import ScaledParameters
@@ -30,11 +33,23 @@ from winch_friction.physics.friction.seed_range import seed_range
 SENSORS = (0.01, 1e5)
 
 
-def some_filter(model, config=None, seed=1):
+@pytest.fixture(params=[StateFilter, CompiledFilter])
+def kind(request):
+    """The filter in NumPy and as compiled loops: what holds for one holds for the other."""
+    return request.param
+
+
+def unbounded(each):
+    """The range of the parameters has tests of its own."""
+    each._parameters.contains = lambda phi: True
+    each._parameters.lower[:], each._parameters.upper[:] = -np.inf, np.inf
+
+
+def some_filter(model, config=None, seed=1, kind=StateFilter):
     """A filter in some state, and a step from there."""
     config = config or EstimatorConfig()
     rng = np.random.default_rng(seed)
-    each = StateFilter(config, ScaledParameters(model, config), SENSORS)
+    each = kind(config, ScaledParameters(model, config), SENSORS)
     root = rng.normal(size=(each.size, each.size)) * 0.1
     each.state = 0.1 * rng.normal(size=(each.size, 1)), root @ root.T
     gradient = (rng.normal(size=len(model.values)) / model.std).tolist()
@@ -91,8 +106,8 @@ def test_the_matrix_is_the_jacobian_of_the_propagation(seed):
 
 
 @pytest.mark.parametrize("learning", [True, False])
-def test_the_states_move_as_the_equations_say(seed, learning):
-    each, step = some_filter(seed)
+def test_the_states_move_as_the_equations_say(kind, seed, learning):
+    each, step = some_filter(seed, kind=kind)
     x = each.x[:, 0].copy()
     each.predict_step(step, learning, False)
     assert each._ahead_carried[-1] == pytest.approx(moved(x, step, EstimatorConfig()), rel=1e-12, abs=1e-12)
@@ -108,10 +123,10 @@ def moved(x, step, config):
     return out
 
 
-def test_a_step_is_filterpys_predict_and_update(seed):
+def test_a_step_is_filterpys_predict_and_update(kind, seed):
     """filterpy's extended Kalman filter with the same F, Q, H and R, over a hundred steps."""
     config = EstimatorConfig(forgetting_time=1e12)  # the fading of the parameters' covariance has a test of its own
-    each, step = some_filter(seed, config)
+    each, step = some_filter(seed, config, kind=kind)
     size = each.size
     plain, row = ExtendedKalmanFilter(size, 1), np.zeros((1, size))
     row[0, [SPEED, ENCODER_CHANGE]] = 1.0
@@ -130,7 +145,7 @@ def test_a_step_is_filterpys_predict_and_update(seed):
         plain.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=each.speed_variance)
         each.predict_step(step, True, False)
         innovation, variance = each.innovation(measured)
-        each._parameters.contains = lambda phi: True  # the range has a test of its own
+        unbounded(each)
         each.correct(innovation, variance, True)
         scale = np.sqrt(np.outer(np.diag(plain.P), np.diag(plain.P))) + 1e-12
         assert np.abs((each.P - plain.P) / scale).max() < 1e-9
@@ -138,8 +153,8 @@ def test_a_step_is_filterpys_predict_and_update(seed):
 
 
 @pytest.mark.parametrize("learning", [True, False])
-def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(seed, learning):
-    each, step = some_filter(seed)
+def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(kind, seed, learning):
+    each, step = some_filter(seed, kind=kind)
     each.predict_step(step, learning, False)
     ahead, x = each._ahead_P.copy(), each._ahead_carried[-1].copy()
     innovation, variance = each.innovation(0.7)
@@ -150,7 +165,7 @@ def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(s
     gain[first:] = 0.0
     left = np.eye(each.size) - np.outer(gain, row)
     joseph = left @ ahead @ left.T + each.speed_variance * np.outer(gain, gain)
-    each._parameters.contains = lambda phi: True
+    unbounded(each)
     each.correct(innovation, variance, learning)
     assert np.allclose(each.P, joseph, rtol=1e-9, atol=1e-12 * np.abs(joseph).max())
     assert np.array_equal(each.x[first:, 0], x[first:])
@@ -158,14 +173,14 @@ def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(s
     assert np.linalg.eigvalsh(each.P).min() > -1e-9
 
 
-def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(seed):
+def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(kind, seed):
     config = EstimatorConfig(forgetting_time=1e12)
-    wrong, right = some_filter(seed, config)[0], some_filter(seed, config)[0]
+    wrong, right = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
     error = np.array([0.004, 3e4])
     rng = np.random.default_rng(4)
     for each in (wrong, right):
-        each._parameters.contains = lambda phi: True
-    _, step = some_filter(seed)
+        unbounded(each)
+    _, step = some_filter(seed, kind=kind)
     for k in range(200):
         by_sensors = (-600.0 * rng.normal(), -1e-3)
         step = step._replace(torque=float(rng.normal(scale=50.0)), by_sensors=by_sensors)
@@ -180,15 +195,15 @@ def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(seed):
     assert wrong.considered_covariance - wrong.phi_covariance == pytest.approx(root.T @ root, rel=1e-6, abs=1e-12)
 
 
-def test_another_prior_is_as_if_it_had_been_there_from_the_start(seed):
+def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
     """Two filters on the same data: one begins with the wide prior, the other takes it later."""
     config = EstimatorConfig(forgetting_time=1e12)
-    early, late = some_filter(seed, config)[0], some_filter(seed, config)[0]
-    _, step = some_filter(seed)
+    early, late = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
+    _, step = some_filter(seed, kind=kind)
     rng = np.random.default_rng(6)
     start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
     for each in (early, late):
-        each._parameters.contains = lambda phi: True
+        unbounded(each)
         covariance = start.copy()
         covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each._parameters.prior
         each.state = np.zeros((each.size, 1)), covariance
@@ -208,8 +223,45 @@ def test_another_prior_is_as_if_it_had_been_there_from_the_start(seed):
     assert late.sensitivity == pytest.approx(early.sensitivity, rel=1e-6, abs=1e-8)
 
 
-def test_a_prediction_that_is_not_taken_in_changes_nothing(seed):
-    each, step = some_filter(seed)
+@pytest.mark.parametrize("widths", [0.3, np.inf])
+def test_the_compiled_step_is_numpys(seed, widths):
+    """Through learning and rest, fading, and the edge of the range."""
+    each, step = some_filter(seed, EstimatorConfig(forgetting_time=50.0))
+    other, _ = some_filter(seed, EstimatorConfig(forgetting_time=50.0), kind=CompiledFilter)
+    for one in (each, other):
+        parameters = one._parameters
+        parameters.lower[:], parameters.upper[:] = -widths, widths
+        parameters._lows, parameters._highs = parameters.lower.tolist(), parameters.upper.tolist()
+    rng, at_edge = np.random.default_rng(8), 0
+    for k in range(400):
+        gradient = (rng.normal(size=len(seed.values)) / seed.std).tolist()
+        step = step._replace(torque=float(rng.normal(scale=100.0)), heave=float(rng.normal()), by_parameters=gradient)
+        said = []
+        for one in (each, other):
+            one.predict_step(step, k % 5 > 0, k % 7 == 0)
+            said.append(one.innovation(0.1 * k))
+            one.correct(*said[-1], k % 5 > 0)
+            one.adapt(1.3, 0.02)
+        assert said[1] == pytest.approx(said[0], rel=1e-9)
+        at_edge += np.any(np.abs(each.phi) >= widths)
+    scale = np.sqrt(np.outer(np.diag(each.P), np.diag(each.P))) + 1e-12
+    assert np.abs((each.P - other.P) / scale).max() < 1e-9
+    assert other.x == pytest.approx(each.x, rel=1e-9, abs=1e-9)
+    assert other.sensitivity == pytest.approx(each.sensitivity, rel=1e-9, abs=1e-9)
+    assert (at_edge > 0) == np.isfinite(widths)
+
+
+def test_without_numba_the_filter_is_numpys(monkeypatch):
+    filter_class.cache_clear()
+    monkeypatch.setitem(sys.modules, "winch_friction.estimation.compiled_filter", None)
+    assert filter_class() is StateFilter
+    monkeypatch.undo()
+    filter_class.cache_clear()
+    assert filter_class() is CompiledFilter
+
+
+def test_a_prediction_that_is_not_taken_in_changes_nothing(kind, seed):
+    each, step = some_filter(seed, kind=kind)
     before = [part.tobytes() for part in each.state]
     each.predict_step(step, True, False)
     each.innovation(3.0)
@@ -243,8 +295,8 @@ def test_forgetting_goes_to_the_seed_and_never_beyond(seed):
     assert not noise.any()
 
 
-def test_forgetting_acts_while_learning_and_only_then(seed):
-    each, step = some_filter(seed, EstimatorConfig(forgetting_time=100.0))
+def test_forgetting_acts_while_learning_and_only_then(kind, seed):
+    each, step = some_filter(seed, EstimatorConfig(forgetting_time=100.0), kind=kind)
     each.state = np.zeros((each.size, 1)), np.eye(each.size) * 1e-12
     seen = step._replace(by_parameters=[0.0] * len(seed.values), by_sensors=(0.0, 0.0))
     for learning, expected in ((False, 0.0), (True, 1.0 - math.exp(-0.1))):

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 from winch_friction.estimation.answers import (
@@ -29,6 +30,16 @@ from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.physics.winch.torque_balance import sample_drive_torque
 
 NAN = math.nan
+
+
+@lru_cache(maxsize=1)
+def filter_class() -> type[StateFilter]:
+    """The compiled filter, or NumPy's without numba or a place to keep what it compiled: it takes seconds."""
+    try:
+        from winch_friction.estimation.compiled_filter import CompiledFilter
+    except (ImportError, RuntimeError, OSError):
+        return StateFilter
+    return CompiledFilter
 
 
 class FrictionEstimator:
@@ -76,7 +87,7 @@ class FrictionEstimator:
         """Back to the seed."""
         self._parameters = ScaledParameters(self.seed, self.config)
         errors = SensorErrors(self.crane, self.seed, self.config)
-        self._filter = StateFilter(self.config, self._parameters, errors.std)
+        self._filter = filter_class()(self.config, self._parameters, errors.std)
         self._friction = FrictionFunctions(self.seed)
         self._load = HangingLoad(self.crane, self.config.load_filter)
         self._intervals = Intervals(self.crane, self.config, self._load, self._friction, errors)

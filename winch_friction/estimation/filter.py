@@ -3,7 +3,7 @@
 filterpy's own predict and update take four products of whole matrices, an inverse and a dozen small arrays. Here the
 noises stand beside the states in one covariance, so that a prediction is one congruence, and the single speed that is
 measured makes the correction a change of rank one; the states and their sensitivities to sensor errors go through the
-same two products as further rows. A test holds all of it against filterpy's.
+same two products as further rows. A test holds all of it against filterpy's. `compiled_filter` does the same by loops.
 """
 
 from collections.abc import Callable, Sequence
@@ -130,6 +130,14 @@ class StateFilter(ExtendedKalmanFilter):
     # -- one step
     def predict_step(self, step: Step, learning: bool, load_known: bool) -> None:
         """Look one step ahead: P = F P F' + G W G' with the noises' variances W; parameters also fade to the prior."""
+        self._predict(step, load_known)
+        self._unfaded = self._learned_for + step.duration if learning else self._learned_for
+        if self._unfaded >= FADE_PERIOD:
+            self._ahead_P[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
+            self._unfaded = 0.0
+
+    def _predict(self, step: Step, load_known: bool) -> None:
+        """All rows one step on, without what fades."""
         matrix, acting = self._propagation.matrix, self._acting
         acting[-1, TORQUE_NOISE], acting[-1, HEAVE_NOISE] = self._propagation.take(step, self.phi)
         for k, each in enumerate(step.by_sensors):
@@ -138,10 +146,6 @@ class StateFilter(ExtendedKalmanFilter):
         self._now.dot(matrix.T, out=self._half)
         matrix.dot(self._half_of_P, out=self._ahead_P)
         self._ahead_carried[:] = self._half_carried
-        self._unfaded = self._learned_for + step.duration if learning else self._learned_for
-        if self._unfaded >= FADE_PERIOD:
-            self._ahead_P[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
-            self._unfaded = 0.0
 
     def innovation(self, measured: float) -> tuple[float, float]:
         """Difference between a measured speed and the predicted one, rad/s, and its variance.
@@ -150,15 +154,26 @@ class StateFilter(ExtendedKalmanFilter):
         shows too much, the next one shows too little. Taken as white it would hide most of what the speed says about a
         torque, so the measured speed is the sum of two states.
         """
+        speed, variance = self._see()
+        return measured - speed, variance + self.speed_variance
+
+    def _see(self) -> tuple[float, float]:
+        """The predicted measurement, and its variance without the noise of the sensor."""
         seen = np.add(self._ahead[:, SPEED], self._ahead[:, ENCODER_CHANGE], out=self._seen)
-        return measured - seen.item(-1), seen.item(SPEED) + seen.item(ENCODER_CHANGE) + self.speed_variance
+        return seen.item(-1), seen.item(SPEED) + seen.item(ENCODER_CHANGE)
 
     def correct(self, innovation: float, variance: float, learning: bool) -> None:
         """Take the prediction and its measured speed in; learned parameters stay inside their range."""
+        inside = self._take_in(innovation, variance, learning)
+        self._learned_for = self._unfaded
+        if learning and not inside:
+            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+
+    def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
+        """The prediction becomes what is; whether the learned parameters are inside their range."""
         gain, seen, size = self._seen[: self.size] / variance, self._seen, self.size
         if not learning:
             gain[self._phi] = 0.0
-        self._learned_for = self._unfaded
         # every row gives up what the measurement shows of it times the gain, x what it does not show yet; with the
         # optimal gain of the free states Joseph's form of P is that too, and P itself among the considered
         seen[-1] = -innovation
@@ -167,18 +182,17 @@ class StateFilter(ExtendedKalmanFilter):
         np.subtract(self._ahead_carried, self._change[size:], out=self._carried)
         if not learning:
             self.P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self.P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
-        if learning:
-            self._keep_sound()
+            return True
+        self._even()
+        return self._parameters.contains(self.phi)
 
-    def _keep_sound(self) -> None:
-        """Parameters inside their range; now and then without what rounding left unequal between the halves of P."""
+    def _even(self) -> None:
+        """Now and then, take away what rounding left unequal between the halves of P."""
         self._since_even += 1
         if self._since_even >= EVEN_EVERY:
             np.add(self.P, self.P.T, out=self._ahead_P)
             np.multiply(self._ahead_P, 0.5, out=self.P)
             self._since_even = 0
-        if not self._parameters.contains(self.phi):
-            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
 
     def adapt(self, nis: float, dt: float) -> None:
         """Let the noise factor follow one normalised innovation squared, `dt` s after the last."""

@@ -15,8 +15,8 @@ from typing import Any
 
 import numba
 
+from winch_friction.physics.compiling import cache_root
 from winch_friction.records.atomic import write_text
-from winch_friction.simulation.compiling import cache_root
 
 _HEADER = """from math import *
 

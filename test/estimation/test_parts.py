@@ -26,6 +26,7 @@ from winch_friction.estimation.dynamics import (
 from winch_friction.estimation.estimator import filter_class
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import mean_direction
+from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
 from winch_friction.physics.friction.seed_range import seed_range
@@ -253,10 +254,12 @@ def test_the_compiled_step_is_numpys(seed, widths):
 
 def test_without_numba_the_filter_is_numpys(monkeypatch):
     filter_class.cache_clear()
-    monkeypatch.setitem(sys.modules, "winch_friction.estimation.compiled_filter", None)
+    kernels.cache_clear()
+    monkeypatch.setitem(sys.modules, "numba", None)
     assert filter_class() is StateFilter
     monkeypatch.undo()
     filter_class.cache_clear()
+    kernels.cache_clear()
     assert filter_class() is CompiledFilter
 
 

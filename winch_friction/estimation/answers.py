@@ -98,8 +98,10 @@ class ParameterStatus:
         self.level = self._level(share)
         settle = self._config.settle_time
         self.frozen_for = min(self.frozen_for + dt, settle) if frozen else 0.0
-        moved = dt if at_limit else -dt
-        self.limit_for = min(max(self.limit_for + moved, 0.0), 2.0 * settle)
+        if at_limit:
+            self.limit_for = min(self.limit_for + dt, 2.0 * settle)
+        elif self.limit_for:
+            self.limit_for = max(self.limit_for - dt, 0.0)
 
     @property
     def text(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.dynamics import ACTING, ENCODER_CHANGE, LOAD, SPEED, Step, fading, noise_variances
 from winch_friction.estimation.filter import StateFilter
-from winch_friction.estimation.kernels import GIVEN_GRADIENT, look_ahead, take_in
+from winch_friction.estimation.kernels import GIVEN_GRADIENT, kernels
 from winch_friction.estimation.parameters import ScaledParameters
 
 
@@ -17,6 +17,7 @@ class CompiledFilter(StateFilter):
 
     def __init__(self, config: EstimatorConfig, parameters: ScaledParameters, sensors: Sequence[float] = ()) -> None:
         super().__init__(config, parameters, sensors)
+        self._kernel_ahead, self._kernel_in = kernels()
         self._scale, self._free = parameters.scale, parameters.free.astype(np.int64)
         self._wire, self._by, self._rows = np.zeros((LOAD, ACTING)), np.zeros(self.size), np.zeros((LOAD, self.size))
         # a step's numbers go to arrays through their bytes: NumPy takes three times as long to read a tuple
@@ -33,7 +34,7 @@ class CompiledFilter(StateFilter):
             self._given_at, 0, step.torque - step.friction, step.heave, fading(step.duration, self._config), *noises,
             *step.by_parameters, *step.by_sensors,
         )  # fmt: skip
-        look_ahead(
+        self._kernel_ahead(
             self._now, self._ahead, self._seen, self._wire, self._given, self._free, self._scale, self._by, self._rows
         )
 
@@ -44,7 +45,7 @@ class CompiledFilter(StateFilter):
     def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
         parameters = self._parameters
         return bool(
-            take_in(
+            self._kernel_in(
                 self._now, self._ahead, self._seen, innovation, variance, learning, parameters.lower, parameters.upper
             )
         )

@@ -10,7 +10,7 @@ shows stays where the seed has it, but no longer with the sigma of a seed that w
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.filter import StateFilter
@@ -45,7 +45,7 @@ def shift_of(phi: FloatArray, covariance: FloatArray, considered: FloatArray, pr
     by_sensors = np.einsum("ij,jk,ik->i", along, considered - covariance, along)
     squares = (along @ phi) ** 2 / (taken[told] + np.clip(by_sensors, 0.0, None))
     count = int(told.sum())
-    return Shift(float(squares.sum()), count, float(chi2.sf(squares.sum(), count)) if count else 1.0)
+    return Shift(float(squares.sum()), count, float(chdtrc(count, squares.sum())) if count else 1.0)
 
 
 class SeedConflict:

@@ -140,13 +140,13 @@ def noise_variances(step: Step, config: EstimatorConfig, factor: float, load_kno
     of its own size it would average out over many steps and pull at the load, so that such steps count for next to
     nothing.
     """
-    gone = 1.0 - fading(step.duration, config) ** 2
+    kept = fading(step.duration, config)
     return (
         factor * step.variance + step.unknown,
         factor * config.heave_noise**2,
         factor * config.payload_noise**2 * step.duration,
         0.0 if load_known else factor * config.load_noise**2 * step.duration,
-        factor * config.disturbance_std**2 * gone,
+        factor * config.disturbance_std**2 * (1.0 - kept * kept),
         factor * rounding_variance(config),
     )
 

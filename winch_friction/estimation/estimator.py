@@ -13,11 +13,13 @@ from winch_friction.estimation.answers import (
     parameter_estimates,
 )
 from winch_friction.estimation.checkpoint import Kept, filter_state, restored_state
+from winch_friction.estimation.compiled_filter import CompiledFilter
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.conflict import SeedConflict
 from winch_friction.estimation.dynamics import FIRST_PARAMETER, fresh_motion
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import FrictionFunctions, Intervals
+from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
@@ -36,7 +38,7 @@ NAN = math.nan
 def filter_class() -> type[StateFilter]:
     """The compiled filter, or NumPy's without numba or a place to keep what it compiled: it takes seconds."""
     try:
-        from winch_friction.estimation.compiled_filter import CompiledFilter
+        kernels()
     except (ImportError, RuntimeError, OSError):
         return StateFilter
     return CompiledFilter
@@ -203,16 +205,17 @@ class FrictionEstimator:
     def _estimate(
         self, sample: Sample, accepted: bool, innovation: float, variance: float, friction: float
     ) -> Estimate:
+        nis = innovation * innovation / variance if variance > 0.0 else NAN
         return Estimate(
-            time=sample.time,
-            accepted=accepted,
-            state=self._state,
-            innovation=innovation,
-            innovation_variance=variance,
-            nis=innovation * innovation / variance if variance > 0.0 else NAN,
-            speed=self._filter.speed,
-            drum_torque=self.drum_torque,
-            friction_torque=friction,
+            sample.time,
+            accepted,
+            self._state,
+            innovation,
+            variance,
+            nis,
+            self._filter.speed,
+            self.drum_torque,
+            friction,
         )
 
     # -- what is known

@@ -91,12 +91,12 @@ class StateFilter(ExtendedKalmanFilter):
     @property
     def speed(self) -> float:
         """Shaft speed, rad/s."""
-        return float(self._flat[SPEED])
+        return self._flat.item(SPEED)
 
     @property
     def load_torque(self) -> float:
         """Load torque at the shaft beyond the measured load's, N m."""
-        return float(self._flat[LOAD])
+        return self._flat.item(LOAD)
 
     @property
     def phi_covariance(self) -> FloatArray:

@@ -27,8 +27,8 @@ class FrictionFunctions:
     def at(self, x: Point, theta: Sequence[float], groups: int) -> tuple[float, Sequence[float]]:
         """Friction torque, N m, and its derivatives by the parameters."""
         functions = self._functions(groups)
-        torque, _, *gradient = functions.scalar_torque_and_gradient(x, theta, self._memory(functions))
-        return torque, gradient
+        found = functions.scalar_torque_and_gradient(x, theta, self._memory(functions))
+        return found[0], found[2:]
 
     def magnitude(self, x: Point, theta: Sequence[float], groups: int) -> float:
         """What a full direction would make of the friction, N m."""

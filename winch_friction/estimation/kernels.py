@@ -1,11 +1,13 @@
-"""A step of the filter as two loops over its own structure, compiled: importing this needs numba and a cache.
+"""A step of the filter as two loops over its own structure, for numba: `kernels` compiles them.
 
 The matrix of a step is three dense rows (shaft and wire), one thing that each further state becomes, and noises that
 enter at one place each; NumPy's products of whole matrices cost ten times as much. The covariance is calculated once
 above its diagonal and mirrored. `test_parts` holds both ways against each other and against filterpy.
 """
 
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from winch_friction.estimation.dynamics import (
     DISTURBANCE,
@@ -30,10 +32,9 @@ from winch_friction.physics.compiling import cache_root, compiled_in, source_dig
 # what a step is given as one array: what acts, the noises' variances, and behind them the gradient and the sensors
 GIVEN_TORQUE, GIVEN_HEAVE, GIVEN_FADING, GIVEN_NOISES = range(4)
 GIVEN_GRADIENT = GIVEN_NOISES + NOISES
-_DIRECTORY = str(cache_root() / f"filter_{source_digest(sorted(Path(__file__).parent.glob('*.py')))}")
 
 
-def _look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
+def look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
     """P, sensitivities and state one step on, into `ahead`; what the measured speed shows of each row, into `seen`.
 
     `now`, `ahead`, `seen` as in `filter.StateFilter`; `wire` (3, 5); `given` as named above; `free` (m,), `scale` (m,);
@@ -110,7 +111,7 @@ def _look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
         seen[row] = ahead[row, SPEED] + ahead[row, ENCODER_CHANGE]
 
 
-def _take_in(now, ahead, seen, innovation, variance, learning, lower, upper):
+def take_in(now, ahead, seen, innovation, variance, learning, lower, upper):
     """The prediction and its measured speed into `now`; whether the parameters are still within `lower`, `upper` (m,).
 
     Every row gives up what the measurement shows of it times the gain; considered parameters have none, and share with
@@ -134,11 +135,15 @@ def _take_in(now, ahead, seen, innovation, variance, learning, lower, upper):
 
 
 _VECTOR, _MATRIX = "float64[::1]", "float64[:,::1]"
-look_ahead = compiled_in(
-    _DIRECTORY, _look_ahead,
-    f"void({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, int64[::1], {_VECTOR}, {_VECTOR}, {_MATRIX})",
-)  # fmt: skip
-take_in = compiled_in(
-    _DIRECTORY, _take_in,
-    f"boolean({_MATRIX}, {_MATRIX}, {_VECTOR}, float64, float64, boolean, {_VECTOR}, {_VECTOR})",
-)  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def kernels() -> tuple[Any, Any]:
+    """`look_ahead` and `take_in`, compiled or read from the cache: seconds once, a quarter of one after that.
+
+    Raises `ImportError` without numba, `RuntimeError` or `OSError` where nothing can be kept.
+    """
+    directory = str(cache_root() / f"filter_{source_digest(sorted(Path(__file__).parent.glob('*.py')))}")
+    ahead = f"void({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, int64[::1], {_VECTOR}, {_VECTOR}, {_MATRIX})"
+    taken = f"boolean({_MATRIX}, {_MATRIX}, {_VECTOR}, float64, float64, boolean, {_VECTOR}, {_VECTOR})"
+    return compiled_in(directory, look_ahead, ahead), compiled_in(directory, take_in, taken)

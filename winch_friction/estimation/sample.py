@@ -50,7 +50,7 @@ def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:
     if not crane.drive.hydraulic:
         return abs(crane.drive.of_sample(sample, crane)) > config.saturation_torque * crane.motor_total(())
     limit = config.saturation_pressure
-    return any(max(group.pressure_a, group.pressure_b) > limit for group in sample.groups.values())
+    return any(group.pressure_a > limit or group.pressure_b > limit for group in sample.groups.values())
 
 
 def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> float:
@@ -61,7 +61,8 @@ def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> fl
     for name, group in sample.groups.items():
         full = crane.motor_count(name) * group.displacement
         by_displacement = full * (group.pressure_a - group.pressure_b) * config.displacement_noise
-        total += 2.0 * (full * config.pressure_noise) ** 2 + by_displacement**2
+        by_pressure = full * config.pressure_noise
+        total += 2.0 * by_pressure * by_pressure + by_displacement * by_displacement
     return total
 
 

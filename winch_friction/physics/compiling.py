@@ -1,6 +1,7 @@
 """Numba's cache, kept where a change of any source that a function is made of makes it a new one.
 
-Numba itself notices changes of the file that a function stands in, not of the functions that it calls.
+Numba itself notices changes of the file that a function stands in, not of the functions that it calls. It is
+imported on use: a node runs without it.
 """
 
 import hashlib
@@ -11,28 +12,28 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numba
-
-_numba_config: Any = numba.config
-
 
 def compiled_in(directory: str, function: Callable[..., Any], signature: str | None = None) -> Any:
     """`numba.njit` of a function, with its code kept in `directory`.
 
     With a `signature` it is compiled (or read) here and now. Raises `RuntimeError` where nothing can be written.
     """
+    import numba
+
     with _cache_directory(directory):
         return numba.njit(signature, cache=True, error_model="numpy")(function)
 
 
 @contextmanager
 def _cache_directory(path: str) -> Iterator[None]:
-    before = _numba_config.CACHE_DIR
-    _numba_config.CACHE_DIR = path
+    import numba
+
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, path
     try:
         yield
     finally:
-        _numba_config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def cache_root() -> Path:
@@ -43,6 +44,8 @@ def cache_root() -> Path:
 
 def source_digest(sources: Iterable[Path]) -> str:
     """A key that changes with any of these files and with numba itself."""
+    import numba
+
     digest = hashlib.sha256(numba.__version__.encode())
     for path in sources:
         digest.update(path.read_bytes())

@@ -7,6 +7,8 @@ whether it is hydraulic, which decides whether there are motor groups.
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +26,7 @@ HYDRAULIC, ELECTRIC, POWER, CURRENT = "hydraulic", "electric", "power", "current
 # says otherwise where its shaft is a slow one
 SLOWEST_FOR_POWER = 5.0
 
+_group_values = attrgetter(*GROUP_CHANNELS)
 _Read = Callable[[str], Any]  # a channel's name -> its value, or its column
 
 
@@ -50,7 +53,7 @@ class Drive:
         if not self.slowest_speed > 0.0:
             raise InputError(f"a drive's slowest_speed must be above 0 rad/s, found {self.slowest_speed:g}")
 
-    @property
+    @cached_property
     def hydraulic(self) -> bool:
         """Whether motor groups with pressures and displacements make the torque."""
         return self.kind == HYDRAULIC
@@ -68,14 +71,10 @@ class Drive:
     def of_sample(self, sample: Sample, crane: "Crane") -> float:
         """Torque of all motors at the shaft from one sample, N m; NaN where it lacks what that takes."""
         if self.hydraulic:
-            return float(
-                hydraulic_torque(
-                    [
-                        (crane.motor_count(name), group.displacement, group.pressure_a - group.pressure_b)
-                        for name, group in sample.groups.items()
-                    ]
-                )
-            )
+            total = 0.0
+            for name, group in sample.groups.items():
+                total += crane.motor_count(name) * group.displacement * (group.pressure_a - group.pressure_b)
+            return total
         speed = sample.motor_speed
         if self.kind == POWER and not abs(speed) >= self.slowest_speed:
             return math.nan
@@ -102,12 +101,14 @@ class Drive:
             return tuple(name for name in self.channels if not plausible(name, getattr(sample, name)))
         if not sample.groups:
             return ("motor groups",)
-        lost = []
-        for name, group in sample.groups.items():
-            for channel in GROUP_CHANNELS:
-                if not plausible(channel, getattr(group, channel)):
-                    lost.append(f"{name}.{channel}")
-        return tuple(lost)
+        return tuple(
+            [
+                f"{name}.{channel}"
+                for name, group in sample.groups.items()
+                for channel, value in zip(GROUP_CHANNELS, _group_values(group), strict=True)
+                if not plausible(channel, value)
+            ]
+        )
 
     def _torque(self, read: _Read, crane: "Crane", speed: Any) -> Any:
         if self.kind == POWER:

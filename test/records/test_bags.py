@@ -201,5 +201,5 @@ def test_a_bag_without_messages(shared_data):
 def test_samples_of_a_bag_match_its_run(tmp_path):
     run = make_run(rows=20)
     with open_bag(write_run(run, tmp_path / "x")) as bag:
-        samples = bag_samples(bag, InputHold(bag.topics.groups))
+        samples = list(bag_samples(bag, InputHold(bag.topics.groups)))
     assert [s.motor_speed for s in samples] == list(run["motor_speed"])

@@ -1,6 +1,7 @@
 """The friction feedforward over a recorded run: the same `step`, the same samples."""
 
-from collections.abc import Sequence
+from array import array
+from operator import attrgetter
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run
 
 COLUMNS = ("friction_torque", "pressure", "speed", "drum_torque", "fade")
+_numbers = attrgetter("time", *COLUMNS)
 
 
 def replay_compensator(run: Run, compensator: FeedforwardCompensator) -> Run:
@@ -20,11 +22,28 @@ def replay_compensator(run: Run, compensator: FeedforwardCompensator) -> Run:
     """
     config = compensator.config
     hold = InputHold(run.groups, config.max_age, dict(config.max_ages))
-    return feedforward_run(run.name, [compensator.step(sample) for sample in hold.samples(run)])
+    record = FeedforwardRecord()
+    for sample in hold.samples(run):
+        record.take(compensator.step(sample))
+    return record.run(run.name)
 
 
-def feedforward_run(name: str, steps: Sequence[Feedforward]) -> Run:
-    """Feedforwards as columns over time."""
-    columns = {"time": np.array([each.time for each in steps])}
-    columns |= {column: np.array([getattr(each, column) for each in steps]) for column in COLUMNS}
-    return Run(name=name, columns=columns, aside={"state": np.array([each.state for each in steps], dtype=object)})
+class FeedforwardRecord:
+    """Collects feedforwards as rows of numbers: as objects, those of a day would not fit beside their bag."""
+
+    def __init__(self) -> None:
+        self._rows, self._states = array("d"), list[str]()
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def take(self, given: Feedforward) -> None:
+        """Add one."""
+        self._rows.extend(_numbers(given))
+        self._states.append(given.state)
+
+    def run(self, name: str) -> Run:
+        """All of them as columns over time."""
+        table = np.array(self._rows).reshape(-1, 1 + len(COLUMNS))
+        columns = {column: table[:, k].copy() for k, column in enumerate(("time", *COLUMNS))}
+        return Run(name=name, columns=columns, aside={"state": np.array(self._states, dtype=object)})

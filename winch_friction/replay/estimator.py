@@ -1,15 +1,18 @@
 """The friction estimator over a recorded run: the same `step`, the same samples."""
 
 import math
+from array import array
+from operator import attrgetter
 
 import numpy as np
 
-from winch_friction.estimation import Estimate, FrictionEstimator, ParameterEstimate
+from winch_friction.estimation import Estimate, FrictionEstimator
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.hold import InputHold
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import FloatArray, Run
 
 COLUMNS = ("friction_torque", "speed", "drum_torque", "innovation", "innovation_variance", "nis")
+_numbers = attrgetter("time", *COLUMNS)
 PARAMETER_PERIOD = 1.0  # s between two looks at the parameters: reading them costs more than a step
 
 
@@ -33,32 +36,36 @@ class EstimateRecord:
 
     def __init__(self, estimator: FrictionEstimator, period: float = PARAMETER_PERIOD) -> None:
         self._estimator, self._period = estimator, period
-        self._estimates: list[Estimate] = []
-        self._looks: list[list[ParameterEstimate]] = []
-        self._look_of_row: list[int] = []
+        self._rows, self._states = array("d"), list[str]()
+        self._looks: list[tuple[FloatArray, FloatArray]] = []  # values and sigmas
+        self._look_of_row = array("q")
         self._looked_at = -math.inf
 
     def take(self, estimate: Estimate) -> None:
         """Add one answer."""
         if not self._looked_at <= estimate.time < self._looked_at + self._period:
-            self._looks.append(self._estimator.parameters())
+            self._looks.append(self._look())
             self._looked_at = estimate.time
-        self._estimates.append(estimate)
+        self._rows.extend(_numbers(estimate))
+        self._states.append(estimate.state)
         self._look_of_row.append(len(self._looks) - 1)
+
+    def _look(self) -> tuple[FloatArray, FloatArray]:
+        model = self._estimator.model()
+        return np.array(model.values), model.std
 
     def run(self, name: str) -> Run:
         """All answers as columns over time; the last row shows the parameters at the end."""
-        columns = {"time": np.array([each.time for each in self._estimates])}
-        columns |= {column: np.array([getattr(each, column) for each in self._estimates]) for column in COLUMNS}
+        table = np.array(self._rows).reshape(-1, 1 + len(COLUMNS))
+        columns = {column: table[:, k].copy() for k, column in enumerate(("time", *COLUMNS))}
         columns |= self._parameter_columns()
-        states = np.array([each.state for each in self._estimates], dtype=object)
-        return Run(name=name, columns=columns, aside={"state": states})
+        return Run(name=name, columns=columns, aside={"state": np.array(self._states, dtype=object)})
 
-    def _parameter_columns(self) -> dict[str, np.ndarray]:
-        looks = [*self._looks, self._estimator.parameters()]
-        rows = [*self._look_of_row[:-1], len(looks) - 1] if self._look_of_row else []
+    def _parameter_columns(self) -> dict[str, FloatArray]:
+        values, sigmas = (np.array(each) for each in zip(*self._looks, self._look(), strict=True))
+        rows = np.array(self._look_of_row)
+        rows[-1:] = len(values) - 1
         columns = {}
-        for k, each in enumerate(looks[-1]):
-            columns[each.name] = np.array([looks[row][k].value for row in rows])
-            columns[f"{each.name}_std"] = np.array([looks[row][k].std for row in rows])
+        for k, name in enumerate(self._estimator.seed.parameter_names):
+            columns[name], columns[f"{name}_std"] = values[rows, k], sigmas[rows, k]
         return columns

@@ -1,7 +1,7 @@
 """A recording through both objects as the nodes took it: live equals replay."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from winch_friction.records.model_file import model_from_text
 from winch_friction.records.runs import BAG_SUFFIXES, read_run
 from winch_friction.records.topics import TopicMap
 from winch_friction.replay.clock import ReplayClock
-from winch_friction.replay.compensator import feedforward_run
 from winch_friction.replay.live import Comparison, compare_live
 from winch_friction.replay.settings import ReplaySettings, settings_from_metadata
 from winch_friction.replay.voices import CompensatorVoice, EstimatorVoice
@@ -76,7 +75,7 @@ def replay_run(
         learned = estimator.take_row(learnt_from)
         if learned is not None and learn:
             compensator.offer(learned)
-    return _replayed(run.name, compensator, estimator, run.warnings, ())
+    return _replayed(run.name, compensator, estimator, run.warnings)
 
 
 def _replay_bag(
@@ -97,29 +96,23 @@ def _replay_bag(
             if learned is not None and learn and not recorded:
                 compensator.offer(learned)
         warnings = tuple(bag.warnings)
-    if not compensator.steps:
+    if not len(compensator.steps):
         raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
-    runs = {"compensator": feedforward_run("", compensator.steps), "estimator": estimator.record.run("")}
-    runs["watchdog"] = feedforward_run("", compensator.watchdog)
-    live = compare_live(path, runs, crane=crane, **options)
-    return _replayed(path.name, compensator, estimator, warnings, tuple(live))
+    replayed = _replayed(path.name, compensator, estimator, warnings)
+    runs = {name: getattr(replayed, name) for name in ("compensator", "estimator", "watchdog")}
+    return replace(replayed, live=tuple(compare_live(path, runs, crane=crane, **options)))
 
 
 def _replayed(
-    name: str,
-    compensator: CompensatorVoice,
-    estimator: EstimatorVoice,
-    warnings: tuple[str, ...],
-    live: tuple[Comparison, ...],
+    name: str, compensator: CompensatorVoice, estimator: EstimatorVoice, warnings: tuple[str, ...]
 ) -> Replayed:
     refused = tuple(dict.fromkeys(f"{name}: model refused: {each}" for each in compensator.refused))
     return Replayed(
-        compensator=feedforward_run(name, compensator.steps),
+        compensator=compensator.steps.run(name),
         estimator=estimator.record.run(name),
         model=estimator.service.law.model(),
         parameters=tuple(estimator.service.law.parameters()),
         status=estimator.service.law.status(),
         warnings=(*warnings, *refused),
-        live=live,
-        watchdog=feedforward_run(name, compensator.watchdog),
+        watchdog=compensator.watchdog.run(name),
     )

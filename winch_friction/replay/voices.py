@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 from math import isfinite
 
-from winch_friction.compensation import Feedforward
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.options import ServiceOptions
@@ -12,6 +11,7 @@ from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Message
 from winch_friction.records.topics import TopicMap
+from winch_friction.replay.compensator import FeedforwardRecord
 from winch_friction.replay.estimator import EstimateRecord
 from winch_friction.replay.settings import Phase, ReplaySettings
 
@@ -26,8 +26,8 @@ class CompensatorVoice:
     seed: FrictionModel
     topics: TopicMap
     settings: ReplaySettings
-    steps: list[Feedforward] = field(default_factory=list)
-    watchdog: list[Feedforward] = field(default_factory=list)
+    steps: FeedforwardRecord = field(default_factory=FeedforwardRecord)
+    watchdog: FeedforwardRecord = field(default_factory=FeedforwardRecord)
     refused: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -53,12 +53,13 @@ class CompensatorVoice:
 
     def take(self, each: Message, now: float) -> None:
         """One input message, at `now` s on the replay's clock."""
-        self.watchdog.extend(self.service.catch_up(now))
+        for said in self.service.catch_up(now):
+            self.watchdog.take(said)
         if self._waiting and self._begins(self._waiting[0], each.stamp):
             self._begin(self._waiting.pop(0))
         answer = self.service.take(each.source, each.message, each.receipt, now)
         if answer is not None:
-            self.steps.append(answer)
+            self.steps.take(answer)
 
     def _begins(self, phase: Phase, stamp: float) -> bool:
         if phase.start == phase.start:
@@ -68,7 +69,7 @@ class CompensatorVoice:
 
     def take_row(self, sample: Sample) -> None:
         """One row of a run."""
-        self.steps.append(self.service.take_row(sample))
+        self.steps.take(self.service.take_row(sample))
 
 
 @dataclass

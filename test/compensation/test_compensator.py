@@ -150,7 +150,8 @@ def test_returning_in_the_middle_of_the_ramp_with_the_opposite_sign_is_bumpless(
         if k < 10:
             _lose(sample, "pressure")
         torques.append(each.step(sample).friction_torque)
-    assert np.abs(np.diff(torques)).max() < 3.0 * PERIOD * abs(torques[0])  # bridge 1.6 and fade 1 per second
+    # 0.8 of it are left, let go within 0.2 s: it pushes against a motion that is known
+    assert np.abs(np.diff(torques)).max() < 4.5 * PERIOD * abs(torques[0])
     assert torques[-1] == pytest.approx(-torques[0], rel=1e-9)
 
 

@@ -22,7 +22,6 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.physics.winch.ranges import ChannelRanges
 
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
-AGAINST_SPEED, AGAINST_FADE = 5.0, 0.1  # rad/s, s: what fades against a faster motion is let go in this time
 
 
 @dataclass(slots=True)
@@ -168,10 +167,8 @@ class FeedforwardCompensator:
             self._predictor.reset()
             self._turn(sample)
         self._counts["stale"] += not usable
-        target, reversal = self._target, self._target.reversal
-        if self.output.torque * sample.motor_speed < 0.0 and abs(sample.motor_speed) > AGAINST_SPEED:
-            reversal = min(reversal, AGAINST_FADE)
-        self.output.follow(target.torque, target.envelope, usable, self._enabled, reversal)
+        target = self._target
+        self.output.follow(target.torque, target.envelope, usable, self._enabled, target.reversal, sample.motor_speed)
         self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
 

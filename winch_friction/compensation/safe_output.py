@@ -13,7 +13,9 @@ from winch_friction.compensation.transition import Bridge, Fade
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
 # stamps may gain this on the steady clock: a sender's clock, or a simulation, that runs faster than ours
 FASTEST_STAMPS = 1.5
-LONGEST_AGAINST = 0.3  # s; what is left of before and pushes against what is right now is let go within this
+LONGEST_AGAINST = 0.2  # s; what is left of before and pushes against what is right now is let go within this
+LONGEST_BLIND = 0.3  # s; ... and what nobody can steer within this, for the motion may turn meanwhile
+AGAINST_SPEED = 5.0  # rad/s; a slower motion has no direction worth speaking of
 
 
 @dataclass
@@ -24,6 +26,10 @@ class SafeOutput:
     older than `hold` s carries nothing any more. A sample goes `arrive` (how much time counts), then `follow` (what is
     published). Between samples `decay` publishes the ramp to zero, which `remaining` foretells. `restart` forgets
     the samples but not what is published; `end` makes the ramp begin at once.
+
+    One rule holds on every one of these ways: once nothing carries the torque any more (silence, an input lost or
+    doubted, disabled, the end), what pushes against the last known motion, or against what was asked for last, goes to
+    zero as fast as the slew limit allows.
     """
 
     absolute: float
@@ -39,9 +45,11 @@ class SafeOutput:
         self.limits = TorqueLimits(self.absolute, self.slew)
         self.fade = Fade(self.ramp_time)
         self._bridge = Bridge(self.ramp_time)
-        self._fed = math.nan  # stamp of the last sample that was followed, and what was published and faded by then
-        self._held, self._faded = 0.0, 0.0
-        self._reversal = math.inf
+        self._fed = math.nan  # stamp of the last sample that was followed; what was published, faded, bridged by then
+        self._held, self._faded, self._bridged = 0.0, 0.0, 0.0
+        self._asked, self._motion = 0.0, math.nan  # by the last sample, N m and rad/s
+        self._size = 0.0  # N m, what was published last while something carried it: the ramp is as steep as from there
+        self._ramp_from, self._turns_at = math.nan, math.inf  # stamps: the ramp begins, the motion may turn; s
         self._steady, self._credit = math.nan, self.hold
         self._dt = self._against = self._carried = 0.0
         self._bump = self._usable = self._new_time = False
@@ -105,16 +113,21 @@ class SafeOutput:
         self._credit -= counted
         return counted
 
-    def follow(self, target: float, envelope: float, usable: bool, enabled: bool, reversal: float = math.inf) -> float:
+    def follow(
+        self, target: float, envelope: float, usable: bool, enabled: bool, reversal: float = math.inf,
+        motion: float = math.nan,
+    ) -> float:  # fmt: skip
         """What is published for the sample that arrived: the way to `target` N m.
 
         A sample that is not `usable` leaves `target` to fade out. `reversal` s is when the motion may turn: a ramp
-        that nobody can steer is over by then.
+        that nobody can steer is over by then. `motion` rad/s is the measured speed, NaN if unknown.
         """
+        carried = usable and enabled
         if usable and not self._usable:
             self._bump = True
-        self._usable = usable
-        faded = self.fade.step(usable and enabled, self._dt, self._hurry(reversal)) * target
+        self._usable, self._asked, self._motion = usable, target, motion
+        hurry = max(min(self.ramp_time, reversal), 1e-6)
+        faded = self.fade.step(carried, self._dt, hurry) * target
         if self._bump and usable:
             self._bridge.start(self.torque - faded)
             self._bump, self._carried = False, 0.0
@@ -122,31 +135,40 @@ class SafeOutput:
             self._bridge.start(self._bridge.value() + self.fade.value * self._carried)
             self._carried = 0.0
         # what is carried goes as quickly as what fades
-        wanted = faded + self._bridge.step(self._dt if usable else self._dt * self.ramp_time / self._hurry(reversal))
-        wanted = self._not_against(wanted, target)
+        wanted = faded + self._bridge.step(self._dt if usable else self._dt * self.ramp_time / hurry)
+        wanted = self._not_against(wanted, carried)
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
         self.torque = self.limits.slewed(wanted, self.torque, self._dt) + 0.0  # never -0.0
         self.sequence += 1
-        self._held, self._faded, self._reversal = self.torque, self.fade.value, reversal
+        self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
+        self._size = abs(self.torque) if carried else max(self._size, abs(self.torque))
+        # what is not carried any more does not wait for the age limit either
+        self._ramp_from, self._turns_at = self._fed + (self.hold if carried else 0.0), self._fed + reversal
         return self.torque
 
-    def _not_against(self, wanted: float, target: float) -> float:
-        """What is left of before does not push against what is right now for long."""
-        if wanted * target >= 0.0:
+    def _not_against(self, wanted: float, carried: bool) -> float:
+        """What is left of before does not push against what is right now for long; at once when nothing carries it."""
+        if not carried and self._opposed(wanted):
+            self.fade.value = 0.0
+            self._bridge.drop()
+            return 0.0
+        if wanted * self._asked >= 0.0:
             self._against = 0.0
             return wanted
         self._against = max(self._against, abs(self.torque))
         most = max(0.0, abs(self.torque) - self._against * self._dt / min(LONGEST_AGAINST, self.ramp_time))
         return math.copysign(min(abs(wanted), most), wanted)
 
-    def _hurry(self, reversal: float) -> float:
-        return max(min(self.ramp_time, reversal), 1e-6)
+    def _opposed(self, torque: float) -> bool:
+        """Whether it pushes against the last known motion, or against the one that the last target was for."""
+        against_motion = torque * self._motion < 0.0 and abs(self._motion) > AGAINST_SPEED
+        return against_motion or torque * self._asked < 0.0
 
     # -- no sample
     def remaining(self, time: float) -> float:
         """What the ramp to zero leaves at stamp `time` when nothing was followed since; changes nothing."""
-        silent = time - self._fed - self.hold
+        silent = time - self._ramp_from
         if not silent > 0.0:
             return self._held
         left = abs(self._held) - self._ramp_rate() * silent
@@ -154,8 +176,10 @@ class SafeOutput:
 
     def _ramp_rate(self) -> float:
         """N m/s: over within the ramp's time, and before the motion may have turned where the slew limit allows it."""
-        duration = min(self.ramp_time, max(self._reversal - self.hold, 0.0))
-        return min(self.limits.slew, abs(self._held) / duration if duration > 0.0 else math.inf)
+        duration = min(self.ramp_time, LONGEST_BLIND, max(self._turns_at - self._ramp_from, 0.0))
+        if self._opposed(self._held) or duration == 0.0:
+            return self.limits.slew
+        return min(self.limits.slew, max(self._size, abs(self._held)) / duration)
 
     def decay(self, time: float) -> float:
         """Publish the ramp to zero at stamp `time`."""
@@ -169,7 +193,9 @@ class SafeOutput:
     def _let_go(self, torque: float) -> None:
         if torque == self.torque:
             return
-        self.fade.value = self._faded * (torque / self._held if self._held else 0.0)
+        share = torque / self._held if self._held else 0.0
+        self.fade.value = self._faded * share
+        self._bridge.start_again(self._bridged * share)
         self.torque = torque
 
     def restart(self) -> None:
@@ -180,12 +206,12 @@ class SafeOutput:
 
     def end(self, time: float) -> None:
         """Let the ramp to zero begin at stamp `time`, and no sample stop it before the next `restart`."""
-        self._held, self._faded = self.torque, self.fade.value
-        self._fed, self.time = time - self.hold, time
+        self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
+        self._fed, self._ramp_from, self.time = time - self.hold, time, time
 
     def hurry(self, duration: float) -> None:
         """Let the ramp to zero be over within `duration` s, as far as the slew limit allows it."""
-        self._reversal = min(self._reversal, duration + self.hold)
+        self._turns_at = min(self._turns_at, self._ramp_from + duration)
 
     @property
     def at_rest(self) -> bool:

@@ -32,6 +32,14 @@ class Bridge:
         """Carry `difference` (old minus new) from now on, on top of nothing else."""
         self._height, self._left = difference, self.duration
 
+    def drop(self) -> None:
+        """Carry nothing any more."""
+        self._height = self._left = 0.0
+
+    def start_again(self, difference: float) -> None:
+        """Carry `difference` from now on, for as long as was left."""
+        self._height = difference * self.duration / self._left if self._left else 0.0
+
     def value(self) -> float:
         """What is still carried."""
         return self._height * self._left / self.duration

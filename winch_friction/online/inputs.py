@@ -50,6 +50,8 @@ class InputGate:
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit)
         self._refusal = ""
+        self._came: dict[str, float] = {}  # steady s at which a column's last believed value arrived
+        self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
 
     # -- messages
     def take(self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None) -> Sample | None:
@@ -61,6 +63,7 @@ class InputGate:
         arrivals.messages += 1
         arrivals.arrived = now
         self._refusal = ""
+        self._taking = source.channels, now
         if source.topic == self.topics.speed_topic:
             return self._speed(source, message, receipt, now, sent)
         if source.stamped and not self._near(stamp_time(message), now):
@@ -79,8 +82,9 @@ class InputGate:
         if source.stamped:
             return ""
         stamp = self.last_stamp if math.isfinite(self.last_stamp) else 0.0
-        found = ((column, self._plausible.refusal(column, stamp, x)) for column, x in source.decode(message).items())
-        return "; ".join(f"{column}: {refusal}" for column, refusal in found if refusal)
+        found = {column: self._plausible.refusal(column, stamp, x) for column, x in source.decode(message).items()}
+        self._came |= {column: self._taking[1] for column, refusal in found.items() if not refusal}
+        return "; ".join(f"{column}: {refusal}" for column, refusal in found.items() if refusal)
 
     def _near(self, stamp: float, now: float) -> bool:
         """Whether a held input's stamp is not ahead of the speed's clock: it would lock the input out until then."""
@@ -103,12 +107,26 @@ class InputGate:
         self._judged(arrivals, now, (self._refusal or UNREADABLE) if sample is None else "")
         if sample is not None:
             self.last_stamp, self.last_arrival = stamp, now
+            self._without_stale(sample, now)
         return sample
+
+    def _without_stale(self, sample: Sample, now: float) -> None:
+        """What arrived too long ago is lost: stamps alone do not tell an input's age where the speed comes late."""
+        if not self.options.paced:
+            return
+        for column, came in self._came.items():
+            if now - came > self.hold.limit(column):
+                group, _, channel = column.rpartition(".")
+                owner = sample.groups.get(group) if group else sample
+                if owner is not None:
+                    setattr(owner, channel, NAN)
 
     def _admit(self, column: str, stamp: float, value: float) -> bool:
         refusal = self._plausible.refusal(column, stamp, value)
         if refusal and (value == value or not self._refusal):
             self._refusal = f"{column}: {refusal}"
+        if not refusal and column in self._taking[0]:
+            self._came[column] = self._taking[1]
         return not refusal
 
     def _judged(self, arrivals: Arrivals, now: float, refusal: str) -> None:
@@ -151,6 +169,7 @@ class InputGate:
     def _start_over(self) -> None:
         self._stream.forget()
         self._plausible.forget()
+        self._came.clear()
         self.last_stamp = -math.inf
 
     # -- what is known of the inputs

@@ -1,0 +1,187 @@
+"""A torque that pushes against the motion, or against what is asked for, is let go at the slew limit as soon as what
+carried it is gone: whatever goes wrong next."""
+
+import math
+from collections.abc import Callable
+
+import pytest
+from sea import PERIOD, Fed, check_invariants, swell
+
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.physics.signals import Sample
+
+SPEED, REFERENCE = "winch/joint_states", "winch/reference"
+SWASH = "winch/active/displacement"
+REVERSAL = 1005.0  # s; the swell's speed passes zero there
+LONGEST = 0.35  # s against the motion that docs/safety.md allows beside the look-ahead
+
+
+def sailing(until: float) -> Fed:
+    """A service in full swing at `until`."""
+    fed = Fed()
+    fed.run(until - fed.now)
+    assert abs(fed.torque) > 100.0
+    return fed
+
+
+def wrong_sign(sample: Sample) -> None:
+    """The command's sign is exchanged."""
+    sample.speed_reference = -sample.speed_reference
+
+
+def against(fed: Fed, since: float) -> float:
+    """The longest time, s, that what was published after `since` pushed against the swell's motion."""
+    longest, began = 0.0, math.nan
+    for now, said in fed.published:
+        if now < since:
+            continue
+        speed = swell(now).motor_speed
+        if said.friction_torque * speed < 0.0 and abs(said.friction_torque) > 5.0 and abs(speed) > 5.0:
+            began = now if math.isnan(began) else began
+            longest = max(longest, now - began)
+        else:
+            began = math.nan
+    return longest
+
+
+def left_over_at_a_reversal() -> Fed:
+    """The command was lost before the reversal and is back after it: what is published still has the old sign."""
+    fed = sailing(REVERSAL - 0.12)
+    fed.run(0.14, skip=(REFERENCE,))
+    fed.run(0.02)
+    asked = fed.service.law._target.torque
+    assert fed.torque * asked < 0.0
+    assert abs(fed.torque) > 50.0
+    return fed
+
+
+def silent(fed: Fed) -> None:
+    fed.wait(1.0)
+
+
+def malformed(fed: Fed) -> None:
+    fed.run(1.0, lambda sample: setattr(sample, "motor_speed", math.nan))
+
+
+def reset_then_silent(fed: Fed) -> None:
+    fed.service.reset()
+    fed.wait(1.0)
+
+
+def without_command(fed: Fed) -> None:
+    fed.run(1.0, skip=(REFERENCE,))
+
+
+def without_pressure(fed: Fed) -> None:
+    fed.run(1.0, skip=("winch/active/pressure_a",))
+
+
+def disabled(fed: Fed) -> None:
+    fed.service.set_enabled(False)
+    fed.run(1.0)
+
+
+def ended(fed: Fed) -> None:
+    began = fed.now
+    for after, said in fed.service.ending(began):
+        fed.now = began + after
+        fed.hear(said)
+
+
+ENDS = (silent, malformed, reset_then_silent, without_command, without_pressure, disabled, ended)
+
+
+@pytest.mark.parametrize("then", ENDS)
+def test_what_is_left_of_before_is_let_go_at_once_when_nothing_carries_it_any_more(
+    then: Callable[[Fed], None],
+) -> None:
+    """Predicted: the motion has hardly begun to turn when its speed falls silent."""
+    fed = left_over_at_a_reversal()
+    left, sign, began = abs(fed.torque), math.copysign(1.0, fed.torque), fed.now
+    then(fed)
+    slew = fed.service.law.output.limits.slew
+    late = [now - began for now, said in fed.published if now > began and said.friction_torque * sign > 0.5]
+    assert max(late, default=0.0) <= fed.config.max_age + left / slew + 2.0 * PERIOD
+    check_invariants(fed)
+
+
+@pytest.mark.parametrize("then", ENDS)
+def test_a_wrong_command_in_its_first_moment_leaves_nothing_that_fades_slowly(then: Callable[[Fed], None]) -> None:
+    """One sample is enough to turn the torque; then the evidence is gone."""
+    fed = sailing(REVERSAL + 1.0)
+    began = fed.now
+    fed.run(5 * PERIOD, wrong_sign)
+    assert fed.torque * swell(fed.now).motor_speed < 0.0
+    then(fed)
+    assert against(fed, began) <= LONGEST
+    check_invariants(fed)
+
+
+def test_when_command_and_speed_agree_again_what_is_left_of_the_wrong_one_goes_at_once() -> None:
+    """The wrong command, a silence, and the right one again: each took its own time before."""
+    fed = sailing(REVERSAL + 0.8)
+    began = fed.now
+    fed.run(2 * PERIOD, wrong_sign)
+    fed.wait(0.16)
+    fed.run(0.6)
+    assert against(fed, began) <= LONGEST - 0.05
+    check_invariants(fed)
+
+
+def test_a_reset_does_not_give_a_torque_against_the_motion_another_life() -> None:
+    fed = sailing(REVERSAL + 0.8)
+    began = fed.now
+    fed.run(4 * PERIOD, wrong_sign)
+    fed.service.reset()
+    fed.run(0.6)
+    assert against(fed, began) <= LONGEST - 0.05
+    check_invariants(fed)
+
+
+def test_a_fade_does_not_wait_for_the_age_limit_at_every_gap() -> None:
+    """An input is lost and the speed comes in pieces: the fade is over within the ramp's time all the same."""
+    fed = sailing(REVERSAL + 0.4)
+    began = fed.now
+    while fed.now < began + 1.0:
+        fed.run(PERIOD, skip=(REFERENCE,))
+        fed.wait(6 * PERIOD)
+    over = [now for now, said in fed.published if now > began and said.friction_torque == 0.0]
+    assert over[0] - began <= fed.config.max_age + fed.config.ramp_time + 2.0 * PERIOD
+    check_invariants(fed)
+
+
+def test_what_comes_back_unusable_after_a_silence_never_rises() -> None:
+    """What was carried over from before must not come back with the first sample that cannot be used."""
+    fed = sailing(REVERSAL + 0.4)
+    fed.run(0.16, skip=(REFERENCE,))
+    fed.run(3 * PERIOD)
+    said = fed.wait(0.3)
+    said += fed.run(0.5, skip=(REFERENCE,))
+    sizes = [abs(each.friction_torque) for each in said]
+    assert sizes == sorted(sizes, reverse=True)
+    check_invariants(fed)
+
+
+def test_a_silent_speed_leaves_the_torque_no_longer_than_it_may_push_against_the_motion() -> None:
+    """With a ramp of 5 s: who does not know the motion does not fade slowly."""
+    fed = Fed(config=CompensatorConfig(ramp_time=5.0))
+    fed.run(7.0)
+    assert abs(fed.torque) > 100.0
+    began = fed.now
+    fed.wait(1.0)
+    over = [now for now, said in fed.published if now > began and said.friction_torque == 0.0]
+    assert over[0] - began <= fed.config.max_age + LONGEST + PERIOD
+    check_invariants(fed)
+
+
+def test_an_input_that_came_long_ago_is_lost_however_young_its_stamp_looks() -> None:
+    """The speed comes late, the displacement no more: by the stamps it is young, by the clock it is not."""
+    fed = sailing(REVERSAL + 1.0)
+    late = [swell(fed.now + PERIOD * (k + 1)) for k in range(10)]
+    fed.send(late[0])
+    fed.now += 0.3
+    assert fed.service.tick(fed.now) is not None
+    for sample in late[4:7]:
+        fed.now += PERIOD
+        fed.send(sample, skip=(SWASH,))
+        assert "active.displacement" in fed.service.law.status()["missing"]

@@ -115,7 +115,7 @@ def lesson(name: str, seconds: float = SECONDS) -> Lesson:
         if k % 50 == 0:
             state = str(estimator.status(ORIGIN + time)["state"])
             said.states[state] = said.states.get(state, 0) + 1
-            for each in estimator.law.parameters():
+            for each in estimator.parameters():
                 if each.status == "invalid":
                     said.invalid.setdefault(each.name, time)
     said.share, said.refused = said.excursion / max(largest_seed, 1e-9), len(follows.refused_models)

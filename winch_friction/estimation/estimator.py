@@ -230,6 +230,12 @@ class FrictionEstimator:
         measured = self._load.shaft_torque(self._last.layer if self._last else NAN)
         return self.crane.gear_ratio * (measured + self._filter.load_torque)
 
+    @property
+    def load_apart(self) -> float:
+        """What the balance of torques adds to the measured load, as a share of it; NaN where no load is measured."""
+        measured = self._load.shaft_torque(self._last.layer if self._last else NAN)
+        return self._filter.load_torque / measured if measured else NAN
+
     def model(self) -> FrictionModel:
         """The seed's terms with the learned values and covariance."""
         origin = {"crane": self.crane.name, "samples": self.counts["learned_from"]}

@@ -157,7 +157,7 @@ class EstimatorNode(WinchNode):
     def urgent(self) -> object:
         """Whether it waits, and for what."""
         waiting = self.service.status(self.service_now())["state"] == "waiting"
-        return waiting, self.service.missing, self._input_health.silent()
+        return waiting, bool(self.service.contradiction), self.service.missing, self._input_health.silent()
 
     def health(self) -> Sequence[Health]:
         """The filter, every parameter with deviation and status, and the inputs."""
@@ -174,13 +174,17 @@ class EstimatorNode(WinchNode):
         if last:
             status |= {"innovation": last.innovation, "nis": last.nis, "speed": last.speed}
         state = str(status["state"])
-        said = f"{state} for {status['missing']}" if state == "waiting" and status["missing"] else state
-        return Health("filter", WARN if state in ("waiting", "rejected") else OK, said, status)
+        why = {
+            "waiting": status["missing"] and f" for {status['missing']}",
+            "contradicted": f": {status['contradictions']}",
+        }
+        level = {"waiting": WARN, "rejected": WARN, "contradicted": ERROR}.get(state, OK)
+        return Health("filter", level, f"{state}{why.get(state, '')}", status)
 
     def _parameter_health(self) -> Health:
         values: dict[str, Any] = {}
         invalid = []
-        for each in self.law.parameters():
+        for each in self.service.parameters():
             values |= {each.name: each.value, f"{each.name} std": each.std, f"{each.name} status": each.status}
             invalid += [each.name] if each.status == "invalid" else []
         summary = f"invalid: {', '.join(invalid)}" if invalid else "within the range around the seed"

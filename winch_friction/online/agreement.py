@@ -1,4 +1,4 @@
-"""Whether the inputs fit each other: the command and the speed, the load and the drive's torque."""
+"""Whether the inputs fit each other: the command and the speed, the load and the drive's torque, at once and slowly."""
 
 import math
 from dataclasses import dataclass, field
@@ -20,13 +20,17 @@ SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is co
 # to and fro: jumps of this share of the largest speed, so many, within this time
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
 CALM = 1.0  # s of agreement, where something is to be seen, before a doubt ends
+# the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
+# displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
+BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
 
 
 @dataclass
 class Doubt:
-    """A contradiction that counts after `patience` s and is over after `CALM` s of agreement."""
+    """A contradiction that counts after `patience` s and is over after `calm` s of agreement."""
 
     patience: float
+    calm: float = CALM
     _wrong: float = field(default=0.0, init=False)
     _right: float = field(default=0.0, init=False)
     stands: bool = field(default=False, init=False)
@@ -37,8 +41,28 @@ class Doubt:
             self._wrong, self._right = self._wrong + dt, 0.0
         elif wrong is not None:
             self._wrong, self._right = 0.0, self._right + dt
-        self.stands = self._wrong >= self.patience or (self.stands and self._right < CALM)
+        self.stands = self._wrong >= self.patience or (self.stands and self._right < self.calm)
         return self.stands
+
+
+class LoadBalance:
+    """Whether the load that the estimator finds is the one that the load cell shows.
+
+    A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
+    with m g r. It is not said which one is wrong, but that nothing may be learned from them.
+    """
+
+    def __init__(self) -> None:
+        self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
+
+    def contradiction(self, apart: float, time: float) -> str:
+        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown."""
+        dt = min(max(time - self._time, 0.0), 0.1) if self._time == self._time else 0.0
+        self._time = time
+        wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
+        if not self._doubt.step(wrong, dt):
+            return ""
+        return f"hook_load contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
 
 
 class Agreement:

@@ -6,6 +6,8 @@ from typing import Any
 
 from winch_friction.compensation.model_schedule import LEARNED_AT
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
+from winch_friction.estimation.answers import ParameterEstimate
+from winch_friction.online.agreement import LoadBalance
 from winch_friction.online.inputs import InputGate
 from winch_friction.online.options import ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
@@ -19,7 +21,11 @@ FASTEST_MODELS = 1.0  # s of the service's clock between two models, whatever th
 
 
 class EstimatorService:
-    """Messages, or rows of a run, in; estimates and, now and then, a learned model out."""
+    """Messages, or rows of a run, in; estimates and, now and then, a learned model out.
+
+    While the measured load contradicts the balance of torques nothing is learned, the seed is published in the place
+    of what was, and every parameter that was learned is invalid.
+    """
 
     def __init__(
         self, crane: Crane, seed: FrictionModel, topics: TopicMap, config: EstimatorConfig | None = None,
@@ -31,6 +37,8 @@ class EstimatorService:
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
         self.last: Estimate | None = None
         self.missing: tuple[str, ...] = ()
+        self.contradiction = ""
+        self._balance, self._enabled = LoadBalance(), True
         self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
 
@@ -48,6 +56,9 @@ class EstimatorService:
     def _learn(self, sample: Sample) -> Estimate:
         self.missing = self.law.crane.drive.lacking(sample)
         self.last = self.law.step(sample)
+        if self.last.accepted:
+            self.contradiction = self._balance.contradiction(self.law.load_apart, sample.time)
+            self.law.set_enabled(self._enabled and not self.contradiction)
         if math.isfinite(self.last.friction_torque):
             self.friction_torque = self.last.friction_torque
         return self.last
@@ -60,16 +71,19 @@ class EstimatorService:
         if self.options.paced and now < self._published_at + FASTEST_MODELS:
             return None
         self._published, self._published_at = self.last.time, now
-        learned = self.law.model()
+        learned = self.law.seed if self.contradiction else self.law.model()
         return replace(learned, provenance={**learned.provenance, LEARNED_AT: self.last.time})
 
     def set_enabled(self, enabled: bool) -> None:
         """Learn or rest."""
-        self.law.set_enabled(enabled)
+        self._enabled = bool(enabled)
+        self.law.set_enabled(self._enabled and not self.contradiction)
 
     def reset(self) -> None:
         """Back to the seed: everything learned is forgotten."""
         self.law.reset()
+        self.contradiction, self._balance = "", LoadBalance()
+        self.law.set_enabled(self._enabled)
         self.forget()
 
     def forget(self) -> None:
@@ -87,5 +101,13 @@ class EstimatorService:
             status["state"] = "waiting"
         elif self.last is not None and not self.last.accepted:
             status["state"] = "rejected"
-        status["missing"] = ", ".join(self.missing)
+        elif self.contradiction:
+            status["state"] = "contradicted"
+        status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
+        status["enabled"] = self._enabled
         return status
+
+    def parameters(self) -> list[ParameterEstimate]:
+        """What is known of every parameter; what was learned from inputs that contradict each other is invalid."""
+        known = self.law.parameters()
+        return [replace(p, status="invalid") if self.contradiction and p.status != "seed" else p for p in known]

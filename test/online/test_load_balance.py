@@ -1,0 +1,88 @@
+"""A load cell that drifts while the estimator learns: the torque balance shows it, and nothing is learned from it."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+from sea import CRANE, SEED, TOPICS
+
+from winch_friction.online.agreement import BALANCE_SHARE, BALANCE_TIME
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.signals import Sample
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import simulate
+
+SECONDS = 100.0
+DRIFT = 0.3 / 60.0  # of the load, per second
+
+
+@pytest.fixture(scope="module")
+def sea() -> tuple[Sample, ...]:
+    run = simulate(load_scenario("ahc_irregular").override({"duration": SECONDS}), CRANE, SEED, seed=3).run
+    return tuple(each for each in run.samples() if each.motor_speed == each.motor_speed)
+
+
+def fed(sea: tuple[Sample, ...], error: float = 0.0, rate: float = 0.0) -> Iterator[tuple[float, Sample]]:
+    """The sea with a load cell that is off by `error` and drifts by `rate` per second."""
+    for each in sea:
+        passed = each.time - sea[0].time
+        yield passed, replace(each, hook_load=each.hook_load * (1.0 + error + rate * passed), groups=dict(each.groups))
+
+
+def test_a_load_cell_that_drifts_stops_the_learning_and_brings_the_seed_back(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    said, learned = 0.0, 0
+    for passed, sample in fed(sea, rate=DRIFT):
+        service.take_row(sample)
+        if service.contradiction and not said:
+            said, learned = passed, service.law.counts["learned_from"]
+    assert 0.8 * BALANCE_SHARE / DRIFT <= said - BALANCE_TIME <= 2.0 * BALANCE_SHARE / DRIFT
+    assert "hook_load contradicts the balance" in service.contradiction
+    assert service.law.counts["learned_from"] == learned > 500
+    assert service.status(sea[-1].time)["state"] == "contradicted"
+    assert {each.status for each in service.parameters()} <= {"invalid", "seed"}
+    assert any(each.status == "invalid" for each in service.parameters())
+    published = service.model_due(sea[-1].time)
+    assert published is not None
+    assert published.values == SEED.values
+    assert service.law.model().values != SEED.values  # kept: it may have been right
+
+
+def test_after_the_contradiction_it_learns_again_from_where_it_was(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea, error=0.25):
+        if passed < 40.0:
+            service.take_row(sample)
+    assert service.contradiction
+    learned = service.law.counts["learned_from"]
+    for passed, sample in fed(sea):
+        if passed >= 40.0:
+            service.take_row(sample)
+    assert not service.contradiction
+    assert service.law.counts["learned_from"] > learned + 500
+    published = service.model_due(sea[-1].time)
+    assert published is not None
+    assert published.values == service.law.model().values
+
+
+def test_reset_forgets_the_contradiction_but_not_that_learning_is_switched_off(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea, error=0.25):
+        if passed < 30.0:
+            service.take_row(sample)
+    assert service.contradiction
+    service.set_enabled(False)
+    service.reset()
+    assert not service.contradiction
+    assert not service.law.status()["enabled"]
+    service.set_enabled(True)
+    assert service.law.status()["enabled"]
+
+
+@pytest.mark.parametrize("error", [-0.05, 0.05])
+def test_a_load_cell_a_few_per_cent_off_is_none(sea: tuple[Sample, ...], error: float) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea, error=error):
+        if passed < 50.0:
+            service.take_row(sample)
+            assert not service.contradiction

@@ -1,11 +1,13 @@
 """Pages to look at, from the quickest results that have everything on them."""
 
 import itertools
+import os
 from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from PIL import Image
 
 import winch_friction as wf
 from winch_friction.cli.demo.legs import voyage_legs
@@ -27,6 +29,7 @@ QUICK = ("--resamples", "2", "--evaluations", "200", "-q")
 AXE = Path(__file__).with_name("axe.min.js")
 SIZES = (1400, 768, 420)  # px: a desk, a tablet, a phone
 SCHEMES = ("light", "dark")
+INK = {"light": "#1d2126", "dark": "#e4e7ea"}  # of the plots' text
 
 
 def violations(page):
@@ -34,6 +37,16 @@ def violations(page):
     page.add_script_tag(path=AXE)
     found = page.evaluate("axe.run()")["violations"]
     return [f"{each['id']}: {each['nodes'][0]['html'][:120]}" for each in found]
+
+
+def keep_screenshot(page, kind, width, scheme):
+    """With SCREENSHOTS=FOLDER in the environment: what is seen first, for docs/images/pages."""
+    folder = os.environ.get("SCREENSHOTS")
+    if folder:
+        page.evaluate("scrollTo(0, 0)")
+        name = Path(folder) / f"{kind}_{width}_{scheme}.png"
+        page.screenshot(path=name)
+        Image.open(name).convert("RGB").quantize(64).save(name, optimize=True)
 
 
 def small_gap():
@@ -53,6 +66,20 @@ def check_page(folder):
     test = config_directory() / "examples" / "practice_150t" / "test_02.parquet"
     assert run(["check", str(test), "--crane", "crane_150t", "--out", str(folder), "-q"]) == 0
     return folder / "check.html"
+
+
+def replay_page(folder):
+    """Half a minute of a sea."""
+    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    run_ = wf.simulate("ahc_55t_215", crane, model, duration=30.0).run
+    return wf.replay(run_, crane, model).to_html(folder / "replay.html")
+
+
+def compare_page(folder):
+    """The two shipped winch models at one load."""
+    out = folder / "compare.html"
+    assert run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--loads", "55", "--out", str(out)]) == 0
+    return out
 
 
 def fleet_page(folder):
@@ -103,3 +130,8 @@ def _logged(number, crane, truth):
     friction = wf.torque(truth, wf.from_frame(columns), crane)
     drive = crane.inertia * np.gradient(speed, time) + friction + noise
     return wf.from_frame({**columns, "motor_torque": drive}, f"run {number}")
+
+
+# page kind -> how to make one; `gap`'s is shared by other tests
+KINDS = {"gap": None, "replay": replay_page, "compare": compare_page, "identify": practice_page, "check": check_page,
+         "fleet": fleet_page, "demo": demo_page}  # fmt: skip

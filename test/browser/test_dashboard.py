@@ -7,7 +7,7 @@ import time
 import urllib.request
 
 import pytest
-from pages import violations
+from pages import INK, SCHEMES, SIZES, keep_screenshot, violations
 
 from winch_friction.cli.dashboard import serving
 
@@ -34,6 +34,20 @@ def stop():
     event = threading.Event()
     yield event
     event.set()
+
+
+@pytest.mark.parametrize("width", SIZES)
+def test_the_page_is_accessible_at_every_size(visit, stop, width):
+    with serving(frames(stop), 0) as address:
+        page, said = visit(address, width, SCHEMES[0])
+        page.wait_for_function("document.querySelector('#torque .main-svg')")
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_function(f"document.querySelector('#torque').layout.font.color === {INK[scheme]!r}")
+            assert violations(page) == []
+            keep_screenshot(page, "dashboard", width, scheme)
+        assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
+        assert said == []
 
 
 def test_the_page_draws_what_comes_and_reconnects(visit, stop):

@@ -3,12 +3,10 @@
 import urllib.parse
 
 import pytest
-from pages import SCHEMES, SIZES, check_page, demo_page, fleet_page, practice_page, small_gap, violations
-
-import winch_friction as wf
-from winch_friction.cli.main import run
+from pages import INK, KINDS, SCHEMES, SIZES, keep_screenshot, small_gap, violations
 
 pytestmark = pytest.mark.browser
+INKS = "[...document.querySelectorAll('.canvas')].filter((c) => c.layout).map((c) => c.layout.font.color)"
 
 
 @pytest.fixture(scope="module")
@@ -16,49 +14,33 @@ def gap_page(tmp_path_factory):
     return small_gap().to_html(tmp_path_factory.mktemp("pages") / "gap.html")
 
 
+@pytest.fixture(scope="module", params=KINDS)
+def kind(request):
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("pages")
-    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
-    run_ = wf.simulate("ahc_55t_215", crane, model, duration=30.0).run
-    assert (
-        run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--loads", "55", "--out", str(folder / "compare.html")])
-        == 0
-    )
-    return wf.replay(run_, crane, model).to_html(folder / "replay.html"), folder / "compare.html"
+def path(kind, tmp_path_factory, request):
+    """The page of a kind, made once for all sizes."""
+    made = request.getfixturevalue("gap_page") if kind == "gap" else KINDS[kind](tmp_path_factory.mktemp("pages"))
+    assert made.stat().st_size < 5e6
+    return made
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("width", SIZES)
-def test_a_report_is_accessible_and_silent(gap_page, visit, width, scheme):
-    page, said = visit(gap_page.as_uri(), width, scheme)
-    assert violations(page) == []
-    assert said == []
-    assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
-
-
-def test_replay_and_comparison_are_accessible_too(pages, visit):
-    for path, width, scheme in zip(pages, (420, 768), SCHEMES, strict=True):
-        page, said = visit(path.as_uri(), width, scheme)
-        assert violations(page) == []
-        assert said == []
-
-
-@pytest.fixture(scope="module", params=[practice_page, check_page, fleet_page, demo_page], ids=lambda f: f.__name__)
-def other_page(request, tmp_path_factory):
-    return request.param(tmp_path_factory.mktemp("pages"))
-
-
-@pytest.mark.parametrize(("width", "scheme"), [(1400, "light"), (768, "dark"), (420, "light")])
-def test_every_other_report_is_accessible_and_drawn(other_page, visit, width, scheme):
-    assert other_page.stat().st_size < 5e6
-    page, said = visit(other_page.as_uri(), width, scheme)
+def test_every_report_is_accessible_silent_and_drawn(kind, path, visit, width):
+    """One load per size; the scheme is changed while somebody looks, as a desktop does in the evening."""
+    page, said = visit(path.as_uri(), width, SCHEMES[0])
     assert page.inner_text("section h2 >> nth=0") in ("Decision", "Result")
     drawn = page.evaluate("globalThis.drawEveryPlot ? drawEveryPlot() : 0")
     page.wait_for_function(f"document.querySelectorAll('.canvas .plot-container').length === {drawn}")
     assert drawn >= 1
     assert page.locator("figure:not(.plot)").count() == 0  # no still picture is left
-    assert violations(page) == []
+    for scheme in SCHEMES:
+        page.emulate_media(color_scheme=scheme)
+        page.wait_for_function(f"{INKS}.every((ink) => ink === {INK[scheme]!r})")
+        assert violations(page) == []
+        keep_screenshot(page, kind, width, scheme)
     assert said == []
     assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
 

@@ -1,5 +1,7 @@
 """`winch-friction init`: a stranger's 50 t crane, from nothing to a checked simulation, without an editor."""
 
+import json
+
 import pytest
 import yaml
 
@@ -127,3 +129,11 @@ def test_what_a_schema_allows_the_reader_asks_for():
     known = set(str(caught.value).partition("known keys are ")[2].split(", "))
     optional = {"max_displacement", "wire_mass", "wire_stiffness"}
     assert known <= set(all_schemas()["crane"]["properties"]) <= known | optional
+
+
+def test_what_was_written_is_said_as_json(tmp_path, capsys):
+    out = tmp_path / "plant.yaml"
+    assert run(["init", "plant", "--crane", "crane_150t", "--out", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"written": [str(out)]}
+    assert run(["init", "schemas", "--out", str(tmp_path / "schemas"), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["written"]) == len(list((tmp_path / "schemas").iterdir())) > 3

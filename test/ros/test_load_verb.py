@@ -1,5 +1,6 @@
 """`winch-friction load`: a model file into a running compensator, from the command line alone."""
 
+import json
 import os
 import subprocess
 import sys
@@ -20,9 +21,9 @@ def test_a_model_is_handed_over_and_a_wrong_one_changes_nothing(bench: Bench, tm
     bench.start("compensator")
     model = wf.load_model("a6vm215_crane2")
     mine = wf.save_model(model.with_values({"C3": 1.2 * model.value("C3")}), tmp_path / "mine.yaml")
-    done = load(bench, str(mine))
+    done = load(bench, str(mine), "--json")
     assert (done.returncode, done.stderr) == (0, "")
-    assert "in use" in done.stdout
+    assert "in use" in json.loads(done.stdout)["said"]
     node = bench.remote("compensator")
     assert node.get("model_file").string_value == str(mine)
     other = load(bench, "emps_viscous")

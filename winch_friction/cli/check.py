@@ -34,6 +34,7 @@ def command(
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
     from winch_friction.cli.inputs import crane_of, folders_of_cranes, run_paths
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
     from winch_friction.physics.friction.registry import load_file
@@ -53,7 +54,7 @@ def command(
     result = check(read, winch, seed, known_cranes(*near))
     content = result.content()
     if out is not None:
-        _write(result, content, out)
+        _write(result, content, out, provenance_of(paths, winch.name, model))
     if as_json:
         show_json(content)
     else:
@@ -61,12 +62,12 @@ def command(
     raise typer.Exit(PLAUSIBLE if result.plausible else CONTRADICTED)
 
 
-def _write(result: Any, content: dict[str, Any], out: Path) -> None:
+def _write(result: Any, content: dict[str, Any], out: Path, provenance: dict[str, Any]) -> None:
     from winch_friction.records.atomic import write_text
     from winch_friction.report.check import write_check_report
 
     write_text(out / "check.json", json.dumps(content, indent=2, allow_nan=False, default=str) + "\n")
-    write_check_report(out / "check.html", result)
+    write_check_report(out / "check.html", result, provenance)
 
 
 def _show(result: Any, runs: list[Any], out: Path | None) -> None:

@@ -80,7 +80,7 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
                 "largest [N*m]": float(difference[k]),
                 "of [N*m]": float(a.torque[k]),
                 "at [rpm]": float(a.speed[k] / RPM),
-                "sigma": float(sigma),
+                "in sigmas": float(sigma),
                 "RMS [N*m]": float(np.sqrt(np.mean(difference**2))),
                 "mostly by": f"{leading} ({parts[leading]:+.3g} N*m)" if abs(parts[leading]) > 0.0 else "-",
             }
@@ -88,6 +88,7 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
     said = _said(one.name, two.name, rows)
     page = None
     if out is not None:
+        from winch_friction.cli.provenance import provenance_of
         from winch_friction.report.curves import write_comparison_page
 
         worst = max(rows, key=lambda row: abs(row["largest [N*m]"]))
@@ -95,15 +96,19 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
             ("Largest difference", f"{worst['largest [N*m]']:+.3g} N·m of {worst['of [N*m]']:.3g}"),
             ("Where", f"{worst['at [rpm]']:.0f} rpm, {worst['load [t]']:g} t"),
             ("Mostly by", worst["mostly by"].replace("*", "·")),
-            ("In standard deviations", f"{worst['sigma']:.2g}" if worst["sigma"] == worst["sigma"] else "unknown"),
+            (
+                "In standard deviations",
+                f"{worst['in sigmas']:.2g}" if worst["in sigmas"] == worst["in sigmas"] else "unknown",
+            ),
         ]
-        page = str(write_comparison_page(out, pairs, said, facts))
+        made = provenance_of([], crane.name, f"{one.name}, {two.name}")
+        page = str(write_comparison_page(out, pairs, said, facts, made))
     return {"said": said, "first": one.name, "second": two.name, "crane": crane.name, "rows": rows, "page": page}
 
 
 def _said(first: str, second: str, rows: list[dict[str, Any]]) -> str:
     worst = max(rows, key=lambda row: abs(row["largest [N*m]"]))
-    size, sigma = worst["largest [N*m]"], worst["sigma"]
+    size, sigma = worst["largest [N*m]"], worst["in sigmas"]
     if size == 0.0:
         return f"{second} and {first} are the same on this grid."
     sure = (

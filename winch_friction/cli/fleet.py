@@ -55,6 +55,7 @@ def command(
 
       winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.fleet.recordings import find_recordings
 
     options = _storage_options(storage or [])
@@ -62,6 +63,7 @@ def command(
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
     outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)
     content = {"verb": verb, "outcomes": [asdict(each) for each in outcomes], **_over_time(outcomes, out)}
+    content["provenance"] = provenance_of([], crane, model)  # the recordings' names are below; many, and far away
     _write(out, content, verb, outcomes)
     if as_json:
         show_json(content)
@@ -117,7 +119,7 @@ def _write(out: Path, content: dict[str, Any], verb: str, outcomes: list[Outcome
     from winch_friction.report.fleet import write_fleet_report
 
     write_text(out / "fleet.json", json.dumps(content, indent=1, default=str))
-    write_fleet_report(out / "report.html", verb, outcomes, content, out / "store")
+    write_fleet_report(out / "report.html", verb, outcomes, content, out / "store", content["provenance"])
 
 
 def _show_changes(content: dict[str, Any]) -> None:

@@ -1,10 +1,6 @@
 """`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
 
-import hashlib
 import json
-import shlex
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -129,6 +125,8 @@ def run_gap(
         ) from None
     with stepping("comparing with the model", STEPS) as tell:
         result = find_gap(read, loaded_crane, seed_model, replace(options, told=tell))
+    from winch_friction.cli.provenance import provenance_of
+
     made = provenance_of(paths, loaded_crane.name, model, seed) | forced
     noted = replace(result.model, provenance={**result.model.provenance, **forced})
     result = replace(result, provenance=made, model=noted)
@@ -158,37 +156,6 @@ def _write_proposals(out: Path, result: Any) -> None:
     for number, proposal in enumerate(result.proposals, start=1):
         write_text(out / f"proposal_{number}.py", proposal.text)
         save_model(proposal.model, out / f"proposal_{number}.yaml")
-
-
-def provenance_of(paths: list[Path], crane: str, model: str, seed: int) -> dict[str, Any]:
-    """What the result was made of: command, version, commit, crane, model, seed, and every file with its hash."""
-    from winch_friction import __version__
-
-    return {
-        "command": " ".join(["winch-friction", *map(shlex.quote, sys.argv[1:])]), "version": __version__,
-        "commit": _commit(), "crane": crane, "model": model, "seed": seed,
-        "files": [{"name": path.name, "sha256": _hash(path)} for path in paths],
-    }  # fmt: skip
-
-
-def _hash(path: Path) -> str:
-    """Of a file, or of all files of a bag's folder in order."""
-    digest = hashlib.sha256()
-    for each in sorted(path.rglob("*")) if path.is_dir() else [path]:
-        if each.is_file():
-            with each.open("rb") as content:
-                while chunk := content.read(1 << 20):
-                    digest.update(chunk)
-    return digest.hexdigest()
-
-
-def _commit() -> str:
-    """Of the package's own repository, '' where it was installed without one."""
-    here = Path(__file__).resolve().parents[2]
-    if not (here / ".git").exists():
-        return ""
-    said = subprocess.run(["git", "-C", str(here), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return said.stdout.strip()
 
 
 def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[Any]:

@@ -169,6 +169,7 @@ def practice(
     from winch_friction.cli.console import progress, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
     from winch_friction.cli.inputs import refuse_implausible
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
@@ -182,7 +183,8 @@ def practice(
         progress=progress,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
-    write_practice_report(done, out / "report.html")
+    files = sorted(each for each in _example(example).iterdir() if each.is_file())
+    write_practice_report(done, out / "report.html", provenance_of(files, folder.crane.name, seed=seed) | forced)
     save_model(done.motor_seed, out / "motor.yaml")
     save_model(replace(done.seed, provenance={**done.seed.provenance, **forced}), out / "seed.yaml")
     if json:

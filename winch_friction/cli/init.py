@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.console import show_json
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
 from winch_friction.physics.errors import InputError
@@ -17,6 +18,7 @@ Force = Annotated[bool, typer.Option(help="Overwrite a file that exists.")]
 OfCrane = Annotated[
     str, typer.Option(help="Crane file or shipped name that it belongs to.", autocompletion=complete_crane)
 ]
+Json = Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")]
 FileName = Annotated[str, typer.Option(help="Name in the file.")]
 
 
@@ -36,6 +38,7 @@ def crane(
     ] = None,
     out: Out = None,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """A crane file.
 
@@ -56,11 +59,11 @@ def crane(
         "wire": (wire, float, "wire diameter, mm"),
     }
     facts = CraneFacts(**_answered(asked), inertia=inertia)
-    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), force)
+    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), force, as_json)
 
 
 @app.command()
-def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False) -> None:
+def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
     """A plant file (pump, loop, accumulator), sized for a crane.
 
     Example: winch-friction init plant --crane crane_50t.yaml
@@ -69,11 +72,11 @@ def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = F
 
     known = _hydraulic(crane)
     name = name or f"plant_{known.name}"
-    _write(out or Path(f"{name}.yaml"), plant_text(known, name), force)
+    _write(out or Path(f"{name}.yaml"), plant_text(known, name), force, as_json)
 
 
 @app.command()
-def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False) -> None:
+def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
     """A rough seed model, scaled from paper 2's cranes to this one; identify replaces it.
 
     Example: winch-friction init model --crane crane_50t.yaml
@@ -82,7 +85,7 @@ def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = F
 
     known = _hydraulic(crane)
     name = name or f"seed_{known.name}"
-    _write(out or Path(f"{name}.yaml"), model_text(known, name), force)
+    _write(out or Path(f"{name}.yaml"), model_text(known, name), force, as_json)
 
 
 @app.command()
@@ -96,6 +99,7 @@ def scenario(
     name: FileName = "",
     out: Out = None,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """A scenario for the simulator, for a crane and its plant.
 
@@ -110,11 +114,11 @@ def scenario(
         raise InputError(f"--mode ahc: crane '{known.name}' has no groups active and passive; use --mode normal")
     name = name or f"{mode}_{known.name}"
     text = scenario_text(known, name, plant or f"plant_{known.name}.yaml", mode, load)
-    _write(out or Path(f"{name}.yaml"), text, force)
+    _write(out or Path(f"{name}.yaml"), text, force, as_json)
 
 
 @app.command("map")
-def map_(crane: OfCrane = "", out: Out = None, force: Force = False) -> None:
+def map_(crane: OfCrane = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
     """A map for `import`, to be filled in by hand; better: let `import LOG --propose` write it from the log.
 
     Example: winch-friction init map --crane crane_50t.yaml --out log_map.yaml
@@ -122,12 +126,14 @@ def map_(crane: OfCrane = "", out: Out = None, force: Force = False) -> None:
     from winch_friction.cli.init_texts import map_text
 
     known = _hydraulic(crane) if crane else None
-    _write(out or Path("log_map.yaml"), map_text(known), force)
+    _write(out or Path("log_map.yaml"), map_text(known), force, as_json)
 
 
 @app.command()
 def schemas(
-    out: Annotated[Path, typer.Option(help="Folder for the JSON Schemas.")] = Path("schemas"), force: Force = False
+    out: Annotated[Path, typer.Option(help="Folder for the JSON Schemas.")] = Path("schemas"),
+    force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """The JSON Schemas of all files, for an editor's completion.
 
@@ -137,8 +143,8 @@ def schemas(
 
     from winch_friction.simulation.file_schemas import all_schemas
 
-    for name, schema in all_schemas().items():
-        _write(out / f"{name}.schema.json", json.dumps(schema, indent=2) + "\n", force)
+    texts = {out / f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in all_schemas().items()}
+    _write_all(texts, force, as_json)
 
 
 def _answered(asked: dict[str, tuple[Any, type, str]]) -> dict[str, Any]:
@@ -163,9 +169,20 @@ def _hydraulic(name: str) -> Any:
     return crane
 
 
-def _write(path: Path, text: str, force: bool) -> None:
+def _write(path: Path, text: str, force: bool, as_json: bool) -> None:
+    _write_all({path: text}, force, as_json)
+
+
+def _write_all(texts: dict[Path, str], force: bool, as_json: bool) -> None:
+    """All files or, when one of them exists, none."""
     from winch_friction.records.atomic import write_text
 
-    if path.exists() and not force:
-        raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
-    print(f"written: {write_text(path, text)}")
+    there = [str(path) for path in texts if path.exists()]
+    if there and not force:
+        raise InputError(f"{', '.join(there)}: exists already; give another --out, or --force to overwrite it")
+    written = [str(write_text(path, text)) for path, text in texts.items()]
+    if as_json:
+        show_json({"written": written})
+        return
+    for each in written:
+        print(f"written: {each}")

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from winch_friction.cli.console import show_json
 from winch_friction.cli.names import complete_model
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.errors import InputError
@@ -18,6 +19,7 @@ def command(
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file of your own terms in the model.")] = None,
     namespace: Annotated[str, typer.Option(help="Namespace of the winch's nodes.")] = "",
     node: Annotated[str, typer.Option(help="Name of the node.")] = "compensator",
+    as_json: Annotated[bool, typer.Option("--json", help="The node's answer as JSON.")] = False,
 ) -> None:
     """Load a model into the running compensator, without a bump; what it refuses leaves the old model at work.
 
@@ -41,7 +43,11 @@ def command(
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.strip()]
         raise InputError(lines[-1] if lines else f"{node}: no answer")
-    print(done.stdout.strip())
+    said = done.stdout.strip()
+    if as_json:
+        show_json({"node": node, "namespace": namespace, "model": given, "said": said})
+    else:
+        print(said)
 
 
 def _existing(path: Path) -> Path:

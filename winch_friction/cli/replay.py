@@ -46,6 +46,7 @@ def command(
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
     from winch_friction.cli.inputs import crane_of, refuse_implausible
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import ASSUMED_STD, refuse_other_crane, unstated
     from winch_friction.records.mapping import bag_options_of
@@ -74,7 +75,7 @@ def command(
         said = replace(result.model, provenance={**result.model.provenance, **forced})
         write_outputs(out, replace(result.compensator, metadata=forced), result.estimator, said)
     if picture is not None:
-        said_of = {"recording": recording, "crane": winch.name, "model": model, "learned": learn, **forced}
+        said_of = {**provenance_of([recording], winch.name, model), "learned": learn, **forced}
         _draw(picture, result, seed, said_of)
     content = {**summary(result), **forced}
     if content["active_share"] < MOSTLY:

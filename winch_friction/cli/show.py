@@ -183,7 +183,7 @@ def _content(name: str, what: str, as_json: bool) -> None:
     if what == "crane":
         from winch_friction.records.crane_file import load_crane
 
-        load_crane(path)  # refused here rather than shown wrong
+        radii = load_crane(path).drum.layer_radii  # refused here rather than shown wrong
     else:
         from winch_friction.simulation import load_scenario
 
@@ -192,12 +192,15 @@ def _content(name: str, what: str, as_json: bool) -> None:
     if as_json:
         show_json(content)
         return
+    if what == "crane":
+        content["drum"] = f"layer_radii: {', '.join(f'{each:g}' for each in radii)} m"
     show_table(f"{what} {name} ({path})", ("key", "value"), [[key, _plain(value)] for key, value in content.items()])
 
 
 def _plain(value: Any) -> str:
     if isinstance(value, dict) and set(value) == {"value", "unit"}:
-        return f"{value['value']} {value['unit']}"
+        size = value["value"]
+        return f"{size:g} {value['unit']}" if isinstance(size, float) else f"{size} {value['unit']}"
     if isinstance(value, dict):
         return ", ".join(f"{key}: {_plain(each)}" for key, each in value.items())
     return ", ".join(_plain(each) for each in value) if isinstance(value, list) else str(value)

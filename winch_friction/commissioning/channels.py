@@ -7,9 +7,11 @@ import numpy as np
 
 from winch_friction.commissioning.finding import Finding
 from winch_friction.commissioning.view import broken_cells, usable
+from winch_friction.physics.channels import display_unit
 from winch_friction.physics.plausible import LIMITS
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.headers import conversion_to_si
 
 GAP = 5.0  # usual steps, as in records.run_checks
 LONG = 1000.0  # a recording is at most this many times as long as its samples say: else the clock has jumped
@@ -121,7 +123,9 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
     values = run[each.channel]
     span = each.largest - each.smallest
     if span <= 0.0 and kind not in MAY_STAND:
-        said = f"{run.name}: {each.channel} never changes ({each.smallest:.4g} {each.unit}): is the sensor connected?"
+        said = (
+            f"{run.name}: {each.channel} never changes ({_read(each.channel, each.smallest)}): is the sensor connected?"
+        )
         yield Finding("warning", "stuck", said, each.channel, (run.name,))
         return
     if kind in MAY_STAND or span <= 0.0:
@@ -130,15 +134,23 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
         said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
         yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
     if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
-        steps = f"steps of {each.step:.3g} {each.unit}, {span / each.step:.0f} over its range"
+        steps = f"steps of {_read(each.channel, each.step, of_size=True)}, {span / each.step:.0f} over its range"
         said = f"{run.name}: {each.channel} has {steps}"
         yield Finding("note", "quantisation", said, each.channel, (run.name,), {"step": each.step})
     for extreme in (each.smallest, each.largest):
         share = float(np.mean(values == extreme))
         if share > SATURATED and kind in MAY_SATURATE and extreme != 0.0:
             often = f"in {100 * share:.1f} % of the samples: saturated?"
-            said = f"{run.name}: {each.channel} is at {extreme:.4g} {each.unit} {often}"
+            said = f"{run.name}: {each.channel} is at {_read(each.channel, extreme)} {often}"
             yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
+
+
+def _read(column: str, value: float, of_size: bool = False) -> str:
+    """An SI value (`of_size`: a difference) in the unit in which people read the column."""
+    unit = column_unit(column) or "SI"
+    display = display_unit(column) or unit
+    scale, offset = conversion_to_si(display, unit, column) if display != unit else (1.0, 0.0)
+    return f"{(value - (0.0 if of_size else offset)) / scale:.4g} {display}"
 
 
 def _changes_always(values: FloatArray) -> bool:

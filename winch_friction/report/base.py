@@ -1,13 +1,14 @@
 """A report is a list of sections on one page: one self-contained HTML file that needs no network."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from winch_friction import __version__
 from winch_friction.records.atomic import write_text
+from winch_friction.report.decision import provenance_html
 from winch_friction.report.plots import has_plots, plot_scripts
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -36,9 +37,16 @@ class TextSection:
         return self.content
 
 
-def write_report(path: Path | str, title: str, sections: Sequence[Section], subtitle: str = "") -> Path:
-    """Write the page atomically and return its path."""
-    return write_text(Path(path), render(title, sections, subtitle))
+def write_report(
+    path: Path | str,
+    title: str,
+    sections: Sequence[Section],
+    subtitle: str = "",
+    provenance: Mapping[str, Any] | None = None,
+) -> Path:
+    """Write the page atomically and return its path; where it comes from, if that is given, stands last."""
+    last = [TextSection("Provenance", provenance_html(provenance))] if provenance else []
+    return write_text(Path(path), render(title, [*sections, *last], subtitle))
 
 
 def render(title: str, sections: Sequence[Section], subtitle: str = "") -> str:

@@ -1,7 +1,9 @@
 """The commissioning page: verdict, findings, the balance of every run, every channel, what to log next."""
 
+from collections.abc import Mapping
 from html import escape
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,13 +21,12 @@ KILO = 1e3  # N m per kN m
 MOST_RUNS_DRAWN = 24  # runs; beyond, the page would weigh more than a phone takes
 
 
-def write_check_report(path: Path, result: CheckResult) -> Path:
+def write_check_report(path: Path, result: CheckResult, provenance: Mapping[str, Any] | None = None) -> Path:
     """Write check.html: self-contained, opens offline."""
     count = len(result.runs)
     model = f", model {result.model}" if result.model else ""
-    return write_report(
-        path, "Commissioning check", check_sections(result), f"Crane {result.crane.name}{model}; {count} runs."
-    )
+    said = f"Crane {result.crane.name}{model}; {count} run{'s' if count != 1 else ''}."
+    return write_report(path, "Commissioning check", check_sections(result), said, provenance)
 
 
 def check_sections(result: CheckResult) -> list[Section]:

@@ -1,7 +1,8 @@
 """Friction curves as pages: one model over speed with its uncertainty, or two against each other."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -92,7 +93,11 @@ def parameter_html(model: FrictionModel) -> str:
 
 
 def write_comparison_page(
-    path: Path, pairs: Sequence[tuple[ModelCurve, ModelCurve]], sentence: str, facts: Sequence[tuple[str, str]]
+    path: Path,
+    pairs: Sequence[tuple[ModelCurve, ModelCurve]],
+    sentence: str,
+    facts: Sequence[tuple[str, str]],
+    provenance: Mapping[str, Any] | None = None,
 ) -> Path:
     """Two models on one grid: curves and difference at each load, and which terms make the difference."""
     first, second = pairs[0]
@@ -103,7 +108,7 @@ def write_comparison_page(
         TextSection("Curves and their difference", body),
         TextSection("Which terms differ", plot_html(difference_plot(*middle))),
     ]
-    return write_report(path, f"{second.model} against {first.model}", sections)
+    return write_report(path, f"{second.model} against {first.model}", sections, "", provenance)
 
 
 def pair_plot(first: ModelCurve, second: ModelCurve) -> Plot:

@@ -26,7 +26,12 @@ TRAIT_WORDS = {
 
 
 def write_fleet_report(
-    path: Path, verb: str, outcomes: Sequence[Outcome], content: Mapping[str, Any], store: Path
+    path: Path,
+    verb: str,
+    outcomes: Sequence[Outcome],
+    content: Mapping[str, Any],
+    store: Path,
+    provenance: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write the page atomically; `content` is that of fleet.json."""
     cranes = len({each.crane for each in outcomes})
@@ -37,7 +42,8 @@ def write_fleet_report(
         TextSection("Per crane", _per_crane(outcomes)),
         TextSection("Per recording", table_html(("recording", "exit", "s", "outcome"), _outcome_rows(outcomes))),
     ]
-    return write_report(path, f"Fleet: {verb}", sections, f"{cranes} cranes, {len(outcomes)} results of {verb}")
+    said = f"{cranes} cranes, {len(outcomes)} results of {verb}"
+    return write_report(path, f"Fleet: {verb}", sections, said, provenance)
 
 
 def _decision(outcomes: Sequence[Outcome], content: Mapping[str, Any], cranes: int) -> str:

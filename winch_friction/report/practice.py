@@ -1,6 +1,8 @@
 """The report of the practice: one page with the figures and tables of paper 2."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,10 +21,10 @@ from winch_friction.report.tables import for_people, number, table_html, value_f
 LOADS = (15.0, 55.0, 100.0)  # t
 
 
-def write_practice_report(practice: Practice, path: Path) -> Path:
+def write_practice_report(practice: Practice, path: Path, provenance: Mapping[str, Any] | None = None) -> Path:
     """Write the page; returns its path."""
     title = f"Friction practice: {practice.folder.name}"
-    return write_report(path, title, practice_sections(practice), practice.folder.note)
+    return write_report(path, title, practice_sections(practice), practice.folder.note, provenance)
 
 
 def practice_sections(practice: Practice) -> list[Section]:

@@ -45,7 +45,7 @@ def channel_rows(run: Run) -> list[dict[str, Any]]:
                 "least": least,
                 "largest": most,
                 "mean": mean,
-                "missing": len(run) - len(good),
+                "missing [samples]": len(run) - len(good),
             }
         )
     return rows

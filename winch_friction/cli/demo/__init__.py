@@ -118,6 +118,7 @@ def _evaluate(plan: Any, search: Any, elapsed: float) -> dict[str, Any]:
     from winch_friction.cli.demo.page import sections
     from winch_friction.cli.demo.picture import draw
     from winch_friction.cli.demo.recording import read_recording
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.friction.scaled import scaled_system
     from winch_friction.records.atomic import write_text
     from winch_friction.records.model_file import save_model
@@ -135,7 +136,8 @@ def _evaluate(plan: Any, search: Any, elapsed: float) -> dict[str, Any]:
     save_model(recording.models[-1], plan.out / "learned_model.yaml")
     parameters = learned_parameters(plan.seed, recording.models[-1], truth)
     page = sections(plan, recording, rows, agreements, parameters, search)
-    write_report(plan.out / "demo.html", "The loop closes", page, f"{plan.scenario}, sea {plan.sea}")
+    made = provenance_of([plan.bag], plan.crane.name, plan.seed.name, plan.sea)
+    write_report(plan.out / "demo.html", "The loop closes", page, f"{plan.scenario}, sea {plan.sea}", made)
     results = _results(plan, rows, agreements, elapsed)
     results["parameters"] = [each.as_dict() for each in parameters]
     results["efficiency"] = {

@@ -57,9 +57,10 @@ class FrictionLaw:
         return self._states
 
     def _functions(self, groups: int) -> CompiledTerms:
-        if groups not in self._compiled:
-            self._compiled[groups] = self.model.compile(groups)
-        return self._compiled[groups]
+        found = self._compiled.get(groups)
+        if found is None:
+            found = self._compiled[groups] = self.model.compile(groups)
+        return found
 
 
 def check_gains(gains: Mapping[str, float]) -> None:

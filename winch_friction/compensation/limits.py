@@ -13,6 +13,8 @@ class TorqueLimits:
 
     def bound(self, torque: float, envelope: float) -> float:
         """The torque inside the absolute limit and +- `envelope`."""
+        if abs(torque) <= envelope and abs(torque) <= self.absolute:
+            return torque
         torque = self._clamped("envelope", torque, envelope)
         return self._clamped("absolute", torque, self.absolute)
 

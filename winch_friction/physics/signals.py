@@ -4,7 +4,8 @@ Everything is SI. An absent scalar is NaN in a `Sample` and a missing key in a `
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,9 @@ class Sample:
     rope_force: float = NAN
     mechanical_power: float = NAN
     motor_current: float = NAN
+
+
+_SAMPLE_FIELDS = tuple(each.name for each in fields(Sample))
 
 
 @dataclass(frozen=True)
@@ -150,13 +154,14 @@ class Run:
 
     def samples(self) -> Iterator[Sample]:
         """The run as samples, in order: what a node would have been given."""
-        scalars = [name for name in SAMPLE_SCALARS if name in self.columns]
-        scalar_rows = zip(*(self.columns[name].tolist() for name in ("time", *scalars)), strict=True)
         groups = self.groups
-        channels = [self.column(f"{group}.{channel}").tolist() for group in groups for channel in GROUP_CHANNELS]
-        group_rows = zip(*channels, strict=True) if channels else ((),) * len(self)
-        for scalar_row, group_row in zip(scalar_rows, group_rows, strict=True):
-            values = dict(zip(scalars, scalar_row[1:], strict=True))
-            values.setdefault("motor_speed", NAN)
-            members = {g: GroupSample(*group_row[3 * k : 3 * k + 3]) for k, g in enumerate(groups)}
-            yield Sample(time=scalar_row[0], groups=members, **values)
+        members = [map(GroupSample, *(self._values(f"{g}.{channel}") for channel in GROUP_CHANNELS)) for g in groups]
+        by_group = zip(*members, strict=True) if members else repeat((), len(self))
+        named = (dict(zip(groups, each, strict=True)) for each in by_group)
+        yield from map(Sample, *(named if each == "groups" else self._values(each) for each in _SAMPLE_FIELDS))
+
+    def _values(self, column: str) -> Iterator[float]:
+        """A column's values as floats, one by one: lists of all of them take four times the run's memory."""
+        if column not in self.columns:
+            return repeat(NAN)
+        return iter(np.ascontiguousarray(self.columns[column], np.float64).data)

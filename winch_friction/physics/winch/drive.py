@@ -101,14 +101,12 @@ class Drive:
             return tuple(name for name in self.channels if not plausible(name, getattr(sample, name)))
         if not sample.groups:
             return ("motor groups",)
-        return tuple(
-            [
-                f"{name}.{channel}"
-                for name, group in sample.groups.items()
-                for channel, value in zip(GROUP_CHANNELS, _group_values(group), strict=True)
-                if not plausible(channel, value)
-            ]
-        )
+        lost: tuple[str, ...] = ()
+        for name, group in sample.groups.items():
+            for channel, value in zip(GROUP_CHANNELS, _group_values(group), strict=True):
+                if not plausible(channel, value):
+                    lost += (f"{name}.{channel}",)
+        return lost
 
     def _torque(self, read: _Read, crane: "Crane", speed: Any) -> Any:
         if self.kind == POWER:

@@ -61,10 +61,12 @@ def sample_operating_point(
             x[index] = value
     x[_DIRECTION], x[_MAGNITUDE], x[_SPEED] = smooth_sign(speed, width), abs(speed), speed
     x[_DRUM_TORQUE], x[_ACCELERATION] = drum_torque, acceleration
-    x[_MOTOR_TOTAL] = crane.motor_total(sample.groups)
+    total = 0
     for name, g in sample.groups.items():
-        a, b = g.pressure_a, g.pressure_b
-        x += crane.groups[name], abs(a - b), a + b, g.displacement
+        a, b, count = g.pressure_a, g.pressure_b, crane.motor_count(name)
+        total += count
+        x += count, abs(a - b), a + b, g.displacement
+    x[_MOTOR_TOTAL] = total if sample.groups else crane.motor_total(())
     return tuple(x)
 
 

@@ -21,6 +21,7 @@ from winch_friction.nodes.qos import LATCHED
 from winch_friction.records.model_file import model_from_text
 from winch_friction.replay.recording import replay_recording
 
+pytestmark = pytest.mark.slow
 POLICIES = Path(__file__).resolve().parents[2] / "config" / "sros2" / "policies.xml"
 LAST_RAMP = 51  # messages of 0.02 s in a ramp of 1 s
 NODES = ("compensator", "estimator", "simulator")

@@ -206,10 +206,12 @@ class WinchNode(Guarded, LifecycleNode):
         self._publishers_made.append(made)
         return made
 
-    def every(self, period: float, action: Callable[[], None]) -> None:
-        """Call `action` on the steady clock while active: timers on ROS time freeze when it steps back (rclpy#1490)."""
+    def every(self, period: float, action: Callable[[], None]) -> Any:
+        """Call `action` on the steady clock while active: timers on ROS time freeze when it steps back (rclpy#1490).
+        Returns the timer."""
         timer = self.create_timer(period, self.guarded(action), clock=self.steady_clock)
         self._active_entities.append(lambda: self.destroy_timer(timer))
+        return timer
 
     def while_active(self, subscription: Any) -> None:
         """Drop a subscription when the node stops being active."""

@@ -28,6 +28,7 @@ from winch_friction.simulation.scenario import load_scenario
 
 FEEDFORWARD = "compensator/friction_torque"
 LONGEST_PAUSE = 0.05  # s; how often an answer that does not come is looked for
+SHORTEST_PAUSE = 0.001  # s; two samples each: more than a plant with its messages manages, and no spinning in between
 # scans between two messages of what changes slowly, as a PLC does it
 SLOW_CHANNELS = {"hook_load": 5, "wire_out": 25, "wire_layer": 25, "oil_temperature": 50}
 MOST_AT_ONCE = 2  # samples in a tick, to catch up
@@ -98,7 +99,8 @@ class SimulatorNode(WinchNode):
         for topic in {FEEDFORWARD, *self.answers.topics}:
             self.while_active(self.create_subscription(JointState, topic, self._answer_taker(topic), fresh(OUTPUT)))
         scans = self.own.rate * self.voyage.scenario.sensors.rate  # per second; 0: the answers set the pace
-        self.every(min(LONGEST_PAUSE, 1.0 / scans) if scans else LONGEST_PAUSE, self._tick)
+        pause = max(SHORTEST_PAUSE, 1.0 / scans) if scans else LONGEST_PAUSE
+        self._ticks = self.every(min(LONGEST_PAUSE, pause), self._tick)
         self._begin()
 
     def _begin(self) -> str:
@@ -112,6 +114,7 @@ class SimulatorNode(WinchNode):
         self._said = 0.0
         self._running, self._ready_since = True, float("inf")
         self._started: float | None = None
+        self._ticks.reset()
         return f"scenario '{self.voyage.scenario.name}' from its start"
 
     # -- pace
@@ -160,6 +163,7 @@ class SimulatorNode(WinchNode):
 
     def _end(self) -> None:
         self._running = False
+        self._ticks.cancel()  # a simulator that has nothing to do costs nothing
         self._progress.publish(Float64(data=1.0))
         if self.own.repeat:
             self._begin()

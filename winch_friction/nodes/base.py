@@ -105,8 +105,7 @@ class WinchNode(Guarded, LifecycleNode):
         """Take over changed parameters."""
 
     def load_terms(self) -> None:
-        """Register the terms of `terms_file` and declare what can be set for them; `InputError` when it is no such
-        file."""
+        """Register the terms of `terms_file` and declare what can be set for them; `InputError` when there are none."""
         if self.options.terms_file:
             try:
                 load_file(self.options.terms_file)
@@ -207,8 +206,7 @@ class WinchNode(Guarded, LifecycleNode):
         return made
 
     def every(self, period: float, action: Callable[[], None]) -> Any:
-        """Call `action` on the steady clock while active: timers on ROS time freeze when it steps back (rclpy#1490).
-        Returns the timer."""
+        """A timer on the steady clock while active: those on ROS time freeze when it steps back (rclpy#1490)."""
         timer = self.create_timer(period, self.guarded(action), clock=self.steady_clock)
         self._active_entities.append(lambda: self.destroy_timer(timer))
         return timer

@@ -64,6 +64,7 @@ class Voyage:
         self._origin = origin if self._origin is None else max(self.now + gap, origin)
         self.scenario = self._legs[self._begun % len(self._legs)]
         self._begun += 1
+        del self._simulator  # 10 MB of history and noise: not twice at a time
         self._simulator = self._fresh()
         self.samples = 0
 

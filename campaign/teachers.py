@@ -32,6 +32,9 @@ class Lesson:
     share: float = 0.0  # ... of the largest feedforward of the seed
     states: dict[str, int] = field(default_factory=dict)
     invalid: dict[str, float] = field(default_factory=dict)  # parameter -> when it was first declared
+    doubted: dict[str, float] = field(
+        default_factory=dict
+    )  # what else was said of the seed or the inputs -> when first
     refused: int = 0
     back: float = 0.0  # parameters off the seed after ~/reset, relative, the worst
     bump: float = 0.0  # off the seed's feedforward a ramp time after the seed was loaded
@@ -115,6 +118,10 @@ def lesson(name: str, seconds: float = SECONDS) -> Lesson:
         if k % 50 == 0:
             state = str(estimator.status(ORIGIN + time)["state"])
             said.states[state] = said.states.get(state, 0) + 1
+            if estimator.contradiction:
+                said.doubted.setdefault("inputs contradict", time)
+            if estimator.law.status()["seed"] == "refuted":
+                said.doubted.setdefault("seed refuted", time)
             for each in estimator.parameters():
                 if each.status == "invalid":
                     said.invalid.setdefault(each.name, time)
@@ -137,15 +144,19 @@ def table(said: list[Lesson]) -> str:
     """The page's part."""
     head = (
         "| teacher | largest feedforward N m | furthest from the seed's N m | of its largest | estimator | declared "
-        "invalid, after s | off the seed after reset | feedforward off the seed's N m |\n"
-        "|---|---|---|---|---|---|---|---|\n"
+        "invalid, after s | said besides, after s | off the seed after reset | feedforward off the seed's N m |\n"
+        "|---|---|---|---|---|---|---|---|---|\n"
     )
     return head + "\n".join(
         f"| {each.name} | {each.largest:.0f} | {each.excursion:.0f} | {100 * each.share:.0f} % | {_states(each)} | "
-        f"{', '.join(f'{n} {t:.0f}' for n, t in each.invalid.items()) or 'none'} | {100 * each.back:.1g} % | "
+        f"{_first(each.invalid)} | {_first(each.doubted)} | {100 * each.back:.1g} % | "
         f"{each.bump:.1f} |"
         for each in said
     )
+
+
+def _first(said: dict[str, float]) -> str:
+    return ", ".join(f"{name} {time:.0f}" for name, time in said.items()) or "none"
 
 
 def _states(said: Lesson) -> str:

@@ -1,5 +1,7 @@
 """A sea that is sailed again while the time goes on, and the answers that lockstep waits for."""
 
+import weakref
+
 import pytest
 
 from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
@@ -73,3 +75,13 @@ def test_hidden_effects_by_name_and_size() -> None:
     assert hidden_effects(["signal_delay", "wear_drift=0.5"]) == [("signal_delay", 1.0), ("wear_drift", 0.5)]
     with pytest.raises(InputError, match="must be a number"):
         hidden_effects(["wear_drift=much"])
+
+
+def test_the_old_voyage_is_gone_before_the_next_is_drawn(crane_150t, crane2_model, monkeypatch) -> None:
+    """Two of them at a time left holes in the heap: 21 MB in eight voyages of 300 s."""
+    voyage = Voyage(adjusted(load_scenario("ahc_irregular"), 50.0, 0.5), crane_150t, crane2_model, seed=4)
+    voyage.begin(1000.0)
+    history, fresh, left = weakref.ref(voyage._simulator.history), Voyage._fresh, []
+    monkeypatch.setattr(Voyage, "_fresh", lambda self: left.append(history()) or fresh(self))
+    voyage.begin(1000.0)
+    assert left == [None]

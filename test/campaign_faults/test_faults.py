@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from campaign.faults.kinds import KINDS
+from campaign.faults.study import one_trial
 from campaign.faults.trial import Trial, violations
 from campaign.faults.voyages import voyage
 from campaign.faults.watch import OutputWatch, Row
@@ -24,6 +25,14 @@ def test_a_draw_of_every_kind_is_safe():
         "notes": trial.notes
     }
     assert max(row.largest for row in trial.rows.values()) > 100.0  # it did feed forward in between
+
+
+@pytest.mark.parametrize("number", [51, 341])
+def test_a_trial_that_once_found_something_finds_nothing_any_more(number):
+    """An input that came long ago under a young stamp; a torque left by a wrong command, a silence and a return."""
+    rows, draws, notes = one_trial(number, 1_000_000)
+    assert draws > 100
+    assert violations(rows.values()) == 0, notes
 
 
 def test_every_kind_can_be_drawn_and_spoils_something():

@@ -1,11 +1,15 @@
 """The drum torque without a load cell: from the torque balance, with the signs of inertia and friction."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
+from winch_friction.compensation.inputs import Needs
 from winch_friction.compensation.load import DrumTorque
 from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.winch.ranges import ChannelRanges
 
 FULL = 3 * 3.4e-5 + 8 * 1.1e-5  # m^3/rad of both groups
 
@@ -33,6 +37,21 @@ def test_the_estimate_follows_slowly(crane_150t):
         each.learn(balanced(crane_150t, 60e3, 0.0, 0.0), 0.0, 0.0, 0.02)
     reached = each.value(Sample(0.0, 0.0)) / crane_150t.drum_torque(1e3)
     assert reached == pytest.approx(60.0 - 10.0 / math.e, abs=0.1)
+
+
+def test_a_measured_rope_force_is_the_load_where_no_hook_load_is(crane_150t):
+    each = DrumTorque(crane_150t, 40e3, 5.0)
+    force = Sample(0.0, 0.0, rope_force=30e3 * GRAVITY, wire_layer=6.0)
+    assert each.value(force) == pytest.approx(crane_150t.drum_torque(30e3, 6.0))
+    both = Sample(0.0, 0.0, rope_force=30e3 * GRAVITY, hook_load=20e3, wire_layer=6.0)
+    assert each.value(both) == pytest.approx(crane_150t.drum_torque(20e3, 6.0))
+
+
+def test_a_rope_force_that_this_crane_cannot_hold_is_no_input(crane_150t):
+    needs = Needs(ChannelRanges(crane_150t), {"drum_torque"}, "measured", load_known=False)
+    sample = balanced(crane_150t, 30e3, 0.0, 0.0)
+    assert needs.missing(replace(sample, rope_force=30e3 * GRAVITY)) == ()
+    assert needs.missing(replace(sample, rope_force=1e8)) == ("rope_force",)
 
 
 def test_a_load_cell_comes_first_then_the_setting(crane_150t):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from own_winch import FMU_SOURCE, churning, cycle
 
+from campaign.own_simulation import named
 from winch_friction.cli import main
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.own_simulation import simulated_column, simulated_error
@@ -32,7 +33,7 @@ def without_column(run):
     return replace(run, columns={k: v for k, v in run.columns.items() if not k.endswith("_simulated")})
 
 
-def names(found):
+def names_of(found):
     return {each["name"] for each in found["effects"]} | {
         rival for each in found["effects"] for rival in each["indistinguishable_from"]
     }
@@ -42,9 +43,16 @@ def test_what_the_simulation_lacks_is_named_whatever_its_own_friction(crane_150t
     runs = [cycle(k, f"run_{k}") for k in range(8)]
     found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).content()
     assert found["verdict"] in ("missing_effect", "ambiguous")
-    assert "churning" in names(found)
+    assert "churning" in names_of(found)
     gap = found["gap"]["holdout"]
     assert gap["after"] < 0.3 * gap["before"]
+
+
+@pytest.mark.parametrize("effect", ["inertia_error", "tare_load"])
+def test_an_error_of_crane_file_or_log_is_named_against_a_column_too(crane_150t, crane2_model, effect):
+    """A correction changes what is right for the winch, and not what was simulated: the proof must see it."""
+    found, said = named(effect, 9000, True, crane_150t, crane2_model)
+    assert found, said
 
 
 def test_a_simulation_that_lacks_nothing_is_left_alone(crane_150t, crane2_model):
@@ -94,7 +102,7 @@ def test_the_verb_takes_an_fmu_and_writes_what_to_add(fmu, tmp_path, capsys):
     assert "belong together" in capsys.readouterr().err
     assert main.run([*call, "--fmu", str(fmu[0]), "--fmu-map", str(fmu[1]), "--no-report", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert "churning" in names(found)
+    assert "churning" in names_of(found)
     table = np.genfromtxt(out / "addition.csv", delimiter=",", names=True, deletechars="")
     speed, torque = table["motor_speed_[rpm]"] * np.pi / 30.0, table["torque_to_add_[N*m]"]
     fast = np.abs(speed) > 60.0

@@ -28,8 +28,11 @@ from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import mean_direction
 from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
+from winch_friction.estimation.sample import HangingLoad
 from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
 from winch_friction.physics.friction.seed_range import seed_range
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.units import GRAVITY
 
 SENSORS = (0.01, 1e5)
 
@@ -377,3 +380,10 @@ def test_white_innovations_are_consistent_and_twice_too_large_ones_are_not():
     assert bad.share_inside < 0.05
     assert factor.value == pytest.approx(4.0, rel=0.2)
     assert nis_band(100)[0] < 1.0 < nis_band(100)[1]
+
+
+def test_the_rope_force_says_the_hanging_mass_where_no_hook_load_is(crane_150t):
+    load = HangingLoad(crane_150t, time_constant=5.0)
+    assert load.following(Sample(0.0, 0.0, rope_force=30e3 * GRAVITY), 0.02) == pytest.approx(30e3)
+    assert load.following(Sample(0.0, 0.0, rope_force=30e3 * GRAVITY, hook_load=20e3), 0.02) == 20e3
+    assert math.isnan(load.following(Sample(0.0, 0.0), 0.02))

@@ -45,7 +45,7 @@ def diagnosed(
     diagnosis = diagnose(views, crane, model, known)
     findings = [
         *_named_crane(runs, crane, others),
-        *_trusted(_mistake(diagnosis), crane),
+        *_trusted(_mistake(diagnosis, crane), crane),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
@@ -62,10 +62,10 @@ def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
     return [replace(each, severity="warning") if each.contradicts else each for each in findings]
 
 
-def _mistake(diagnosis: Diagnosis) -> list[Finding]:
+def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
     best, bad = diagnosis.best, diagnosis.contradicting
     if best is None:
-        return [_unexplained(diagnosis)] if bad else []
+        return [_unexplained(diagnosis, crane)] if bad else []
     # a channel that only tells the speed again is not used by the balance: the rest fits without it
     harmless = best.mistake.cause == "companion" and max(best.scores) < CONTRADICTS
     rivals = [
@@ -112,15 +112,24 @@ def _evidence(diagnosis: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesi
     }
 
 
-def _unexplained(diagnosis: Diagnosis) -> Finding:
+def _unexplained(diagnosis: Diagnosis, crane: Crane) -> Finding:
     bad = diagnosis.contradicting
     worst = max(range(len(diagnosis.scores)), key=lambda k: diagnosis.scores[k])
     closure = diagnosis.closures[worst]
-    words = (
-        f"{run_words(bad, len(diagnosis.names))} cannot be this crane's and no single mistake explains it: the torque "
-        f"balance of {closure.run} is off by {closure.before:.3g} N m RMS where the load's torque is "
-        f"{closure.level:.3g} N m; check crane file, units and signs one by one"
+    runs = run_words(bad, len(diagnosis.names))
+    off = (
+        f"the torque balance of {closure.run} is off by {closure.before:.3g} N m RMS where the load's torque is "
+        f"{closure.level:.3g} N m"
     )
+    if not crane.drive.hydraulic:
+        words = (
+            f"{runs} leave the torque balance open and no single mistake closes it: {off}; of a drive of kind "
+            f"'{crane.drive.kind}' friction and inertia are not known beforehand, so this may be the winch itself: "
+            "winch-friction gap says what is missing"
+        )
+        return Finding("error", "unexplained", words, "", bad, {"misfit_before": diagnosis.score, "limit": CONTRADICTS})
+    words = f"{runs} cannot be this crane's and no single mistake explains it: {off}; check crane file, units and signs"
+    words += " one by one"
     nearest = diagnosis.hypotheses[0] if diagnosis.hypotheses else None
     if nearest is not None and nearest.score < diagnosis.score:
         words += f"; nearest: {nearest.mistake.words} (misfit {diagnosis.score:.3g} -> {nearest.score:.3g})"

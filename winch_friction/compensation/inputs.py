@@ -26,11 +26,11 @@ class Needs:
         """Columns that the sample does not have, or not within what the crane can show."""
         plausible, drive = self._ranges.plausible, self._crane.drive
         lost = [name for name in self._scalars if not plausible(name, getattr(sample, name))]
-        if sample.hook_load == sample.hook_load and not plausible("hook_load", sample.hook_load):
-            lost.append("hook_load")
+        cells = {"hook_load": sample.hook_load, "rope_force": sample.rope_force}
+        lost += [name for name, value in cells.items() if value == value and not plausible(name, value)]
         if not self._crane.drum.has(sample.wire_layer):
             lost.append("wire_layer")
-        if drive.hydraulic or (self._balance_for_load and not math.isfinite(sample.hook_load)):
+        if drive.hydraulic or (self._balance_for_load and not any(map(math.isfinite, cells.values()))):
             lost += drive.lacking(sample, plausible)
         return tuple(lost)
 

@@ -10,9 +10,9 @@ from winch_friction.physics.winch.torque_balance import sample_drive_torque
 class DrumTorque:
     """T_d in N m for the compensator.
 
-    Without `hook_load` and without a configured load it is i (drive torque - J omega' - friction), low-passed over
-    `time_constant` s: slow against the sea, so that an error of the friction at reversal cannot feed back through the
-    load.
+    `hook_load` comes first, then the measured `rope_force`, then a configured load. Without any of them it is
+    i (drive torque - J omega' - friction), low-passed over `time_constant` s: slow against the sea, so that an error
+    of the friction at reversal cannot feed back through the load.
     """
 
     def __init__(self, crane: Crane, load: float, time_constant: float) -> None:
@@ -31,7 +31,11 @@ class DrumTorque:
 
     def value(self, sample: Sample) -> float:
         """T_d in N m; NaN while nothing is known."""
-        load = sample.hook_load if math.isfinite(sample.hook_load) else self._load
+        load = sample.hook_load
+        if not math.isfinite(load):
+            if math.isfinite(sample.rope_force):
+                return sample.rope_force * self.crane.drum.radius(sample.wire_layer)
+            load = self._load
         if math.isfinite(load):
             return self.crane.drum_torque(load, sample.wire_layer)
         if not math.isfinite(self._estimate):

@@ -38,7 +38,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     """
     options = options or GapOptions()
     _check(runs, options)
-    every = [thinned(run) for run in against_simulations(runs, model)]
+    every = against_simulations([thinned(run) for run in runs], model, crane)
     runs, notes = adequacy.long_enough(every)
     checks = adequacy.of_records(every, runs)
     if not all(check.met for check in checks):

@@ -42,6 +42,8 @@ def usable(sample: Sample, ranges: ChannelRanges) -> bool:
         return False
     if sample.hook_load == sample.hook_load and not ranges.plausible("hook_load", sample.hook_load):
         return False
+    if sample.rope_force == sample.rope_force and not ranges.plausible("rope_force", sample.rope_force):
+        return False
     return not ranges.crane.drive.lacking(sample, ranges.plausible)
 
 
@@ -103,7 +105,7 @@ class SensorErrors:
 
 
 class HangingLoad:
-    """Low-passed hook load and what follows from it."""
+    """Low-passed hook load, or the mass that the measured rope force carries, and what follows from it."""
 
     def __init__(self, crane: Crane, time_constant: float) -> None:
         self._crane = crane
@@ -112,7 +114,7 @@ class HangingLoad:
 
     def following(self, sample: Sample, dt: float) -> float:
         """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
-        measured = sample.hook_load
+        measured = sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
         if not math.isfinite(measured) or measured < 0.0:
             return self.mass
         if not abs(measured - self.mass) <= PICKED_UP * self.mass:

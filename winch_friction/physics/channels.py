@@ -68,7 +68,7 @@ CHANNELS = (
     Channel("shaft_angle", "rad", "rad", "motor shaft", topic=Topic.MOTION),
     Channel("load_torque", "N*m", "N*m", "load at the motor shaft, without inertia", (-1.0e8, 1.0e8),
             topic=Topic.OF_DRIVE),
-    Channel("rope_force", "N", "kN", "tension of the rope at the drum", _FORCES, topic=Topic.OF_DRIVE),
+    Channel("rope_force", "N", "kN", "tension of the rope at the drum", _FORCES, topic=Topic.PLAIN),
     Channel("mechanical_power", "W", "kW", "of all motors at their shafts, positive when hoisting a load",
             (-1.0e9, 1.0e9), topic=Topic.OF_DRIVE),
     Channel("motor_current", "A", "A", "torque-making current per motor, signed", (-1.0e5, 1.0e5),

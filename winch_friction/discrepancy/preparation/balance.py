@@ -13,9 +13,9 @@ import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, dilated, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
-from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, simulated_error
+from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
-from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
+from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
@@ -132,13 +132,23 @@ class Balancing:
     def of(self, load: SuspendedLoad) -> Balance:
         """The balance with this load; raises `InputError` where the run lacks what closes it."""
         balance = self._modelled(load)
-        reference = self.run.metadata.get(REFERENCE)
-        if reference is None:
+        known: Stood | None = self.run.metadata.get(REFERENCE)
+        if known is None:
             return balance
         # a user's simulation stands where the reference model stood: what it is off by is the gap
-        stood = balance if reference is self.model else replace(self, model=reference)._modelled(load)
+        stood = balance if known.model is self.model else self._as_simulated(known, load)
         error = simulated_error(self.grid.columns, self.run, balance.groups, self.crane, load.radius)
+        error = error + displacement_error(self.grid.columns, balance.groups, stood.groups)
         return replace(balance, measured=stood.predicted + self._smoothed(error))
+
+    def _as_simulated(self, known: Stood, load: SuspendedLoad) -> Balance:
+        """By the model that the simulation stands for, with load, displacement, radius and inertia that it knew."""
+        if len(known.grid.time) != len(self.grid.time):  # a delay was taken out and has shortened the run
+            return replace(self, model=known.model)._modelled(load)
+        told = load_of(known.grid, self.motion, known.crane, float(np.median(load.mass)))
+        moved = load.acceleration + (told.lever - load.lever) * self.motion.acceleration
+        hung = told if told.tension_measured else replace(told, acceleration=moved, heave=load.heave)
+        return replace(self, run=known.run, crane=known.crane, model=known.model, grid=known.grid)._modelled(hung)
 
     def _modelled(self, load: SuspendedLoad) -> Balance:
         inertial = self.crane.inertia * self.motion.acceleration + load.inertial_torque

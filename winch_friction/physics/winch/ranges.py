@@ -65,6 +65,7 @@ class ChannelRanges:
             "motor_speed": (-self.speed, self.speed),
             "speed_reference": (-self.speed, self.speed),
             "hook_load": (LIGHTEST_LOAD * self.load, self.load),
+            "rope_force": (LIGHTEST_LOAD * self.load * GRAVITY, self.load * GRAVITY),
             "heave_velocity": (-MOST_HEAVE, MOST_HEAVE),
             "wire_layer": (0.5, len(self.crane.drum.layer_radii) + 0.5),
             "pressure_a": (LOWEST_PRESSURE, self.pressure),

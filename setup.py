@@ -51,6 +51,7 @@ EXTRAS = {
         "pint>=0.19",
         "pyarrow>=14",
         "openpyxl>=3.1",
+        "python-calamine>=0.2",
         "h5py>=3.8",
         "npTDMS>=1.7",
         "asammdf>=7.4",

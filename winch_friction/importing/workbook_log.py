@@ -1,5 +1,6 @@
 """Logs as spreadsheets (.xlsx, .xlsm): stored values of the fullest sheet; formulas without a stored value are said."""
 
+import contextlib
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -61,7 +62,9 @@ def _refuse_bombs(path: Path) -> None:
 
 
 def _sheets(path: Path) -> dict[str, list[Sequence[Any]]]:
-    """Rows of stored values of every sheet."""
+    """Rows of stored values of every sheet: by calamine, ten times as fast, where it is there and can read the file."""
+    with contextlib.suppress(Exception):  # whatever it stumbles over is openpyxl's to read, or to refuse with a reason
+        return _fast_sheets(path)
     book = _open(path, values=True)
     try:
         return {sheet.title: _rows_of(path, sheet) for sheet in book.worksheets}
@@ -71,6 +74,23 @@ def _sheets(path: Path) -> dict[str, list[Sequence[Any]]]:
         raise InputError(f"{path}: a sheet cannot be read ({str(error)[:80] or type(error).__name__})") from error
     finally:
         book.close()
+
+
+def _fast_sheets(path: Path) -> dict[str, list[Sequence[Any]]]:
+    from python_calamine import CalamineWorkbook
+
+    with CalamineWorkbook.from_path(path) as book:
+        sheets = {name: book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in book.sheet_names}
+    return {name: _as_openpyxl(rows) for name, rows in sheets.items()}
+
+
+def _as_openpyxl(rows: Sequence[Sequence[Any]]) -> list[Sequence[Any]]:
+    """Empty cells as None, and above the body whole numbers as such: a name there may be a year."""
+    head = [[int(c) if isinstance(c, float) and c.is_integer() else c for c in row] for row in rows[:_ROWS_PEEKED]]
+    found = [[None if c == "" else c for c in row[:_COLUMNS]] for row in (*head, *rows[_ROWS_PEEKED:])]
+    while found and all(map(is_missing, found[-1])):
+        found.pop()
+    return list(found)
 
 
 def _open(path: Path, values: bool) -> Any:

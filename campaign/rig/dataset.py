@@ -210,7 +210,8 @@ def _log(
     late, early = (delay, 0.0) if style.pressure_is_late else (0.0, delay)
     at = np.clip(np.round(index - late / STEP).astype(int), 0, None)
     group = "active" if plan.ahc else "main"
-    offset = hidden.pressure_offset + hidden.pressure_warm * (celsius[index] - 40.0) / 15.0
+    there = plant.date > hidden.pressure_after
+    offset = hidden.pressure_offset * there + hidden.pressure_warm * (celsius[index] - 40.0) / 15.0
     gain = hidden.pressure_scale + hidden.pressure_curve * p_a[at] / (200 * BAR)
     shown = instruments.filtered(angle, hidden.speed_filter) if hidden.speed_filter > 0.0 else angle
     play = hidden.swivel_play * (1.0 if (plan.start // 60) % 2 else -1.0)

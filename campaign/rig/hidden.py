@@ -27,7 +27,7 @@ class Hidden(NamedTuple):
     sheave: float = 0.0  # share of T_d/i
     radius_load: float = 0.0  # relative loss of rope radius under the largest load
     coulomb_drift: float = 0.0  # relative growth of K4 over the dates of the data set
-    drift_law: float = 0.0  # 0: linear, 1: saturating, 2: logarithmic, 3: all at once
+    drift_law: float = 0.0  # 0: linear, 1: saturating, 2: logarithmic, 3: all at once, 4: accelerating
     drift_at: float = 0.5  # share of the dates at which a drift that comes at once has come
     low_displacement: float = 0.0  # N m / Pa per motor
     turbulence: float = 0.0  # share of the K2 term at 2000 rpm and full displacement
@@ -64,6 +64,7 @@ class Hidden(NamedTuple):
     case_rest: float = 0.0  # N m / Pa per motor, of both ports, at zero displacement
     gas_time: float = 0.0  # s, thermal time constant of the accumulator
     gas_warm: float = 0.0  # relative excess temperature at the start of a run
+    gas_curve: float = 0.0  # of the squared compression, that the law of the PLC lacks: a real gas
     gas_power: float = 0.0  # error of the polytropic exponent that the PLC calculates with
     inertia: float = 0.0  # kg m^2
     inertia_wire: float = 0.0  # kg m^2 per km of wire on the drum
@@ -80,6 +81,7 @@ class Hidden(NamedTuple):
     tare_wire: float = 0.0  # share of the wire's weight that the load signal does not contain
     tare_beyond: float = 0.0  # m of wire from which on it counts
     pressure_offset: float = 0.0  # Pa, port A of the driving motors
+    pressure_after: float = -1.0  # share of the dates from which on that offset is there
     pressure_offset_b: float = 0.0  # Pa, port B of the driving motors
     pressure_offset_passive: float = 0.0  # Pa, port A of the passive motors
     pressure_warm: float = 0.0  # Pa per 15 K above 40 degC, port A of the driving motors

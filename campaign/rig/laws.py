@@ -120,7 +120,7 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "wear_drift": (
         Law("saturating", _drift(1.0)), Law("logarithmic", _drift(2.0)), Law("run_in", _drift(0.0, -0.25)),
-        Law("at_once", _drift(3.0), held_out=True),
+        Law("at_once", _drift(3.0)), Law("accelerates", _drift(4.0), held_out=True),
     ),
     "low_displacement_loss": (
         Law("quadratic", _motor(40.0, p=1.0, rest=2.0)),
@@ -156,14 +156,16 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "accumulator_thermal": (
         Law("cold_bottle", lambda s, rng, f: {"gas_time": rng.uniform(40, 150), "gas_warm": -0.02 * s}),
-        Law("other_exponent", _set(gas_power=-0.15), held_out=True),
+        Law("other_exponent", _set(gas_power=-0.15)), Law("real_gas", _set(gas_curve=-0.5), held_out=True),
     ),
     "inertia_error": (
         Law("wire_on_drum", _set(inertia_wire=0.16)), Law("oil_column", _set(inertia_oil=0.6), held_out=True),
     ),
     "pressure_offset": (
         Law("port_b", _set(pressure_offset_b=1.5 * BAR)), Law("passive_side", _set(pressure_offset_passive=2.5 * BAR)),
-        Law("warm_electronics", _set(pressure_warm=2.5 * BAR), held_out=True),
+        Law("warm_electronics", _set(pressure_warm=2.5 * BAR)),
+        Law("since_a_date", lambda s, rng, f: {
+            "pressure_offset": 2.5 * BAR * s, "pressure_after": rng.uniform(0.3, 0.7)}, held_out=True),
     ),
     "pressure_scale": (
         Law("passive_side", _set(pressure_scale_passive=0.012)),

@@ -132,6 +132,8 @@ def drifted(h, date):
         return log(1.0 + 30.0 * date) / log(31.0)
     if h.drift_law == 3.0:
         return 1.0 if date > h.drift_at else 0.0
+    if h.drift_law == 4.0:
+        return date**3
     return date
 
 

@@ -3,7 +3,7 @@
 Friction is set-valued (Moreau's time stepping): at rest it is whatever holds the shaft, up to the break-away level.
 """
 
-from math import exp
+from math import exp, log
 
 import numpy as np
 from numba import njit
@@ -154,7 +154,8 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
         out[2, k] = p_a
         out[3, k] = p_b
         out[4, k] = gas
-        out[5, k] = r.gas_pressure * (volume_start / volume) ** (GAS_EXPONENT + h.gas_power)
+        squeezed = log(volume_start / volume)
+        out[5, k] = r.gas_pressure * exp((GAS_EXPONENT + h.gas_power) * squeezed + h.gas_curve * squeezed**2)
 
 
 def new_output(steps: int) -> np.ndarray:

@@ -6,17 +6,22 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.assembly import Trial
+from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
 from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.selection import Finding, Selection, _significant, does_as_well, select
-from winch_friction.discrepancy.proof import adds, at_the_floor, nothing_compared, prove, worse_runs
+from winch_friction.discrepancy.engine.rivals import does_as_well, near
+from winch_friction.discrepancy.engine.selection import Finding, Selection, _significant, select
+from winch_friction.discrepancy.proof import adds, at_the_floor, leaves_too_much, nothing_compared, prove, worse_runs
+from winch_friction.discrepancy.standing import _each_proven, _sets, outdone
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
-from winch_friction.discrepancy.workflow import _each_proven
+from winch_friction.physics.friction import Scope
+from winch_friction.physics.friction.table import Table, tabulated
 
 RUNS, BLOCKS = 8, 300
 SPEED = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
@@ -255,6 +260,61 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, stay):
     proven = _each_proven(trial_of(search), trial_of, np.random.default_rng(0))
     assert list(proven.search.selection.final.names) == stay
     assert [each.slot.name for each in proven.search.selection.found] == stay
+
+
+@pytest.mark.parametrize(("left", "enough"), [(0.4, False), (1.0, False), (1.6, True), (2.5, True)])
+def test_a_name_may_not_leave_a_fifth_of_the_locked_gap(left, enough):
+    """3 of a wave: 1.6 leaves more than 15 % of its square, and more than twice the floor; 1.0 is at the floor."""
+    after = side(3.0 * np.sqrt(2) * WAVE + noise(), left * np.sqrt(2) * WAVE + noise(1), floor=0.8)
+    assert bool(leaves_too_much(after)) is enough
+
+
+@dataclass(frozen=True)
+class _Found(_Search):
+    ripple: None = None
+    left: tuple = ()
+
+    @property
+    def explanation(self):
+        return self.selection.final
+
+
+@pytest.mark.parametrize(("free", "first"), [(False, ("wave", "other")), (True, ("wave",))])
+def test_with_a_curve_the_fewest_names_are_tried_first(free, first):
+    """What a curve draws wrong between its knots would otherwise pass for another effect."""
+    cross = crossfit(3.0 * WAVE + 0.5 * OTHER + noise())
+    slots = (replace(SLOTS[0], free=free), SLOTS[1])
+    selection = select(cross, np.random.default_rng(1))
+    search = _Found(cross, replace(selection, final=replace(cross.explain(SLOTS), slots=slots)))
+    tried = [each.selection.final.names for each in _sets(search, np.random.default_rng(1))]
+    assert tried[0] == first
+    assert sorted(map(len, tried)) == [1, 2]
+
+
+GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOTOR, shape="rising", anchor="low"))
+CURVE = replace(SLOTS[0], free=True, origin=(friction_candidate(GRIP), None))
+
+
+@pytest.mark.parametrize(("slots", "law", "loss", "falls"), [
+    (SLOTS, Law((Factor("root", "motor_speed"),), True), 0.9, True),  # two names where one law would do
+    (SLOTS, Law((Factor("root", "motor_speed"),), True), 1.1, False),
+    (SLOTS, None, 0.0, False),
+    ((CURVE,), Law((Factor("square", "pressure"),), True), 0.9, False),  # what the curve itself draws
+    ((CURVE,), Law((Factor("lag", "pressure", (("c", 30.0),)),), True), 0.9, True),  # a memory: no curve has one
+    ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True),  # of a signal that the curve does not read
+])  # fmt: skip
+def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, loss, falls):
+    named = replace(explanation(np.ones(40)), slots=slots)
+    scored = law and Scored(law, 1.0, 0.0, loss * 40, np.full(40, loss))
+    assert bool(outdone(scored, named)) is falls
+
+
+def test_what_comes_near_is_looked_at_closer():
+    """Half of what is explained is near, a tenth is not."""
+    for share, expected in ((0.9, ["other"]), (0.3, [])):
+        other = share * WAVE + np.sqrt(1 - share**2) * OTHER
+        cross = crossfit(3.0 * WAVE + noise(), other=other)
+        assert [slot.name for slot in near(cross, cross.explain((SLOTS[0],)))] == expected
 
 
 def test_nothing_compared_has_no_size():

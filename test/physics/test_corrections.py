@@ -69,7 +69,8 @@ def spoiled(run, correction):
         for name in names:
             true = columns[name]
             if action is Action.OFFSET:
-                columns[name] = true + e
+                warmer = columns["oil_temperature"] - 40.0 if correction.declared.reads else 1.0
+                columns[name] = true + e * warmer
             elif action is Action.SCALE:
                 columns[name] = true * (1.0 + e)
             elif action is Action.DELAY:
@@ -180,6 +181,17 @@ def test_a_sample_without_the_wire_keeps_its_load_and_says_so(truth, crane_150t,
     assert corrector.uncorrected == ("wire_weight",)
     assert corrector(next(iter(truth.samples()))).hook_load == pytest.approx(55e3 + 12.0 * 100.0)
     assert corrector.uncorrected == ()
+
+
+def test_a_sample_without_the_oil_keeps_its_pressure_and_says_so(truth, crane_150t, crane2_model):
+    model = replace(crane2_model, corrections=(Correction("pressure_thermal_zero", 0.2 * BAR),))
+    corrector = SampleCorrector(crane_150t, model)
+    warm = replace(next(iter(truth.samples())), oil_temperature=55.0)
+    pressure = warm.groups["active"].pressure_a
+    assert corrector(warm).groups["active"].pressure_a == pytest.approx(pressure - 3.0 * BAR)
+    cold = replace(warm, oil_temperature=float("nan"))
+    assert corrector(cold).groups["active"].pressure_a == pressure
+    assert corrector.uncorrected == ("pressure_thermal_zero",)
 
 
 def test_without_corrections_nothing_is_touched(truth, crane_150t, crane2_model):

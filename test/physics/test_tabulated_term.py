@@ -73,8 +73,45 @@ def test_bounds_make_it_monotone():
     assert all(p.lower == 0.0 for p in tabulated(WARM).parameters)  # what is still to come of a falling curve
 
 
+MIXED = Table(
+    "grip_map", (("pressure", (50e5, 150e5, 250e5)), ("speed_magnitude", (10.0, 60.0, 160.0))), scope=Scope.MOTOR,
+    shape="rising falling", anchor="low none", side="hoisting",
+)  # fmt: skip
+SMALL = Table(
+    "swash_curve", (("pressure", (50e5, 150e5, 250e5)),), "Pa", ("displacement_left",), Scope.MOTOR,
+    shape="convex_rising", anchor="low",
+)  # fmt: skip
+
+
+def test_a_surface_may_rise_with_one_signal_and_fall_with_the_other_and_is_never_negative():
+    term = tabulated(MIXED)
+    assert [p.name for p in term.parameters] == [f"grip_map_{k}_{m}" for k in (1, 2) for m in (0, 1, 2)]
+    assert all((p.lower, p.upper) == (0.0, float("inf")) for p in term.parameters)
+    functions = _model(MIXED).compile(1)
+    rng = np.random.default_rng(2)
+    theta = (0.0, *rng.uniform(0.1, 2.0, 6))
+
+    def at(p, w, s=1.0):
+        return functions.scalar_torque(tuple(s if k == 0 else v for k, v in enumerate(_point(w=w, p=p))), theta, ())
+
+    grid = np.array([[at(p, w) for w in (5.0, 30.0, 90.0, 200.0)] for p in (30e5, 90e5, 180e5, 300e5)])
+    assert np.all(grid[0] == 0.0)  # anchored at the least pressure
+    assert np.all(np.diff(grid, axis=0)[:, :-1] > 0.0)
+    assert np.all(np.diff(grid, axis=1)[1:] < 0.0)
+    assert np.all(grid[1:] > 0.0)
+    assert at(180e5, 30.0, -1.0) == 0.0  # lowering it does not count
+
+
+def test_a_curve_may_be_times_the_displacement_that_is_left():
+    model = FrictionModel("m", (tabulated(SMALL),), (2.0, 0.0), constants={"max_displacement": 3e-5})
+    functions = model.compile(1)
+    for displacement, pressure, expected in ((1e-5, 150e5, 0.5), (3e-5, 150e5, 0.0), (1e-5, 50e5, 0.0)):
+        torque = functions.scalar_torque(_point(p=pressure, D=displacement), (2.0, 0.0), ())
+        assert torque == pytest.approx(11 * 2.0 * 2e-5 * expected), (displacement, pressure)
+
+
 def test_the_model_file_carries_it_whole():
-    model = _model(WARM, SURFACE)
+    model = _model(WARM, SURFACE, MIXED, SMALL)
     again = model_from_text(model_to_text(model))
     assert again.terms == model.terms
     assert again.values == model.values
@@ -88,6 +125,9 @@ def test_the_model_file_carries_it_whole():
         ({"knots": {"moon": [1.0, 2.0]}}, "signal 'moon' is not known"),
         ({"scope": "moon"}, "scope 'moon' is none of"),
         ({"shape": "round"}, "shape 'round' is none of"),
+        ({"shape": "rising falling"}, "must be one word, or one for each of oil_temperature"),
+        ({"side": "sideways"}, "side 'sideways' is none of"),
+        ({"times": ["moon"]}, "factor 'moon' is not known"),
         ({"times": []}, r"unit N\*m\*s/rad times 1 is not N\*m"),
         ({"colour": "red"}, "unknown key 'colour'"),
     ],

@@ -52,6 +52,16 @@ def tried(split: Split, crane: Crane, options: GapOptions, search: Search, rng: 
     return Trial(search, repaired, *sides)
 
 
+def as_given(split: Split, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
+    """The given model as it is, where a refit would only make it worse on the locked runs."""
+    given = search.given
+    model = replace(
+        given.model, provenance={**given.model.provenance, **_provenance(split.train, search.verdict, options)}
+    )
+    sides = (compare(given, given, names, rng) for names in (split.train, split.holdout))
+    return Trial(search, Repair(model, {}), *sides)
+
+
 def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
     """The result that a trial stands by."""
     search, repaired = trial.search, trial.repaired

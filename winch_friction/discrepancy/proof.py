@@ -67,6 +67,20 @@ def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
     return bool(removed >= more.least_noise and chance_of_no_gain(*_common(fewer, more), rng) <= LIMITS.proof_p)
 
 
+def leaves_too_much(side: Side) -> str:
+    """Why names do not answer for the locked gap although they make it smaller; empty where they do.
+
+    The same share of the excess over the floor that a named effect may leave of the training runs.
+    """
+    floor = float(np.hypot(side.noise_floor, side.least_noise))
+    before, after = side.size_before.value, side.size_after
+    excess = max(before**2 - floor**2, 1e-12)
+    share = max(after.value**2 - floor**2, 0.0) / excess
+    if after.value <= LIMITS.far_off_the_floor * floor or share <= LIMITS.left_over:
+        return ""
+    return f"{100 * share:.0f} % of the locked gap's square above the noise is left ({before:.3g} to {after.value:.3g})"
+
+
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
     """Locked runs whose gap grows significantly, beyond what matters to anybody."""
     found = []

@@ -98,6 +98,13 @@ def propose(
     return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
 
 
+def best_law(search: Search, train: Sequence[str], rng: np.random.Generator) -> Scored | None:
+    """The law of the grammar that answers for a search's gap best, for its length; None where none is worth it."""
+    runs = [run for run in search.expansion.runs if run.name in train]
+    found = _laws(search, runs, rng)
+    return found[0][0] if found else None
+
+
 def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator) -> list[tuple[Scored, float]]:
     """Laws that come near the best on held-out segments, significantly; the simplest first."""
     cross, base = search.cross, search.cross.explain(())

@@ -70,6 +70,7 @@ def correction_std(correction: Correction) -> float:
 def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
     """Give every shape of every candidate its columns."""
     slots, scales = [], list(base.scale)
+    known = model.as_dict()
     lower, upper = list(base.lower), list(base.upper)
     for candidate in candidates:
         present = candidate.term is not None and candidate.term.name in model.term_names
@@ -77,8 +78,12 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
         for shape in candidate.shapes(runs):
             columns = tuple(range(len(scales), len(scales) + len(candidate.linear)))
             for parameter in candidate.linear:
-                scales.append(parameter.typical)
-                low, high = shape.bounds or (-most if parameter.lower < 0.0 or present else 0.0, most)
+                # what the model has already may change by as much as it is
+                own = abs(known.get(parameter.name, 0.0)) if present else 0.0
+                scales.append(max(own, abs(parameter.typical)) * np.sign(parameter.typical))
+                # in typical sizes, which have the sign that a curve that may only fall asks for
+                either = parameter.lower < 0.0 if parameter.typical > 0.0 else parameter.upper > 0.0
+                low, high = shape.bounds or (-most if either or present else 0.0, most)
                 if candidate.corrects is not None and parameter.unit == "1":  # a share means what it is declared for
                     low, high = (
                         max(low, parameter.lower / parameter.typical),

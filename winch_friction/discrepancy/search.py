@@ -8,14 +8,17 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
+from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.detectors import flow_balance, reversals
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
+from winch_friction.discrepancy.engine.rivals import near
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.holdout import Split
@@ -48,21 +51,28 @@ class Search:
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
-def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.Generator) -> Search:
-    """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs."""
+def search_runs(
+    split: Split, given: Given, options: GapOptions, rng: np.random.Generator, surfaces: bool = False
+) -> Search:
+    """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs.
+
+    With `surfaces` every cause may have a law that only the data know, over two signals at once.
+    """
     model, prepared = given.model, given.prepared
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
     ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    usable, blind = testable(
-        options.candidates or candidates_for(prepared, model, options.effects_file), prepared, model
-    )
+    known = options.candidates or candidates_for(prepared, model, options.effects_file)
+    if surfaces:
+        known = [*known, *free_members(prepared, model, SURFACES)]
+    usable, blind = testable(known, prepared, model)
     candidates = [each for each in usable if each.regime == MOVING]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
     cross = _cleaned(at_seed, ripple, _waves(at_seed, ripple)).cross(split.train)
     expansion, selection = at_seed, select(cross, rng, 1)
     for _ in range(LIMITS.most_expansions):
-        candidates, usable = (_refined(each, selection.final) for each in (candidates, usable))
+        shapes = (*selection.final.slots, *near(cross, selection.final))
+        candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)
@@ -98,9 +108,9 @@ def search_runs(split: Split, given: Given, options: GapOptions, rng: np.random.
     )
 
 
-def _refined(candidates: Sequence[Candidate], explanation: Explanation) -> list[Candidate]:
-    """The candidates, those that were found with a finer grid of shapes."""
-    found = {(slot.name, slot.law): slot.origin[1] for slot in explanation.slots}
+def _refined(candidates: Sequence[Candidate], slots: Sequence[Slot]) -> list[Candidate]:
+    """The candidates, these with a finer grid of shapes around their own."""
+    found = {(slot.name, slot.law): slot.origin[1] for slot in slots}
     own = [(each.name, each.law_name) for each in candidates]
     return [each.refined(found[k]) if k in found else each for each, k in zip(candidates, own, strict=True)]
 

@@ -50,6 +50,7 @@ class Thresholds:
     rival_p: float = 0.05  # a rival is worse only where segments say so this surely
     rival_share: float = 0.03  # of the effect's own gain: a rival within it does as well for any purpose
     rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
+    looked_at_closer: int = 4  # rivals whose shapes are refined like that of what was found
     most_names: int = 3  # in a set
     free_charge: float = 0.05  # of what a flexible member saves, that a law of the literature may save less
     plain_first: float = 1e-3  # of what is saved: of laws that do the same, the one that every machine has
@@ -62,6 +63,8 @@ class Thresholds:
     most_proposals: int = 3
     tuning_rounds: int = 3  # halving steps between the grid's constants
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
+    stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third
+    surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
     seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand

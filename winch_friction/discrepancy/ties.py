@@ -26,7 +26,8 @@ from winch_friction.discrepancy.candidates.geometry import hanging
 from winch_friction.discrepancy.candidates.signals import group_shapes, scale_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.selection import Finding, does_as_well
+from winch_friction.discrepancy.engine.rivals import does_as_well
+from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.balance import model_states
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem, layout_of

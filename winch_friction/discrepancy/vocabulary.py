@@ -35,6 +35,7 @@ class Word:
     kinds: tuple[str, ...] = ("linear", "root", "square", "about", "step", "above", "below")
 
 
+UNLIKE_A_CURVE = ("lag", "hump", "wave", "sector")  # what no monotone function of a signal's present value draws
 _SHAPES = ("linear", "root", "square", "about", "step", "above", "below", "hump", "fade", "lag")
 WORDS = (
     Word("motor_speed", "w", "rad/s", "motor_speed", lambda r: np.abs(r.speed), kinds=_SHAPES),

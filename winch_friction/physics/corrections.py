@@ -13,6 +13,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import (
     DECLARED,
+    THERMAL_REFERENCE,
     Action,
     Correction,
     DeclaredCorrection,
@@ -99,7 +100,12 @@ def _missing(correction: Correction, run: Run) -> list[str]:
 
 # -- whole runs
 def _offset(columns: Columns, run: Run, c: Correction) -> Columns:
-    return columns | {name: columns[name] - c.value for name in affected(c, run.groups) if name in columns}
+    error = c.value * (columns["oil_temperature"] - THERMAL_REFERENCE) if _thermal(c) else c.value
+    return columns | {name: columns[name] - error for name in affected(c, run.groups) if name in columns}
+
+
+def _thermal(c: Correction) -> bool:
+    return "oil_temperature" in c.declared.reads
 
 
 def _scale(columns: Columns, run: Run, c: Correction) -> Columns:
@@ -202,14 +208,17 @@ def _correct(sample: Sample, c: Correction) -> bool:
         if length == length:
             sample.hook_load += c.value * length
         return length == length or sample.hook_load != sample.hook_load
+    error = c.value * (sample.oil_temperature - THERMAL_REFERENCE) if _thermal(c) else c.value
+    if error != error:
+        return False
     for name, member in sample.groups.items():
         if not c.groups or name in c.groups:
-            _correct_group(member, c)
+            _correct_group(member, c, error)
     return True
 
 
-def _correct_group(member: GroupSample, c: Correction) -> None:
+def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
     for channel in c.declared.channels:
         value: Any = getattr(member, channel)
-        right = value - c.value if c.declared.action is Action.OFFSET else value / (1.0 + c.value)
+        right = value - error if c.declared.action is Action.OFFSET else value / (1.0 + error)
         setattr(member, channel, right)

@@ -6,7 +6,7 @@ from winch_friction.physics.dimensions import dimension_of, product
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
-from winch_friction.physics.friction.table import Table, tabulated
+from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 from winch_friction.physics.friction.term import Scope, Term
 from winch_friction.records.strict_yaml import Section, finite
 
@@ -39,10 +39,11 @@ def _read(section: Section, name: str) -> Term:
         float(finite(section.get("typical", 1.0), f"{section.where}: typical")),
         section.text("place", "gear and drum"),
         section.text("source", "tabulated"),
+        section.text("side", "both"),
     )
     knots.close()
     section.close()
-    factors = [(table.unit, 1.0), *((_UNITS[each], 1.0) for each in table.times)]
+    factors = [(table.unit, 1.0), *((FACTORS[each][1], 1.0) for each in table.times)]
     if product(*factors) != dimension_of("N*m"):
         raise InputError(f"{section.where}: unit {table.unit} times {', '.join(table.times) or '1'} is not N*m")
     return tabulated(table)
@@ -72,4 +73,4 @@ def _content(table: Table) -> dict[str, Any]:
         "knots": {signal: list(at) for signal, at in table.knots}, "unit": table.unit, "times": list(table.times),
         "scope": table.scope.value, "opposing": table.opposing, "shape": table.shape, "anchor": table.anchor,
         "typical": table.typical, "place": table.place, "source": table.source,
-    }  # fmt: skip
+    } | ({"side": table.side} if table.side != "both" else {})  # fmt: skip

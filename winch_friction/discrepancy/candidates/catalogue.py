@@ -6,6 +6,7 @@ from pathlib import Path
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, NOWHERE, Candidate, Untestable
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
+from winch_friction.discrepancy.candidates.gas import gas_candidates
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
@@ -33,7 +34,7 @@ DETECTED = (
 
 def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
     """Every candidate, with those that a user's file registers as terms; a clash of names raises `InputError`."""
-    found = [*DETECTED, *shipped_friction(), *signal_candidates(), *geometry_candidates()]
+    found = [*DETECTED, *shipped_friction(), *signal_candidates(), *gas_candidates(), *geometry_candidates()]
     if effects_file is not None:
         found += [friction_candidate(term) for term in load_file(Path(effects_file))]
     found += literature()

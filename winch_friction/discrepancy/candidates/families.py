@@ -4,9 +4,11 @@ A cause is named, whatever its law: every member bears the cause's name, compete
 repaired model as a term of its own. Shapes are grids over decades of what is physically possible.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +19,8 @@ from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.dimensions import quotient_unit
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
-from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
-from winch_friction.physics.friction.table import Table, tabulated
+from winch_friction.physics.friction.symbols import WINCH_SIGNALS
+from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 
 TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
 STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
@@ -45,6 +47,7 @@ def literature() -> list[Candidate]:
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
         wear("wear_saturating", shapes=_lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
+        wear("wear_sudden", shapes=_between_runs),
         wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
@@ -103,67 +106,109 @@ def _lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
     return shapes
 
 
-# -- free members: (cause, signal, what multiplies it, scope, shape, anchor, opposing, needs)
-_Free = tuple[str, str, tuple[str, ...], Scope, str, str, bool, tuple[str, ...]]
-FREE: tuple[_Free, ...] = (
-    ("viscosity_temperature", "oil_temperature", ("speed_magnitude",), Scope.SYSTEM, "falling", "high", True, OIL),
-    ("stribeck", "speed_magnitude", ("drum_torque",), Scope.SYSTEM, "falling", "high", True, ()),
-    ("wear_drift", "time", (), Scope.SYSTEM, "rising", "low", True, ()),
-    ("wear_drift", "time", (), Scope.SYSTEM, "falling", "low", True, ()),
-    ("low_displacement_loss", "displacement", ("pressure",), Scope.MOTOR, "falling", "high", True, ()),
-    ("low_displacement_loss", "displacement", (), Scope.MOTOR, "falling", "high", True, ()),
-    ("high_pressure_mixed", "pressure", (), Scope.MOTOR, "convex_rising", "low", True, ()),
-    ("churning", "speed_magnitude", (), Scope.SYSTEM, "convex_rising", "low", True, ()),
-    ("port_turbulence", "speed_magnitude", ("displacement",), Scope.MOTOR, "convex_rising", "low", True, ()),
-    ("gear_load_loss", "drum_torque", (), Scope.SYSTEM, "rising", "low", True, ()),
-    ("gear_asymmetry", "drum_torque", (), Scope.SHAFT, "rising", "low", False, ()),
+def _between_runs(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Every instant between two runs, with at least two on either side: one run alone is no change of the machine."""
+    ends = sorted((run.start, run.start + float(run.time[-1])) for run in runs)
+    between = [0.5 * (a[1] + b[0]) for a, b in itertools.pairwise(ends)]
+    return [Shape(label_of({"t_wd": at}), {"t_wd": at}) for at in between[1:-1]]
+
+
+# -- free members
+class Free(NamedTuple):
+    """A curve or surface: the cause, its signals, what multiplies it, where it acts, and what it may look like."""
+
+    cause: str
+    signals: tuple[str, ...]
+    times: tuple[str, ...] = ()
+    scope: Scope = Scope.SYSTEM
+    shape: str = "rising"
+    anchor: str = "low"
+    opposing: bool = True
+    needs: tuple[str, ...] = ()
+    presumes: tuple[str, ...] = ()
+    side: str = "both"
+    knots: tuple[float, ...] = LIMITS.free_knots  # quantiles of the signal, where there is one
+
+
+SPEED, PRESSURE, SWASH, LOAD = "speed_magnitude", "pressure", "displacement", "drum_torque"
+LEFT = "displacement_left"  # a test seldom holds many displacements: how a loss falls with it is given, not drawn
+CURVES = (
+    Free("viscosity_temperature", ("oil_temperature",), (SPEED,), shape="falling", anchor="high", needs=OIL),
+    Free("stribeck", (SPEED,), (LOAD,), shape="falling", anchor="high", knots=LIMITS.stribeck_knots),
+    Free("wear_drift", ("time",), presumes=COULOMB),
+    Free("wear_drift", ("time",), shape="falling", presumes=COULOMB),
+    Free("low_displacement_loss", (SWASH,), (PRESSURE,), Scope.MOTOR, "falling", "high"),
+    Free("low_displacement_loss", (SWASH,), (), Scope.MOTOR, "falling", "high"),
+    Free("low_displacement_loss", (PRESSURE,), (LEFT,), Scope.MOTOR, "convex_rising"),
+    Free("high_pressure_mixed", (PRESSURE,), (), Scope.MOTOR, "convex_rising"),
+    Free("churning", (SPEED,), shape="convex_rising"),
+    Free("port_turbulence", (SPEED,), (SWASH,), Scope.MOTOR, "convex_rising"),
+    Free("gear_load_loss", (LOAD,)),
+    Free("sheave_bending", (LOAD,), scope=Scope.SHAFT, presumes=("gear_load_loss",)),
+    Free("case_pressure", ("pressure_sum",), (LEFT,), Scope.MOTOR, "convex_rising", "none"),
+    Free("gear_asymmetry", (LOAD,), scope=Scope.SHAFT, opposing=False),
 )
-UNITS = {each.name: each.unit for each in (*WINCH_SIGNALS, *GROUP_SIGNALS)}
+# more freedom, for what neither a law nor a curve explains: surfaces over two signals, and one way alone
+SURFACES = (
+    Free("low_displacement_loss", (SWASH, PRESSURE), (), Scope.MOTOR, "falling rising", "high low"),
+    Free("high_pressure_mixed", (PRESSURE, SPEED), (), Scope.MOTOR, "rising falling", "low none"),
+    Free("notch_loss", (PRESSURE, SPEED), (SWASH,), Scope.MOTOR, "rising falling", "low high"),
+    Free("port_turbulence", (SPEED, SWASH), (), Scope.MOTOR, "convex_rising rising", "low low"),
+    Free("churning", (SPEED, "oil_temperature"), (), Scope.SYSTEM, "convex_rising falling", "low none", needs=OIL),
+    Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="hoisting"),
+    Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="lowering"),
+    Free("gear_load_loss", (LOAD, SPEED), (), Scope.SYSTEM, "rising falling", "low none"),
+    Free("tare_load", ("wire_out",), (), Scope.SHAFT, "convex_rising", opposing=False, needs=("hook_load", "wire_out")),
+)
 
 
-def free_members(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
-    """Of each family the curve that the data draw, bent at quantiles of what these runs have covered."""
-    found = [_free(row, runs) for row in FREE]
+def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequence[Free] = CURVES) -> list[Candidate]:
+    """Of each family the curves that the data draw, bent at quantiles of what these runs have covered."""
+    found = [_free(row, runs) for row in rows]
     present = {each.term.name for each in found if each is not None and each.term is not None} & set(model.term_names)
     return [each for each in found if each is not None and each.term is not None and each.term.name not in present]
 
 
-def _free(row: _Free, runs: Sequence[PreparedRun]) -> Candidate | None:
-    cause, signal, times, scope, shape, anchor, opposing, needs = row
-    values = _covered(signal, scope, runs)
-    knots = _knots(values)
-    if len(knots) < 3 or np.ptp(knots) <= 1e-6 * np.abs(knots).max():
+def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
+    shares = row.knots if len(row.signals) == 1 else LIMITS.surface_knots
+    knots = [_knots(_covered(signal, row.scope, runs), shares) for signal in row.signals]
+    if any(len(at) < 3 or np.ptp(at) <= 1e-6 * np.abs(at).max() for at in knots):
         return None
-    size = np.prod([max(float(np.median(np.abs(_covered(each, scope, runs)))), 1e-12) for each in times])
+    size = np.prod([max(float(np.median(np.abs(_covered(each, row.scope, runs)))), 1e-12) for each in row.times])
     torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
-    name = (
-        f"free_{cause}" + (f"_{times[0]}" if times else "") + ("_falling" if shape == "falling" and not times else "")
-    )
     count = max(float(np.median([sum(g.count for g in run.groups) or 1 for run in runs])), 1.0)
+    name = _name(row)
     table = Table(
-        name, ((signal, tuple(float(k) for k in knots)),), _unit(times), times, scope, opposing, shape, anchor,
-        typical=0.05 * torque / float(size) / (1.0 if scope is Scope.SHAFT else count),
-        source=f"a monotone curve over {signal} through the data",
-        place="motor" if scope is Scope.MOTOR else "gear and drum",
+        name, tuple((s, tuple(float(k) for k in at)) for s, at in zip(row.signals, knots, strict=True)),
+        _unit(row.times), row.times, row.scope, row.opposing, row.shape, row.anchor,
+        typical=0.05 * torque / float(size) / (1.0 if row.scope is Scope.SHAFT else count),
+        source=f"a monotone {'curve' if len(knots) == 1 else 'surface'} over {' and '.join(row.signals)} through the "
+        "data",
+        place="motor" if row.scope is Scope.MOTOR else "gear and drum", side=row.side,
     )  # fmt: skip
     term = tabulated(table)
-    hydraulic = scope is Scope.MOTOR
-    presumes = COULOMB if cause == "wear_drift" else ()
     return Candidate(
-        cause, "", term.parameters, partial(term_columns, term), term=term, needs=needs, hydraulic=hydraulic,
-        presumes=presumes, law_name=name, free=True, plausible=FAR,
+        row.cause, "", term.parameters, partial(term_columns, term), term=term, needs=row.needs,
+        hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=name, free=True, plausible=FAR,
     )  # fmt: skip
 
 
-def _knots(values: FloatArray) -> FloatArray:
+def _name(row: Free) -> str:
+    parts = [f"free_{row.cause}", *row.times[:1]]
+    parts += [row.signals[1]] if len(row.signals) > 1 else []
+    parts += [row.side] if row.side != "both" else []
+    return "_".join([*parts, "falling"] if row.shape == "falling" and not row.times else parts)
+
+
+def _knots(values: FloatArray, shares: Sequence[float]) -> FloatArray:
     """Quantiles of what was covered, to nine digits so that a model file reads well."""
     if not len(values):
         return values
-    return np.unique([float(f"{k:.9g}") for k in np.quantile(values, LIMITS.free_knots)])
+    return np.unique([float(f"{k:.9g}") for k in np.quantile(values, shares)])
 
 
 def _unit(times: tuple[str, ...]) -> str:
-    return quotient_unit("N*m", *((UNITS[name], 1.0) for name in times))
+    return quotient_unit("N*m", *((FACTORS[name][1], 1.0) for name in times))
 
 
 def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArray:
@@ -173,6 +218,10 @@ def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArr
 
 
 def _values(signal: str, run: PreparedRun) -> FloatArray:
+    if signal == LEFT:
+        largest = dict(run.constants).get("max_displacement", 0.0)
+        own = [np.abs(largest - np.asarray(group.displacement)) for group in run.groups]
+        return np.mean(own, axis=0) if own else np.zeros(len(run.time))
     if signal in ("pressure", "displacement", "pressure_sum"):
         own = [np.abs(np.asarray(getattr(group, signal))) for group in run.groups]
         return np.mean(own, axis=0) if own else np.zeros(len(run.time))

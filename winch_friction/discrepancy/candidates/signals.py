@@ -5,10 +5,8 @@ The true pressure stands for itself only through the base model's prediction; th
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
 
 from winch_friction.discrepancy.candidates.candidate import (
     Candidate,
@@ -23,7 +21,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
-from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
@@ -32,22 +30,19 @@ SLOWEST_FOR_DELAY = 0.03  # s between samples
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
-TIME_CONSTANTS = (30.0, 60.0, 120.0, 240.0)  # s, of an accumulator's gas
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 
 _GroupLaw = Callable[[GroupSignals], FloatArray]
 
+p_T = Parameter(
+    "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
+)
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
 e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
 )
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
-
-e_T = Parameter(
-    "e_T", "1", 0.02, lower=-0.2, upper=0.2, doc="relative excess temperature of the gas at the start of a run"
-)
-g_T = Parameter("g_T", "1", 1.0, lower=-10.0, upper=10.0, doc="share of the compression's heat that the wall takes")
 
 
 def _which(run: PreparedRun, values: Values) -> list[GroupSignals]:
@@ -67,6 +62,12 @@ def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
         shapes.append(Shape("the driving group", {"groups": BALANCING}))
         shapes.append(Shape("the passive group", {"groups": OTHER}, carried=True))
     return shapes
+
+
+def warm_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the transducers and what the oil's warmth adds to it, N m, shape (samples, 2)."""
+    constant = group_columns(_offset, run, values)
+    return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
 
 
 def _offset(g: GroupSignals) -> FloatArray:
@@ -124,40 +125,10 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return shapes
 
 
-def accumulator_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Torque of the passive motors per unit of warmth and of relaxing heat, N m, shape (samples, 2)."""
-    passive = [group for group in run.groups if not group.balances]
-    if not passive:
-        return np.zeros((len(run.time), 2))
-    parts = [_gas_torque(group, run, values["tau"]) for group in passive]
-    return -np.sum(parts, axis=0)
-
-
-def _gas_torque(group: GroupSignals, run: PreparedRun, tau: float) -> FloatArray:
-    # of the calculated pressure, which the excess temperature scales
-    port = 0.5 * (group.pressure_sum + group.logged)
-    torque = group.count * group.displacement * port
-    fading = np.exp(-run.time / tau)
-    # the calculated ln p moves with ln V; what has relaxed of it is its low-passed change
-    change = np.log(np.maximum(port, 1.0) / max(port[0], 1.0))
-    keep = np.exp(-run.dt / tau)
-    relaxed = lfilter([1.0 - keep], [1.0, -keep], change)
-    return np.column_stack([torque * fading, -torque * relaxed])
-
-
-def _time_constants(runs: Sequence[PreparedRun]) -> list[Shape]:
-    return [Shape(f"tau = {tau:g} s", {"tau": tau}, carried=True) for tau in TIME_CONSTANTS]
-
-
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     if max(run.dt for run in runs) <= SLOWEST_FOR_DELAY:
         return None
     return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is within one sample; log at 33 Hz or more"
-
-
-def _no_passive_group(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    several = any(len(run.groups) > 1 for run in runs)
-    return None if several else ("a passive motor group", "no run has one")
 
 
 def _groups(shape: Shape, sides: Sides) -> tuple[str, ...]:
@@ -172,6 +143,14 @@ def _to(name: str, parameter: Parameter) -> Corrects:
     return corrects
 
 
+def _to_warm(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = _groups(shape, sides)
+    return [
+        correction("pressure_offset", found[p_0.name], groups=groups),
+        correction("pressure_thermal_zero", found[p_T.name], groups=groups),
+    ]
+
+
 def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_scale_a" if shape.values["port_a"] else "pressure_scale"
     return [correction(name, found[e_p.name], groups=_groups(shape, sides))]
@@ -182,14 +161,6 @@ def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     if shape.values["late"] == SPEED:
         return [correction("signal_delay", found[tau.name])]
     return [correction("pressure_delay", found[tau.name], -1.0)]
-
-
-def _to_gas(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    ties: dict[str, Any] = {"groups": sides.passive, "time_constant": shape.values["tau"]}
-    return [
-        correction("accumulator_warmth", found[e_T.name], **ties),
-        correction("accumulator_heat", found[g_T.name], **ties),
-    ]
 
 
 def signal_candidates() -> list[Candidate]:
@@ -203,6 +174,18 @@ def signal_candidates() -> list[Candidate]:
             partial(group_columns, _offset),
             group_shapes,
             _to("pressure_offset", p_0),
+        ),
+        Candidate(
+            "pressure_offset",
+            r"\sum_g n_g D_g\,(p_0 + p_T(\vartheta-40))",
+            (p_0, p_T),
+            warm_columns,
+            group_shapes,
+            kind="signal",
+            law_name="thermal zero shift",
+            needs=("oil_temperature",),
+            hydraulic=True,
+            corrects=_to_warm,
         ),
         _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes, _to_scale),
         _in_groups(
@@ -223,20 +206,6 @@ def signal_candidates() -> list[Candidate]:
             reversal_rival=True,
             blind=_too_slow,
             corrects=_to_delay,
-        ),
-        # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
-        # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
-        Candidate(
-            "accumulator_thermal",
-            r"n_p D_p\,\Delta p_p\,(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)",
-            (e_T, g_T),
-            accumulator_columns,
-            _time_constants,
-            kind="signal",
-            hydraulic=True,
-            continuous=("tau",),
-            blind=_no_passive_group,
-            corrects=_to_gas,
         ),
     ]
 

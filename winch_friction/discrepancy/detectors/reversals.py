@@ -14,7 +14,7 @@ from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.interval import chance_of_no_gain
-from winch_friction.discrepancy.engine.selection import candidate_trials
+from winch_friction.discrepancy.engine.trials import candidate_trials
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS

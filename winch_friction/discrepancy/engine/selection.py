@@ -1,6 +1,6 @@
 """Which effects are missing: forward by held-out loss, checked as a set, each with the rivals that do as well."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,6 +8,8 @@ import numpy as np
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.discrepancy.engine.rivals import rivals_of
+from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
@@ -84,7 +86,7 @@ def _forward(
         worthy = (
             _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LIMITS.least_inside) & (worth >= least)
         )
-        order = np.argsort([_charged(current.loss, each.loss, each.slots[-1]) for each in trials])
+        order = np.argsort([charged(current.loss, each.loss, each.slots[-1]) for each in trials])
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
@@ -150,43 +152,6 @@ def _considered(
     return Considered(own.name, own.label, float(gain), float(p), stage, verdict)
 
 
-def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
-    """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
-    each family the law that does best on held-out runs.
-    """
-    return _heads(
-        current.loss, [cross.explain((*current.slots, slot)) for slot in _fitted(cross, current.slots, taken)]
-    )
-
-
-def _fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list[Slot]:
-    """Of each law of each candidate the variant that fits the training runs best beside the rest."""
-    best: dict[tuple[str, str], tuple[float, Slot]] = {}
-    for slot in cross.problem.slots:
-        if slot.name in taken:
-            continue
-        loss, _ = cross.train_loss((*rest, slot))
-        key = (slot.name, slot.law)
-        if key not in best or loss < best[key][0]:
-            best[key] = (loss, slot)
-    return [slot for _, slot in best.values()]
-
-
-def _heads(before: float, trials: Sequence[Explanation]) -> list[Explanation]:
-    """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
-    heads: dict[str, Explanation] = {}
-    for trial in sorted(trials, key=lambda each: _charged(before, each.loss, each.slots[-1])):
-        heads.setdefault(trial.slots[-1].name, trial)
-    return list(heads.values())
-
-
-def _charged(before: float, after: float, own: Slot) -> float:
-    """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
-    the least share that decides between two that do the same."""
-    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first
-    return after + share * max(before - after, 0.0)
-
-
 def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
     """The set in which no single effect can be swapped for a better one: an early choice may have stood in for two."""
     for _ in range(3):
@@ -194,11 +159,11 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
             without, own = cross.explain(rest), current.slots[k]
-            least = _charged(without.loss, current.loss, own) * (1.0 - 1e-3)
-            others = [each for each in _fitted(cross, rest, {slot.name for slot in rest}) if each is not own]
+            least = charged(without.loss, current.loss, own) * (1.0 - 1e-3)
+            others = [each for each in fitted(cross, rest, {slot.name for slot in rest}) if each is not own]
             trials = [cross.explain((*rest, slot)) for slot in others]
-            best = min(trials, key=lambda each: _charged(without.loss, each.loss, each.slots[-1]), default=current)
-            if trials and _charged(without.loss, best.loss, best.slots[-1]) < least:
+            best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]), default=current)
+            if trials and charged(without.loss, best.loss, best.slots[-1]) < least:
                 current, improved = cross.explain((*rest[:k], best.slots[-1], *rest[k:])), True
         if not improved:
             break
@@ -244,45 +209,7 @@ def _found(
     rest = current.slots[:k] + current.slots[k + 1 :]
     without = cross.explain(rest)
     gain_losses = without.losses - current.losses
-    rivals, frequency = _rivals(cross, current, without, k, rng, same=bool(bringers))
+    rivals, frequency = rivals_of(cross, current, without, k, rng, same=bool(bringers))
     name = own.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
     return Finding(own, rivals, p, float(cross.gain(without, current)), frequency)
-
-
-def _rivals(
-    cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator, same: bool = False
-) -> tuple[tuple[Slot, ...], float]:
-    """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn.
-
-    With `same` only what is the same column in these runs, such as a tare at one load and a torque offset.
-    """
-    rest = current.slots[:k] + current.slots[k + 1 :]
-    own = current.slots[k]
-    fitted = _fitted(cross, rest, current.names)
-    trials = _heads(without.loss, [cross.explain((*rest, slot)) for slot in fitted])
-    equal = []
-    for trial in trials:
-        alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)
-        if alike if same else does_as_well(trial, current, without, rng):
-            equal.append((trial.loss, trial.slots[-1]))
-    equal.sort(key=lambda pair: pair[0])
-    frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
-    return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
-
-
-def does_as_well(trial: Explanation, current: Explanation, without: Explanation, rng: np.random.Generator) -> bool:
-    """Whether another effect in the place of one, `without` neither, is no worse on held-out data."""
-    worth = without.loss - current.loss
-    worse = trial.losses - current.losses
-    if without.loss - trial.loss < LIMITS.rival_worth * worth:
-        return False
-    return bool(flip_p_values(worse[None], rng)[0] > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth)
-
-
-def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:
-    if not others:
-        return 1.0
-    weights = rng.multinomial(len(own), np.full(len(own), 1.0 / len(own)), size=draws)
-    rival = (weights @ np.array(others).T).min(axis=1)
-    return float(np.mean(weights @ own <= rival * (1.0 + 1e-12)))

@@ -12,11 +12,13 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
+THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the seed models
+
 
 class Action(Enum):
     """What an error of value e does; the true value stands on the right."""
 
-    OFFSET = "offset"  # measured = true + e
+    OFFSET = "offset"  # measured = true + e (times the oil's temperature above 40 degC where it is named)
     SCALE = "scale"  # measured = true (1 + e)
     DELAY = "delay"  # measured(t) = true(t - e)
     MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
@@ -79,6 +81,12 @@ _DECLARED = (
     _signal(
         "pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
         "pressure_a",
+    ),
+    DeclaredCorrection(
+        "pressure_thermal_zero",
+        Parameter("pressure_thermal_zero", "Pa/K", 0.1 * BAR, -5.0 * BAR, 5.0 * BAR,
+                  doc="zero error of the transducers at port A per degree of the oil above 40 degC"),
+        "signal", Action.OFFSET, ("pressure_a",), reads=("oil_temperature",), by_group=True,
     ),
     _signal(
         "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES

@@ -17,17 +17,23 @@ from winch_friction.physics.friction.term import Parameter, Scope, Term
 MOST_SIGNALS = 2
 SHAPES = ("free", "rising", "falling", "convex_rising")
 ANCHORS = ("none", "low", "high")
+SIDES = {"both": 0, "hoisting": 1, "lowering": -1}
 _SIGNALS = {each.name: each for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)}
+# what may multiply a curve: symbol or expression, and unit
+FACTORS: dict[str, tuple[sp.Expr, str]] = {name: (each.symbol, each.unit) for name, each in _SIGNALS.items()} | {
+    "displacement_left": (symbols.X - symbols.D, "m^3/rad")  # up to the largest
+}
 
 
 @dataclass(frozen=True)
 class Table:
     """What a tabulated term is, apart from its values.
 
-    `knots` by signal, SI, rising; `times` names signals whose product multiplies the curve. `shape` says whether it may
-    only rise or fall with every signal, or rise ever more steeply, on beyond the last knot. `anchor`: where it is zero
-    ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its own. `unit` of the curve's
-    values; times `times` they must be N m.
+    `knots` by signal, SI, rising; `times` names `FACTORS` whose product multiplies the curve. `shape` says whether it
+    may only rise or fall with every signal, or rise ever more steeply, on beyond the last knot. `anchor`: where it is
+    zero ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its own. `unit` of the
+    curve's values; times `times` they must be N m. Over two signals `shape` and `anchor` may be two words, one per
+    signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone.
     """
 
     name: str
@@ -41,21 +47,37 @@ class Table:
     typical: float = 1.0
     place: str = "gear and drum"
     source: str = "tabulated"
+    side: str = "both"
 
     def __post_init__(self) -> None:
         if problems := self._problems():
             raise InputError(f"table '{self.name}': {'; '.join(problems)}")
 
     def _problems(self) -> list[str]:
-        found = [f"signal '{n}' is not known" for n in (*self.signals, *self.times) if n not in _SIGNALS]
+        found = [f"signal '{n}' is not known" for n in self.signals if n not in _SIGNALS]
+        found += [f"factor '{n}' is not known" for n in self.times if n not in FACTORS]
         if not 1 <= len(self.knots) <= MOST_SIGNALS or len(set(self.signals)) != len(self.signals):
             found.append(f"it needs one or {MOST_SIGNALS} different signals")
         for name, at in self.knots:
             if len(at) < 2 or any(b <= a for a, b in itertools.pairwise(at)):
                 found.append(f"the knots over {name} must be at least two and rising")
-        found += [f"shape '{self.shape}' is none of {', '.join(SHAPES)}"] if self.shape not in SHAPES else []
-        found += [f"anchor '{self.anchor}' is none of {', '.join(ANCHORS)}"] if self.anchor not in ANCHORS else []
+        for kind, text, known in (("shape", self.shape, SHAPES), ("anchor", self.anchor, ANCHORS)):
+            words = text.split()
+            found += [f"{kind} '{word}' is none of {', '.join(known)}" for word in words if word not in known]
+            if len(words) not in (1, len(self.knots)):
+                found.append(f"{kind} '{text}' must be one word, or one for each of {', '.join(self.signals)}")
+        found += [f"side '{self.side}' is none of {', '.join(SIDES)}"] if self.side not in SIDES else []
         return found
+
+    @property
+    def axes(self) -> "tuple[_Axis, ...]":
+        """Signal, knots, shape and anchor of each axis."""
+        count = len(self.knots)
+        shapes, anchors = (words * count if len(words) == 1 else words for words in _words(self.shape, self.anchor))
+        return tuple(
+            _Axis(name, at, shape, anchor, count > 1)
+            for (name, at), shape, anchor in zip(self.knots, shapes, anchors, strict=True)
+        )
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -63,33 +85,67 @@ class Table:
         return tuple(name for name, _ in self.knots)
 
 
+@dataclass(frozen=True)
+class _Axis:
+    """One signal of a table; `of_surface` where there is another."""
+
+    signal: str
+    knots: tuple[float, ...]
+    shape: str
+    anchor: str
+    of_surface: bool
+
+    @property
+    def level(self) -> bool:
+        """Whether it is not zero at either end."""
+        return self.anchor == "none"
+
+    @property
+    def to_come(self) -> bool:
+        """Whether it is written with what of each fall is still to come, so that falling means positive."""
+        return self.anchor == "high" or (self.of_surface and self.shape == "falling")
+
+    @property
+    def sign(self) -> int:
+        """Of the rises over its intervals; 0: either."""
+        if self.shape == "free":
+            return 0
+        return -1 if (self.shape == "falling") != self.to_come else 1
+
+
+def _words(*texts: str) -> list[list[str]]:
+    return [text.split() for text in texts]
+
+
 def tabulated(table: Table) -> Term:
     """The term of a table; one parameter per interval (or pair of intervals), named `<table>_<k>[_<l>]`."""
-    axes = [_basis(_SIGNALS[name].symbol, at, table) for name, at in table.knots]
-    level = table.anchor == "none"
+    bases = [_basis(axis) for axis in table.axes]
     parameters, equation = [], sp.Integer(0)
-    for index in itertools.product(*(range(len(axis)) for axis in axes)):
-        if not level and 0 in index:
+    for index in itertools.product(*(range(len(basis)) for basis in bases)):
+        if any(k == 0 and not axis.level for k, axis in zip(index, table.axes, strict=True)):
             continue
         parameter = _parameter(table, index)
         parameters.append(parameter)
-        equation += parameter.symbol * sp.Mul(*(axis[k] for axis, k in zip(axes, index, strict=True)))
-    factor = sp.Mul(*(_SIGNALS[name].symbol for name in table.times))
+        equation += parameter.symbol * sp.Mul(*(basis[k] for basis, k in zip(bases, index, strict=True)))
+    factor = sp.Mul(*(FACTORS[name][0] for name in table.times))
+    way = SIDES[table.side]
+    side = (1 + way * symbols.s) / 2 if way else sp.Integer(1)
     over = " and ".join(table.signals)
     return Term(
-        table.name, equation * factor, tuple(parameters), table.scope, table.source, table.place, table.opposing,
+        table.name, equation * factor * side, tuple(parameters), table.scope, table.source, table.place, table.opposing,
         doc=f"piecewise linear over {over}, {table.shape}", table=table,
     )  # fmt: skip
 
 
-def _basis(signal: sp.Symbol, knots: tuple[float, ...], table: Table) -> list[sp.Expr]:
+def _basis(axis: _Axis) -> list[sp.Expr]:
     """1 and one ramp per interval; anchored at the high end, what of each ramp is still to come."""
-    if table.shape == "convex_rising":
+    signal, knots = _SIGNALS[axis.signal].symbol, axis.knots
+    if axis.shape == "convex_rising":
         top = knots[-1]
         hinges = [sp.Piecewise((0.0, signal <= a), ((signal - a) / (top - a), True)) for a in knots[:-1]]
         return [sp.Integer(1), *hinges]
     ramps = [_ramp(signal, a, b) for a, b in itertools.pairwise(knots)]
-    return [sp.Integer(1), *((1 - ramp for ramp in ramps) if table.anchor == "high" else ramps)]
+    return [sp.Integer(1), *((1 - ramp for ramp in ramps) if axis.to_come else ramps)]
 
 
 def _ramp(signal: sp.Symbol, a: float, b: float) -> sp.Expr:
@@ -98,17 +154,16 @@ def _ramp(signal: sp.Symbol, a: float, b: float) -> sp.Expr:
 
 def _parameter(table: Table, index: tuple[int, ...]) -> Parameter:
     name = "_".join([table.name, *map(str, index)])
-    if not any(index):
-        doc = "level at the first knots"
-        return Parameter(name, table.unit, table.typical, lower=float("-inf"), doc=doc)
-    # what is still to come of a falling curve is positive
-    sign = {"free": 0, "rising": 1, "falling": -1, "convex_rising": 1}[table.shape] * (
-        -1 if table.anchor == "high" else 1
-    )
+    signs = {axis.sign for axis, k in zip(table.axes, index, strict=True) if k or axis.of_surface}
+    if not any(index) and signs != {1}:
+        return Parameter(name, table.unit, table.typical, lower=float("-inf"), doc="level at the first knots")
+    sign = signs.pop() if len(signs) == 1 else 0
     lower, upper = (0.0 if sign > 0 else float("-inf")), (0.0 if sign < 0 else float("inf"))
     between = ", ".join(
-        f"{signal} {at[k - 1]:g} ... {at[k]:g}" for (signal, at), k in zip(table.knots, index, strict=True) if k
-    )
+        f"{axis.signal} {axis.knots[k - 1]:g} ... {axis.knots[k]:g}"
+        for axis, k in zip(table.axes, index, strict=True) if k
+    )  # fmt: skip
     return Parameter(
-        name, table.unit, (sign or 1) * abs(table.typical), lower=lower, upper=upper, doc=f"rise over {between}"
-    )
+        name, table.unit, (sign or 1) * abs(table.typical), lower=lower, upper=upper,
+        doc=f"rise over {between}" if between else "level at the last knots",
+    )  # fmt: skip

@@ -26,6 +26,8 @@ tau_ws = Parameter("tau_ws", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="t
 C_wl = Parameter("C_wl", "N*m", 1.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level per e-fold of time")
 t_wl = Parameter("t_wl", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
 tau_wl = Parameter("tau_wl", "s", 1e5, lower=1.0, upper=1e12, shape=True, doc="time from which on it is logarithmic")
+C_wd = Parameter("C_wd", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level")
+t_wd = Parameter("t_wd", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time at which it changed")
 c_gp = Parameter("c_gp", "N*m", 5.0, upper=200.0, doc="loss per motor at a drum torque of 500 kN m")
 n_gp = Parameter("n_gp", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
@@ -67,6 +69,12 @@ wear_saturating = _system(
 _after = sp.Piecewise((0.0, time <= t_wl.symbol), ((time - t_wl.symbol) / tau_wl.symbol, True))
 wear_logarithmic = _system(
     "wear_logarithmic", C_wl.symbol * sp.log(1 + _after), (C_wl, t_wl, tau_wl), "Ludema 1996: logarithmic run-in"
+)
+wear_sudden = _system(
+    "wear_sudden",
+    C_wd.symbol * sp.Piecewise((0.0, time <= t_wd.symbol), (1.0, True)),
+    (C_wd, t_wd),
+    "a seal or a bearing that was changed or gave way between two runs",
 )
 gear_load_power = _system(
     "gear_load_power", c_gp.symbol * _load**n_gp.symbol, (c_gp, n_gp), "a power of the load: Hertzian contacts, bending"

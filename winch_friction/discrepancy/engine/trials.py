@@ -1,0 +1,42 @@
+"""Candidates put beside what is taken already: of each law its best variant, of each family its best law."""
+
+from collections.abc import Container, Sequence
+
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.thresholds import LIMITS
+
+
+def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
+    """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
+    each family the law that does best on held-out runs.
+    """
+    return heads(current.loss, [cross.explain((*current.slots, slot)) for slot in fitted(cross, current.slots, taken)])
+
+
+def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list[Slot]:
+    """Of each law of each candidate the variant that fits the training runs best beside the rest."""
+    best: dict[tuple[str, str], tuple[float, Slot]] = {}
+    for slot in cross.problem.slots:
+        if slot.name in taken:
+            continue
+        loss, _ = cross.train_loss((*rest, slot))
+        key = (slot.name, slot.law)
+        if key not in best or loss < best[key][0]:
+            best[key] = (loss, slot)
+    return [slot for _, slot in best.values()]
+
+
+def heads(before: float, trials: Sequence[Explanation]) -> list[Explanation]:
+    """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
+    heads: dict[str, Explanation] = {}
+    for trial in sorted(trials, key=lambda each: charged(before, each.loss, each.slots[-1])):
+        heads.setdefault(trial.slots[-1].name, trial)
+    return list(heads.values())
+
+
+def charged(before: float, after: float, own: Slot) -> float:
+    """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
+    the least share that decides between two that do the same."""
+    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first
+    return after + share * max(before - after, 0.0)

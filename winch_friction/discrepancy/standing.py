@@ -1,0 +1,194 @@
+"""Which names stand: those that the locked runs bear out, no more of them than it takes, and none where one law does
+what they do together.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.assembly import Trial, as_given, tried
+from winch_friction.discrepancy.detectors import flow_balance
+from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import Explanation
+from winch_friction.discrepancy.engine.grammar import Law, Scored
+from winch_friction.discrepancy.engine.omnibus import dependences
+from winch_friction.discrepancy.engine.selection import select
+from winch_friction.discrepancy.holdout import Split
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.proof import adds, at_the_floor, leaves_too_much, prove, worse_runs
+from winch_friction.discrepancy.proposals import best_law
+from winch_friction.discrepancy.search import Search, search_runs
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.vocabulary import UNLIKE_A_CURVE
+from winch_friction.physics.winch import Crane
+
+# signals of an equation by the proposals' word for them
+_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure", "time": "run_time"}
+_TrialOf = Callable[[Search], Trial]
+
+
+def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
+    """The trial that the locked runs bear out: with the names found, with fewer, with what shows beside the moving
+    samples, or with none."""
+    search = _replicated(search, split, rng)
+    trial_of = partial(tried, split, crane, options, rng=rng)
+    refit = trial_of(_nameless(search))
+    whys = []
+    for each in _sets(search, rng):
+        full, why = _stands(each, refit, trial_of, rng)
+        if full is not None:
+            return _each_proven(full, trial_of, rng)
+        whys.append(why)
+    beside = replace(_nameless(search), ripple=search.ripple, leakage=search.leakage)
+    if search.ripple or search.leakage:
+        trial = trial_of(beside)
+        if not worse_runs(trial.holdout, rng):
+            refit = trial
+    judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
+    # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
+    harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)
+    return as_given(split, options, judged.search, rng) if harmful else judged
+
+
+def by_surfaces(
+    split: Split, crane: Crane, options: GapOptions, unexplained: Trial, rng: np.random.Generator
+) -> Trial:  # fmt: skip
+    """What no known law explains, once more with laws that only the data know; the trial as it is where that does not
+    end in a proven name."""
+    search = search_runs(split, unexplained.search.given, options, rng, surfaces=True)
+    if not search.selection.found:
+        return unexplained
+    trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    return trial if trial.search.verdict.kind in (MISSING, AMBIGUOUS) else unexplained
+
+
+def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
+    """The trial without its names where one law that is none of theirs does by itself what they do."""
+    search = trial.search
+    slots = [slot for slot in search.explanation.slots if not slot.plain]
+    asked = len(slots) > 1 or any(slot.free for slot in slots)
+    why = outdone(best_law(search, split.train, rng), search.selection.final) if asked else ""
+    if not why:
+        return trial
+    refit = tried(split, crane, options, _nameless(search), rng)
+    return replace(refit, search=_unexplained(refit.search, why, rng))
+
+
+def outdone(law: Scored | None, named: Explanation) -> str:
+    """Why several names, or a curve, do not stand beside a law of the grammar; empty where they do.
+
+    A law that a single curve may itself be drawing, only better, speaks for it.
+    """
+    slots = [slot for slot in named.slots if not slot.plain]
+    if law is None or law.loss > named.loss or (len(slots) == 1 and _could_be(law.law, slots[0])):
+        return ""
+    names = " and ".join(slot.name for slot in slots)
+    together = "together " if len(slots) > 1 else ""
+    return f"one law of {' and '.join(law.law.signals)} does by itself what {names} {together}would explain"
+
+
+def _could_be(law: Law, curve: Slot) -> bool:
+    """Whether a law may be what a monotone curve draws: of signals that the curve reads, of their present value."""
+    own = {_SAME.get(name, name) for name in curve.origin[0].term.reads}
+    return set(law.signals) <= own and not any(factor.kind in UNLIKE_A_CURVE for factor in law.factors)
+
+
+def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
+    """The search as it is, and with fewer names; these first where a curve is among them, whose own second order
+    otherwise passes for another effect."""
+    slots = search.selection.final.slots
+    counts = range(1, len(slots)) if not any(slot.plain for slot in slots) else range(0)
+    if any(slot.free for slot in slots):
+        yield from (_with_at_most(count, search, rng) for count in counts)
+        yield search
+    else:
+        yield search
+        yield from (_with_at_most(count, search, rng) for count in reversed(counts))
+
+
+def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
+    """The best with so many names, judged anew."""
+    cross, selection = search.cross, select(search.cross, rng, count)
+    left = dependences(cross, cross.remainder(selection.final), rng)
+    verdict = decide(cross, selection, left, search.ripple is not None)
+    return replace(search, selection=selection, verdict=verdict, left=tuple(left))
+
+
+def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
+    """The trial of a set of names where the locked runs bear it out, otherwise why not."""
+    slots = search.explanation.slots
+    if not slots and not search.reversal:
+        return None, search.verdict.refused
+    full = trial_of(search)
+    names = ", ".join([*search.explanation.names, *([search.reversal.slot.name] if search.reversal else [])])
+    if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
+        worse = "".join(worse_runs(full.holdout, rng))
+        return (None, worse) if worse else (full, "")
+    proof = prove(names, refit.holdout, full.holdout, rng)
+    why = proof.why or leaves_too_much(full.holdout)
+    return (None, why) if why else (full, "")
+
+
+def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Search:
+    """The search with only those findings beside the moving samples that show in the locked runs as well."""
+    given = search.given
+    locked = [(run, p) for run, p in zip(given.runs, given.prepared, strict=True) if run.name in split.holdout]
+    runs, prepared = [run for run, _ in locked], [p for _, p in locked]
+    ripple, leakage, reversal = search.ripple, search.leakage, search.reversal
+    if ripple and not angle.holds_on(ripple, runs, prepared, given.crane, given.model):
+        ripple = None
+    if leakage and not flow_balance.holds_on(leakage, runs, prepared):
+        leakage = None
+    if reversal and not reversal.holds_on(split.holdout, rng):
+        reversal = None
+    return replace(search, ripple=ripple, leakage=leakage, reversal=reversal)
+
+
+def _each_proven(full: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
+    """The trial without those names, the last found first, that the locked runs do not need beside the others."""
+    for slot in reversed(full.search.selection.final.slots):
+        search, final = full.search, full.search.selection.final
+        brought = any(slot.name in each.brings for each in final.slots)
+        if len(final.slots) == 1 or brought or slot.plain:
+            continue
+        without = trial_of(_without(search, slot))
+        if not adds(without.holdout, full.holdout, rng):
+            full = without
+    return full
+
+
+def _without(search: Search, slot: Slot) -> Search:
+    """The search without one of its names."""
+    rest = tuple(each for each in search.selection.final.slots if each is not slot)
+    found = tuple(each for each in search.selection.found if each.slot is not slot)
+    verdict = search.verdict
+    if verdict.kind in (MISSING, AMBIGUOUS):
+        verdict = replace(verdict, kind=AMBIGUOUS if any(each.rivals for each in found) else MISSING)
+    selection = replace(search.selection, final=search.cross.explain(rest), found=found)
+    return replace(search, selection=selection, verdict=verdict)
+
+
+def _nameless(search: Search) -> Search:
+    """The search without any name."""
+    selection = replace(search.selection, final=search.selection.base, found=())
+    return replace(search, selection=selection, reversal=None, ripple=None, leakage=None)
+
+
+def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
+    """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise."""
+    search = trial.search
+    if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout):
+        found = search.ripple or search.leakage
+        return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
+    after, noise = trial.holdout.size_after.value, trial.holdout.noise_floor
+    kept = f"the locked runs keep {after:.3g} where their noise is {noise:.3g}"
+    return _unexplained(search, "; ".join(filter(None, (why, kept))), rng)
+
+
+def _unexplained(search: Search, why: str, rng: np.random.Generator) -> Search:
+    """The search with the signals that its gap depends on."""
+    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
+    return replace(search, verdict=Verdict(UNEXPLAINED, why), left=tuple(left))

@@ -292,21 +292,31 @@ def test_with_a_curve_the_fewest_names_are_tried_first(free, first):
 
 
 GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOTOR, shape="rising", anchor="low"))
-CURVE = replace(SLOTS[0], free=True, origin=(friction_candidate(GRIP), None))
+LAWED = replace(SLOTS[0], origin=(friction_candidate(GRIP), None))
+CURVE = replace(LAWED, free=True)
+ROOT, SQUARE = Law((Factor("root", "motor_speed"),), True), Law((Factor("square", "pressure"),), True)
+LAG = Law((Factor("lag", "pressure", (("c", 30.0),)),), True)
 
 
-@pytest.mark.parametrize(("slots", "law", "loss", "falls"), [
-    (SLOTS, Law((Factor("root", "motor_speed"),), True), 0.9, True),  # two names where one law would do
-    (SLOTS, Law((Factor("root", "motor_speed"),), True), 1.1, False),
+@pytest.mark.parametrize(("slots", "law", "share", "falls"), [
+    (SLOTS, ROOT, 0.9, True),  # two names where one law would do
+    (SLOTS, ROOT, 1.1, False),
     (SLOTS, None, 0.0, False),
-    ((CURVE,), Law((Factor("square", "pressure"),), True), 0.9, False),  # what the curve itself draws
-    ((CURVE,), Law((Factor("lag", "pressure", (("c", 30.0),)),), True), 0.9, True),  # a memory: no curve has one
+    ((CURVE,), SQUARE, 0.9, False),  # what the curve itself draws
+    ((CURVE,), LAG, 0.9, True),  # a memory: no curve has one
     ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True),  # of a signal that the curve does not read
+    ((LAWED,), ROOT, 0.9, False),  # a given law falls only where the other takes half of what it leaves
+    ((LAWED,), ROOT, 0.4, True),
+    ((LAWED,), SQUARE, 0.4, False),  # which may be its own, bent
 ])  # fmt: skip
-def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, loss, falls):
-    named = replace(explanation(np.ones(40)), slots=slots)
-    scored = law and Scored(law, 1.0, 0.0, loss * 40, np.full(40, loss))
-    assert bool(outdone(scored, named)) is falls
+def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, share, falls):
+    """`share`: what the law leaves above the noise, of what the names do."""
+    cross = crossfit(noise())
+    noise_alone = float(cross.problem.grams.count.sum())
+    named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=slots)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    scored = law and Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
+    assert bool(outdone(scored, cross, Selection(named, named, found))) is falls
 
 
 def test_what_comes_near_is_looked_at_closer():

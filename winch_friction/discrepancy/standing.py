@@ -12,16 +12,17 @@ from winch_friction.discrepancy.assembly import Trial, as_given, tried
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import Explanation
+from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.grammar import Law, Scored
 from winch_friction.discrepancy.engine.omnibus import dependences
-from winch_friction.discrepancy.engine.selection import select
+from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, leaves_too_much, prove, worse_runs
 from winch_friction.discrepancy.proposals import best_law
 from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide, excess
 from winch_friction.discrepancy.vocabulary import UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
@@ -69,30 +70,43 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     """The trial without its names where one law that is none of theirs does by itself what they do."""
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
-    asked = len(slots) > 1 or any(slot.free for slot in slots)
-    why = outdone(best_law(search, split.train, rng), search.selection.final) if asked else ""
+    left = excess(search.cross, search.explanation)
+    asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
+    why = outdone(best_law(search, split.train, rng), search.cross, search.selection) if asked else ""
     if not why:
         return trial
     refit = tried(split, crane, options, _nameless(search), rng)
     return replace(refit, search=_unexplained(refit.search, why, rng))
 
 
-def outdone(law: Scored | None, named: Explanation) -> str:
-    """Why several names, or a curve, do not stand beside a law of the grammar; empty where they do.
+def outdone(law: Scored | None, cross: CrossFit, selection: Selection) -> str:
+    """Why names do not stand beside a law of the grammar; empty where they do.
 
-    A law that a single curve may itself be drawing, only better, speaks for it.
+    Several names, and a curve, fall where one law does as much; one name of a given law only where the other takes
+    half of what it leaves. A law that a name's own could be speaks for it.
     """
+    named = selection.final
     slots = [slot for slot in named.slots if not slot.plain]
-    if law is None or law.loss > named.loss or (len(slots) == 1 and _could_be(law.law, slots[0])):
+    if law is None or not slots:
         return ""
+    given = len(slots) == 1 and not slots[0].free
+    share = LIMITS.outdone if given else 1.0
+    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
+    if law.loss - floor > share * (named.loss - floor):
+        return ""
+    if len(slots) == 1:
+        rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
+        if any(_could_be(law.law, slot) for slot in rivals):
+            return ""
     names = " and ".join(slot.name for slot in slots)
     together = "together " if len(slots) > 1 else ""
-    return f"one law of {' and '.join(law.law.signals)} does by itself what {names} {together}would explain"
+    return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
 
 
-def _could_be(law: Law, curve: Slot) -> bool:
-    """Whether a law may be what a monotone curve draws: of signals that the curve reads, of their present value."""
-    own = {_SAME.get(name, name) for name in curve.origin[0].term.reads}
+def _could_be(law: Law, slot: Slot) -> bool:
+    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value."""
+    term = slot.origin[0].term
+    own = {_SAME.get(name, name) for name in term.reads} if term is not None else set()
     return set(law.signals) <= own and not any(factor.kind in UNLIKE_A_CURVE for factor in law.factors)
 
 

@@ -65,6 +65,7 @@ class Thresholds:
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third
     surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
+    outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
     seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand

@@ -24,7 +24,7 @@ class Verdict:
 
 def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], rippled: bool = False) -> Verdict:
     """`left`: what signals predict of the final explanation's remainder; `rippled`: a ripple may be part of it."""
-    before, excess = steady_excess(cross, selection.base), steady_excess(cross, selection.final)
+    before, after = steady_excess(cross, selection.base), steady_excess(cross, selection.final)
     before = max(before, 1e-9)
     depends = telling(cross, left)
     if not selection.found:
@@ -38,17 +38,20 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len([f for f in selection.found if not f.slot.plain]) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
-    count = float(cross.problem.grams.count.sum())
-    floor = count + cross.unresolved
-    whole = (selection.final.loss - floor) / count
-    whole_before = max((selection.base.loss - floor) / count, 1e-9)
+    whole, whole_before = excess(cross, selection.final), max(excess(cross, selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)
-    if keeps_something(excess, before, depends) or elsewhere:
-        excess, before = max((excess, before), (whole, whole_before), key=lambda pair: pair[0] / pair[1])
+    if keeps_something(after, before, depends) or elsewhere:
+        after, before = max((after, before), (whole, whole_before), key=lambda pair: pair[0] / pair[1])
         names = ", ".join(f.slot.name for f in selection.found)
-        return Verdict(UNEXPLAINED, f"{names} leaves {100 * excess / before:.0f} % of the gap above the noise floor")
+        return Verdict(UNEXPLAINED, f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor")
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
+
+
+def excess(cross: CrossFit, explanation: Explanation) -> float:
+    """What an explanation leaves of held-out blocks above the noise and what matters to nobody, per noise variance."""
+    count = float(cross.problem.grams.count.sum())
+    return (explanation.loss - count - cross.unresolved) / count
 
 
 def telling(cross: CrossFit, left: Sequence[Dependence]) -> list[Dependence]:

@@ -16,11 +16,13 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, fl
 from winch_friction.discrepancy.engine.interval import chance_of_no_gain
 from winch_friction.discrepancy.engine.trials import candidate_trials
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
 FEWEST_BLOCKS = 200
+BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,19 @@ class ReversalFinding:
             blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta for each in (self.base, self.fitted)
         )
         return chance_of_no_gain(without, with_it, blocks.segment, blocks.run, rng) <= LIMITS.proof_p
+
+
+def blurred_travel(runs: Sequence[PreparedRun]) -> float:
+    """Travel of the shaft in rad within two samples of a reversal, median: shorter than that nothing is told from an
+    instant that is not known better; 0 without a reversal."""
+    travels = []
+    for run in runs:
+        speed, look = run.speed, max(round(BEYOND / run.dt), 2)
+        at = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+        at = at[(at >= look) & (at < len(speed) - look)]
+        real = at[(np.abs(speed[at - look]) > MOVING_SPEED) & (np.abs(speed[at + look]) > MOVING_SPEED)]
+        travels += [float(np.abs(speed[k + 1 : k + 3]).sum() * run.dt) for k in real]
+    return float(np.median(travels)) if travels else 0.0
 
 
 def detect(
@@ -74,7 +89,11 @@ def detect(
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = cross.gain(base, trials[best])
     candidate, shape = trials[best].slots[-1].origin
-    if candidate.shortest and shape.values[candidate.shortest[0]] <= candidate.shortest[1]:
+    if candidate.shortest and shape.values[candidate.shortest[0]] <= max(candidate.shortest[1], blurred_travel(chosen)):
+        return None
+    # what a named effect's law leaves of itself is its own second order, here as elsewhere
+    own = max(cross.explain(()).loss - base.loss, 0.0) if kept else 0.0
+    if base.loss - trials[best].loss < LIMITS.small_left_over * own:
         return None
     least = 1.0 if candidate.reversal_gain is None else candidate.reversal_gain
     if p[best] > SIGNIFICANCE_AFTER_REVERSALS or gain < least:

@@ -51,7 +51,7 @@ class ReversalFinding:
 
 
 def blurred_travel(runs: Sequence[PreparedRun]) -> float:
-    """Travel of the shaft in rad within two samples of a reversal, median: shorter than that nothing is told from an
+    """Travel of the shaft in rad within three samples of a reversal, median: shorter than that nothing is told from an
     instant that is not known better; 0 without a reversal."""
     travels = []
     for run in runs:
@@ -59,7 +59,7 @@ def blurred_travel(runs: Sequence[PreparedRun]) -> float:
         at = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
         at = at[(at >= look) & (at < len(speed) - look)]
         real = at[(np.abs(speed[at - look]) > MOVING_SPEED) & (np.abs(speed[at + look]) > MOVING_SPEED)]
-        travels += [float(np.abs(speed[k + 1 : k + 3]).sum() * run.dt) for k in real]
+        travels += [float(np.abs(speed[k + 1 : k + 4]).sum() * run.dt) for k in real]
     return float(np.median(travels)) if travels else 0.0
 
 

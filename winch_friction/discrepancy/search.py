@@ -56,7 +56,8 @@ def search_runs(
 ) -> Search:
     """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs.
 
-    With `surfaces` every cause may have a law that only the data know, over two signals at once.
+    With `surfaces` a cause may have a law that only the data know, over two signals at once; then it is one cause
+    alone, for a surface with company imitates anything.
     """
     model, prepared = given.model, given.prepared
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
@@ -77,7 +78,7 @@ def search_runs(
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)
         cross = expansion.cross(split.train, selection.final.slots)
-        selection = select(cross, rng)
+        selection = select(cross, rng, 1 if surfaces else LIMITS.most_effects)
         if not any(slot.origin[0].continuous for slot in selection.final.slots):
             break
     left = dependences(cross, cross.remainder(selection.final), rng)

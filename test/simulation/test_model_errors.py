@@ -18,7 +18,7 @@ STILL = {**CLEAN, "sea": {"kind": "still"}, "duration": 20.0}
 
 @pytest.fixture
 def scenario(ahc):
-    return ahc.override({**CLEAN, "duration": 40.0})
+    return ahc.override({**CLEAN, "duration": 40.0, "oil_temperature": {"start": 55.0}})
 
 
 def wrong(model, name, size=1.0, **more):
@@ -46,6 +46,13 @@ def test_a_signal_is_wrong_in_the_log_and_right_again(name, sign, scenario, cran
     assert np.corrcoef(right["motor_speed"][60:-60], speed[60:-60])[0, 1] > 0.99999
     changed = [c for c in plain.columns if np.abs(log[c] - plain[c]).max() > 1e-3 * np.abs(plain[c]).max()]
     assert changed
+
+
+def test_a_thermal_error_needs_one_temperature(ahc, crane, model):
+    warming = ahc.override({**CLEAN, "oil_temperature": {"start": 30.0, "end": 50.0}})
+    with pytest.raises(InputError, match="pressure_thermal_zero needs one temperature") as refused:
+        simulate(warming, crane, wrong(model, "pressure_thermal_zero"))
+    assert "\n" not in str(refused.value)
 
 
 def test_only_the_named_group_errs(scenario, crane, model):

@@ -58,7 +58,7 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
 def _degrees(correction: Correction, scenario: Scenario) -> float:
     """The oil above the reference; a sensor of the simulator has one offset for a whole run."""
     oil = scenario.oil_temperature
-    if oil.start != oil.end:
+    if oil.end not in (None, oil.start):
         raise InputError(
             f"scenario '{scenario.name}': the oil goes from {oil.start:g} to {oil.end:g} degC, and correction "
             f"{correction.name} needs one temperature in the simulator; give start and end alike"

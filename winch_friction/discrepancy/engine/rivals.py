@@ -36,7 +36,7 @@ def near(cross: CrossFit, current: Explanation) -> list[Slot]:
     """What stands in for one of a set's effects nearly as well: worth a closer look at its shape before it is said not
     to be a rival."""
     found: list[Slot] = []
-    for k in range(len(current.slots)):
+    for k in (k for k, slot in enumerate(current.slots) if not slot.plain):  # what is plain comes first anyhow
         rest = current.slots[:k] + current.slots[k + 1 :]
         without = cross.explain(rest)
         worth = without.loss - current.loss

@@ -47,7 +47,7 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
     angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
     guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw) / np.sqrt(window / 3.0))
     if turning:
-        direction, state_speed, used = _just_reversed(angle, raw, speed, guard, grid.dt)
+        direction, state_speed, used = _just_reversed(angle, raw, speed, guard, grid.dt, window)
     else:
         direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
         state_speed = np.where(direction != 0.0, speed, 0.0)
@@ -98,7 +98,7 @@ def _travelled(speed: FloatArray, dt: float) -> FloatArray:
 
 
 def _just_reversed(
-    angle: FloatArray, raw: FloatArray, speed: FloatArray, guard: float, dt: float
+    angle: FloatArray, raw: FloatArray, speed: FloatArray, guard: float, dt: float, window: int
 ) -> tuple[FloatArray, FloatArray, np.ndarray]:
     """Direction, speed of the travel and the samples whose contact has begun to slide but not gone far."""
     least = resolution(raw, dt)
@@ -108,6 +108,7 @@ def _just_reversed(
     samples = np.arange(len(angle))
     since = samples - turned[np.searchsorted(turned[1:], samples, "right")]
     near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
+    near &= since > window // 2  # sooner, what is measured is smoothed across the reversal and what is predicted is not
     near &= (direction != 0.0) & (direction * speed > guard / 8.0)
     return direction, direction * progress / dt, near
 

@@ -68,6 +68,8 @@ class FrictionEstimator:
     [('K1', True), ('K2', True)]
     >>> estimator.model().covariance.shape, estimator.size, estimator.drum_torque > 5e5  # N m
     ((10, 10), 17, True)
+    >>> abs(estimator.load_apart) < 0.1  # the load cell and the balance of torques agree
+    True
     >>> kept = estimator.snapshot()  # what a checkpoint holds
     >>> estimator.reset()  # back to the seed
     >>> estimator.restore(kept)

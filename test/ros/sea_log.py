@@ -11,7 +11,7 @@ from std_msgs.msg import Float64
 
 from winch_friction.nodes.qos import LATCHED
 from winch_friction.nodes.recorder import Recorder, winch_topics
-from winch_friction.nodes.simulator import SLOW_CHANNELS
+from winch_friction.nodes.simulator import SLOW_CHANNELS, UNMEASURED
 from winch_friction.records.bag_write import BagWriter
 from winch_friction.records.topics import TopicMap, crane_topics
 
@@ -30,7 +30,8 @@ def nothing_overwritten(folder: Path, groups: Sequence[str]) -> Path:
 def complete_log(topics: TopicMap, samples: int) -> Counter[str]:
     """Messages of each input when `samples` scans were published and none was lost."""
     silent = () if "active" in topics.groups else ("heave_velocity",)
-    slow = {each.topic: SLOW_CHANNELS.get(each.channels[0], 1) for each in topics.inputs.values()}
+    sent = [each for each in topics.inputs.values() if not UNMEASURED.issuperset(each.channels)]
+    slow = {each.topic: SLOW_CHANNELS.get(each.channels[0], 1) for each in sent}
     return Counter({f"/{t}": 1 + (samples - 1) // every for t, every in slow.items() if not t.endswith(silent)})
 
 
@@ -58,7 +59,7 @@ class SeaLog:
         with BagWriter(bag) as writer:
             made = Recorder(self._bench.node, writer, winch_topics(self.topics))
             try:
-                inputs = tuple(self.topics.inputs)
+                inputs = tuple(t for t, own in self.topics.inputs.items() if not UNMEASURED.issuperset(own.channels))
                 assert self._bench.spin(20.0, lambda: made.hears("/clock", *inputs)), f"'{self._name}' is not heard"
                 yield made
                 made.finish()

@@ -31,6 +31,7 @@ LONGEST_PAUSE = 0.05  # s; how often an answer that does not come is looked for
 SHORTEST_PAUSE = 0.001  # s; two samples each: more than a plant with its messages manages, and no spinning in between
 # scans between two messages of what changes slowly, as a PLC does it
 SLOW_CHANNELS = {"hook_load": 5, "wire_out": 25, "wire_layer": 25, "oil_temperature": 50}
+UNMEASURED = frozenset({"rope_force"})  # the simulated crane weighs its load at the hook
 MOST_AT_ONCE = 2  # samples in a tick, to catch up
 HELD_SCANS = 2.5  # scans that a torque is held at least: the answer to a scan comes during the next
 SETTLE = 0.3  # s between the last subscriber's discovery and the first sample: both ends must know each other
@@ -88,6 +89,7 @@ class SimulatorNode(WinchNode):
         self._inputs = {
             topic: self.publisher(message_type(each.type_name), topic, OUTPUT, qos_overriding_options=overridable())
             for topic, each in self.topics.inputs.items()
+            if not UNMEASURED.issuperset(each.channels)
         }
         self._clock_out = self.publisher(Clock, "/clock", OUTPUT) if own.publish_clock else None
         self._truth = self.publisher(JointState, "~/truth", OUTPUT)

@@ -108,7 +108,8 @@ def _just_reversed(
     samples = np.arange(len(angle))
     since = samples - turned[np.searchsorted(turned[1:], samples, "right")]
     near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
-    near &= since > window // 2  # sooner, what is measured is smoothed across the reversal and what is predicted is not
+    # sooner, most of the kernel reaches across the reversal: what is measured is smeared, what is predicted is not
+    near &= since > window // 4
     near &= (direction != 0.0) & (direction * speed > guard / 8.0)
     return direction, direction * progress / dt, near
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.assembly import Trial
+from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -325,6 +325,14 @@ def test_what_comes_near_is_looked_at_closer():
         other = share * WAVE + np.sqrt(1 - share**2) * OTHER
         cross = crossfit(3.0 * WAVE + noise(), other=other)
         assert [slot.name for slot in near(cross, cross.explain((SLOTS[0],)))] == expected
+
+
+def test_a_model_that_is_left_as_it_was_given_keeps_its_name(crane2_model):
+    refit = replace(crane2_model, name=crane2_model.name + "_repaired")
+    moved = refit.with_values([1.01 * value for value in refit.values])
+    assert _concluded(moved, crane2_model, NOTHING).name == crane2_model.name + "_refitted"
+    assert _concluded(crane2_model, crane2_model, UNEXPLAINED).name == crane2_model.name
+    assert _concluded(crane2_model, crane2_model, UNEXPLAINED).provenance["verdict"] == UNEXPLAINED
 
 
 def test_nothing_compared_has_no_size():

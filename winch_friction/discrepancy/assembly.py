@@ -31,6 +31,8 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.paths import shipped
 
+LEFT_AS_GIVEN = "the model is left as it was given: fitted to what nothing explains, it does worse on the locked runs"
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -70,6 +72,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
     experiment = _experiment(given.crane, search, options) if options.plan else None
     tied = {each.slot.name: company(search, each) for each in found}
     kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
+    left = [LEFT_AS_GIVEN] if kind == UNEXPLAINED and repaired.model.values == given.model.values else []
     drift = drift_note((trial.train, trial.holdout), [each.slot.name for each in found], given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
@@ -82,7 +85,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         next_scenario=experiment.text if experiment else "",
         notes=(
             *_notes(split.runs, given.loads), *repaired.cut,
-            *(each.note for own in tied.values() for each in own.partners), *([drift] if drift else []),
+            *(each.note for own in tied.values() for each in own.partners), *([drift] if drift else []), *left,
         ),
     )  # fmt: skip
 
@@ -158,7 +161,9 @@ def _provenance(train: Sequence[str], verdict: Verdict, options: GapOptions) -> 
 def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> FrictionModel:
     """The model under the verdict that stands; where nothing was put right it is called refitted."""
     changed = model.term_names != given.term_names or model.corrections != given.corrections
-    name = model.name if changed else model.name.removesuffix(REPAIRED) + REFITTED
+    same = not changed and model.values == given.values
+    other = given.name if same else model.name.removesuffix(REPAIRED) + REFITTED
+    name = model.name if changed else other
     return replace(model, name=name, provenance={**model.provenance, "verdict": verdict})
 
 

@@ -1,9 +1,13 @@
 """Watch hears running publishers, in a process of its own."""
 
 import itertools
+import subprocess
+import sys
 import threading
+import time
+from pathlib import Path
 
-from winch_friction.cli.live import live_frames
+from winch_friction.cli.live import Listener, live_frames
 
 
 def test_the_listener_hears_what_is_published(bench, monkeypatch):
@@ -19,3 +23,39 @@ def test_the_listener_hears_what_is_published(bench, monkeypatch):
     speeds = [value for frame in frames for _, value in frame["points"].get("speed", [])]
     assert speeds
     assert max(map(abs, speeds)) < 1000.0  # rpm; the swell turns at 100 rad/s at most
+
+
+def _gone(pid: int, patience: float) -> bool:
+    """Whether a process has ended, or is only waiting to be asked how."""
+    until = time.monotonic() + patience
+    while time.monotonic() < until:
+        state = Path(f"/proc/{pid}/stat")
+        if not state.exists() or state.read_text().rpartition(")")[2].split()[0] == "Z":
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def test_the_listener_ends_though_nothing_is_ever_heard(bench, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(bench.domain))
+    listener = Listener("", "--raw")
+    reader = threading.Thread(target=lambda: list(listener.messages()), daemon=True)
+    reader.start()
+    time.sleep(1.0)
+    listener.close()
+    reader.join(5.0)
+    assert not reader.is_alive()
+
+
+def test_the_listener_does_not_outlive_a_killed_reader(bench, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(bench.domain))
+    code = (
+        "import time; from winch_friction.cli.live import Listener; "
+        "print(Listener('', '--raw')._process.pid, flush=True); time.sleep(60)"
+    )
+    reader = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    pid = int(reader.stdout.readline())
+    time.sleep(3.0)  # it is up
+    reader.kill()
+    reader.wait()
+    assert _gone(pid, 10.0)

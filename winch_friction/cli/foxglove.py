@@ -76,7 +76,7 @@ def written(bag: Path, out: Path, namespace: str = "") -> int:
 @contextlib.contextmanager
 def serving(bag: Path | None, namespace: str, rate: float, port: int, host: str = LOOPBACK) -> Iterator[str]:
     """The server while the context lasts; gives its address. A port that is taken raises `InputError`."""
-    from winch_friction.cli.live import bag_topics, live_messages
+    from winch_friction.cli.live import Listener, bag_topics
     from winch_friction.records.foxglove_channels import Relay, foxglove_sdk
 
     sdk = foxglove_sdk()
@@ -90,13 +90,15 @@ def serving(bag: Path | None, namespace: str, rate: float, port: int, host: str 
     except Exception as error:  # the SDK raises RuntimeError for whatever the system says
         raise InputError(f"--host {host} --port {port}: {error}; give another port, or 0 for a free one") from error
     ended = threading.Event()
-    live = live_messages(namespace) if bag is None else None
-    job = threading.Thread(target=_pump, args=(server, relay, live, bag, rate, asked.event, ended), daemon=True)
+    listener = Listener(namespace, "--raw") if bag is None else None
+    job = threading.Thread(target=_pump, args=(server, relay, listener, bag, rate, asked.event, ended), daemon=True)
     job.start()
     try:
         yield f"ws://{host}:{server.port}"
     finally:
         ended.set()
+        if listener is not None:
+            listener.close()
         server.stop()
 
 
@@ -116,7 +118,7 @@ class Asked:
         raise AttributeError(name)
 
 
-def _pump(server: Any, relay: Any, live: Any, bag: Path | None, rate: float, asked: Any, ended: Any) -> None:
+def _pump(server: Any, relay: Any, listener: Any, bag: Path | None, rate: float, asked: Any, ended: Any) -> None:
     from winch_friction.cli.live import bag_messages
 
     try:
@@ -125,7 +127,7 @@ def _pump(server: Any, relay: Any, live: Any, bag: Path | None, rate: float, ask
                 while not asked.wait(0.2):
                     if ended.is_set():
                         return
-            for message in live if live is not None else bag_messages(bag, rate):  # type: ignore[arg-type]
+            for message in listener.messages() if listener is not None else bag_messages(bag, rate):  # type: ignore[arg-type]
                 if ended.is_set():
                     return
                 relay.take(message)
@@ -133,9 +135,6 @@ def _pump(server: Any, relay: Any, live: Any, bag: Path | None, rate: float, ask
     except InputError as error:
         print(error, flush=True)
         _tell(server, str(error))
-    finally:
-        if live is not None:
-            live.close()
 
 
 def _tell(server: Any, said: str) -> None:

@@ -24,28 +24,45 @@ def frames(bag: Path | None, namespace: str, rate: float) -> Iterator[dict[str, 
 
 def live_frames(namespace: str) -> Iterator[dict[str, Any]]:
     """Frames of the running nodes, from a listener in a process of its own; ends with it."""
-    return _listened(namespace)
+    listener = Listener(namespace)
+    try:
+        yield from listener
+    finally:
+        listener.close()
 
 
-def live_messages(namespace: str) -> Iterator[RawMessage]:
-    """Every message of the winch's topics and /diagnostics, serialised as it came, from the same listener."""
-    for line in _listened(namespace, "--raw"):
-        yield RawMessage(line["topic"], line["type"], line["receipt"], base64.b64decode(line["data"]))
+class Listener:
+    """A process that hears the running nodes and writes what it heard as JSON lines.
 
+    `close` ends it, from whatever thread: the one that reads may wait for a message that never comes. Raises
+    `InputError` without rclpy, and to the reader when the process ends by itself.
+    """
 
-def _listened(namespace: str, *options: str) -> Iterator[dict[str, Any]]:
-    if importlib.util.find_spec("rclpy") is None:
-        raise InputError(
-            "running nodes are heard with rclpy: source ROS 2, or pip install 'winch_friction[ros]'; or give --bag"
-        )
-    command = [sys.executable, "-m", "winch_friction.nodes.telemetry", "--namespace", namespace, *options]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
-        try:
-            for line in listener.stdout or ():
-                yield json.loads(line)
+    def __init__(self, namespace: str, *options: str) -> None:
+        if importlib.util.find_spec("rclpy") is None:
+            raise InputError(
+                "running nodes are heard with rclpy: source ROS 2, or pip install 'winch_friction[ros]'; or give --bag"
+            )
+        command = [sys.executable, "-m", "winch_friction.nodes.telemetry", "--namespace", namespace, *options]
+        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self._closed = False
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        for line in self._process.stdout or ():
+            yield json.loads(line)
+        if not self._closed:
             raise InputError("the listener ended; is the middleware in order? 'winch-friction doctor' looks")
-        finally:
-            listener.terminate()
+
+    def messages(self) -> Iterator[RawMessage]:
+        """With the option --raw: every message of the winch's topics and /diagnostics, serialised as it came."""
+        for line in self:
+            yield RawMessage(line["topic"], line["type"], line["receipt"], base64.b64decode(line["data"]))
+
+    def close(self) -> None:
+        """End the process."""
+        self._closed = True
+        self._process.terminate()
+        self._process.wait()
 
 
 def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, Any]]:

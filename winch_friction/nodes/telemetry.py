@@ -4,6 +4,7 @@ its own: frames, or with `--raw` every message of the winch's topics as it came.
 import argparse
 import base64
 import json
+import os
 import sys
 from functools import partial
 from typing import Any
@@ -35,6 +36,7 @@ def main() -> int:
         Raw(node)
     else:
         _frames(node)
+    node.create_timer(LOOK_AROUND, partial(_orphaned, os.getppid()))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
@@ -45,6 +47,12 @@ def main() -> int:
         node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+def _orphaned(parent: int) -> None:
+    """End with the reader, even one that was killed and before there is anything to write to it."""
+    if os.getppid() != parent:
+        raise KeyboardInterrupt
 
 
 def _frames(node: Node) -> None:

@@ -127,7 +127,8 @@ def _pump(server: Any, relay: Any, listener: Any, bag: Path | None, rate: float,
                 while not asked.wait(0.2):
                     if ended.is_set():
                         return
-            for message in listener.messages() if listener is not None else bag_messages(bag, rate):  # type: ignore[arg-type]
+            messages = bag_messages(bag, rate) if bag is not None else listener.messages()
+            for message in messages:
                 if ended.is_set():
                     return
                 relay.take(message)

@@ -295,6 +295,8 @@ GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOT
 LAWED = replace(SLOTS[0], origin=(friction_candidate(GRIP), None))
 CURVE = replace(LAWED, free=True)
 ROOT, SQUARE = Law((Factor("root", "motor_speed"),), True), Law((Factor("square", "pressure"),), True)
+DATED = replace(CURVE, origin=(friction_candidate(tabulated(Table("aged", (("time", (0.0, 1e5, 1e6)),)))), None))
+WARMS = Law((Factor("fade", "run_time", (("c", 45.0),)),), True)
 LAG = Law((Factor("lag", "pressure", (("c", 30.0),)),), True)
 
 
@@ -305,6 +307,7 @@ LAG = Law((Factor("lag", "pressure", (("c", 30.0),)),), True)
     ((CURVE,), SQUARE, 0.9, False),  # what the curve itself draws
     ((CURVE,), LAG, 0.9, True),  # a memory: no curve has one
     ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True),  # of a signal that the curve does not read
+    ((DATED,), WARMS, 0.9, True),  # what fades in every run is no drift over the dates
     ((LAWED,), ROOT, 0.9, False),  # a given law falls only where the other takes half of what it leaves
     ((LAWED,), ROOT, 0.4, True),
     ((LAWED,), SQUARE, 0.4, False),  # which may be its own, bent

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.candidates.families import CURVES, SURFACES, name_of
 
 
 def candidate(name):
@@ -37,3 +38,9 @@ def test_once_is_enough():
     own = candidate("port_turbulence")
     once = own.refined(own.shapes([])[0])
     assert once.refined(once.shapes([])[0]) is once
+
+
+def test_every_curve_and_surface_has_a_name_of_its_own():
+    """By it a slot is found again, and a table in a model file."""
+    names = [name_of(row) for row in (*CURVES, *SURFACES)]
+    assert sorted(names) == sorted(set(names))

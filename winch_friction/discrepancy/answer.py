@@ -84,6 +84,11 @@ class Side:
     least_noise: float  # what no balance closes better than
     relative: tuple[float, float]  # residual against drive torque, before and after
 
+    @property
+    def floor(self) -> float:
+        """What is left at best: the noise, and what no balance closes better than."""
+        return float(np.hypot(self.noise_floor, self.least_noise))
+
 
 @dataclass(frozen=True)
 class GapResult:

@@ -176,9 +176,8 @@ def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
 
 def _unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:
     """Share of the gap above the noise floor that no named effect explains."""
-    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
-    before = max(selection.base.loss - floor, 1e-9)
-    after = max(selection.final.loss - floor, 0.0)
+    before = max(selection.base.loss - cross.floor, 1e-9)
+    after = max(selection.final.loss - cross.floor, 0.0)
     if verdict.kind == NOTHING:
         return 0.0
     return float(min(after / before, 1.0)) if selection.found else 1.0

@@ -72,8 +72,7 @@ def leaves_too_much(side: Side) -> str:
 
     The same share of the excess over the floor that a named effect may leave of the training runs.
     """
-    floor = float(np.hypot(side.noise_floor, side.least_noise))
-    before, after = side.size_before.value, side.size_after
+    floor, before, after = side.floor, side.size_before.value, side.size_after
     excess = max(before**2 - floor**2, 1e-12)
     share = max(after.value**2 - floor**2, 0.0) / excess
     if after.value <= LIMITS.far_off_the_floor * floor or share <= LIMITS.left_over:
@@ -99,8 +98,7 @@ def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
 def at_the_floor(side: Side) -> bool:
     """Whether what is left is noise and what no balance of a winch closes, within its interval; a wide interval does
     not excuse what is plainly more."""
-    floor = float(np.hypot(side.noise_floor, side.least_noise))
-    after = side.size_after
+    floor, after = side.floor, side.size_after
     return after.interval[0] <= LIMITS.at_the_floor * floor and after.value <= LIMITS.far_off_the_floor * floor
 
 

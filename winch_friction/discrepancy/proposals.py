@@ -118,8 +118,7 @@ def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator)
     grammar = Grammar(cross, base, torque, blocks.direction, members)
     values = _evaluated([f for word in WORDS for f in factors(word, _covered(word, runs))], runs, most)
     ranked = grammar.search(values)
-    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
-    excess = max(base.loss - floor, 1e-9)
+    excess = max(base.loss - cross.floor, 1e-9)
     if not ranked or base.loss - ranked[0].loss < LIMITS.proposal_gain * excess:
         return []
     best = base.loss - ranked[0].loss

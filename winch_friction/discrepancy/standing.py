@@ -27,7 +27,7 @@ from winch_friction.discrepancy.vocabulary import UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
 # signals of an equation by the proposals' word for them
-_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure", "time": "run_time"}
+_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 _TrialOf = Callable[[Search], Trial]
 
 
@@ -91,8 +91,7 @@ def outdone(law: Scored | None, cross: CrossFit, selection: Selection) -> str:
         return ""
     given = len(slots) == 1 and not slots[0].free
     share = LIMITS.outdone if given else 1.0
-    floor = float(cross.problem.grams.count.sum()) + cross.unresolved
-    if law.loss - floor > share * (named.loss - floor):
+    if law.loss - cross.floor > share * (named.loss - cross.floor):
         return ""
     if len(slots) == 1:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]

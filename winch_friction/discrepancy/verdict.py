@@ -50,8 +50,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
 
 def excess(cross: CrossFit, explanation: Explanation) -> float:
     """What an explanation leaves of held-out blocks above the noise and what matters to nobody, per noise variance."""
-    count = float(cross.problem.grams.count.sum())
-    return (explanation.loss - count - cross.unresolved) / count
+    return (explanation.loss - cross.floor) / float(cross.problem.grams.count.sum())
 
 
 def telling(cross: CrossFit, left: Sequence[Dependence]) -> list[Dependence]:

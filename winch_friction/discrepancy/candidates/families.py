@@ -177,7 +177,7 @@ def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
     size = np.prod([max(float(np.median(np.abs(_covered(each, row.scope, runs)))), 1e-12) for each in row.times])
     torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
     count = max(float(np.median([sum(g.count for g in run.groups) or 1 for run in runs])), 1.0)
-    name = _name(row)
+    name = name_of(row)
     table = Table(
         name, tuple((s, tuple(float(k) for k in at)) for s, at in zip(row.signals, knots, strict=True)),
         _unit(row.times), row.times, row.scope, row.opposing, row.shape, row.anchor,
@@ -193,9 +193,10 @@ def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
     )  # fmt: skip
 
 
-def _name(row: Free) -> str:
+def name_of(row: Free) -> str:
+    """Of its term and its law; every row's is its own, for by it a slot is found again."""
     parts = [f"free_{row.cause}", *row.times[:1]]
-    parts += [row.signals[1]] if len(row.signals) > 1 else []
+    parts += row.signals if len(row.signals) > 1 else ()
     parts += [row.side] if row.side != "both" else []
     return "_".join([*parts, "falling"] if row.shape == "falling" and not row.times else parts)
 
@@ -218,12 +219,9 @@ def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArr
 
 
 def _values(signal: str, run: PreparedRun) -> FloatArray:
-    if signal == LEFT:
+    if signal in (PRESSURE, SWASH, LEFT, "pressure_sum"):
         largest = dict(run.constants).get("max_displacement", 0.0)
-        own = [np.abs(largest - np.asarray(group.displacement)) for group in run.groups]
-        return np.mean(own, axis=0) if own else np.zeros(len(run.time))
-    if signal in ("pressure", "displacement", "pressure_sum"):
-        own = [np.abs(np.asarray(getattr(group, signal))) for group in run.groups]
+        own = [np.abs(largest - g.displacement if signal == LEFT else getattr(g, signal)) for g in run.groups]
         return np.mean(own, axis=0) if own else np.zeros(len(run.time))
     index = [each.name for each in WINCH_SIGNALS].index(signal)
     return np.broadcast_to(np.asarray(run.point[index], float), run.time.shape)

@@ -51,6 +51,11 @@ class CrossFit:
             own = np.flatnonzero(self.fold == k)
             self.sums.append((own, self.total_g - g.g[own].sum(axis=0), self.total_b - g.b[own].sum(axis=0)))
 
+    @property
+    def floor(self) -> float:
+        """Loss of an explanation that leaves the noise and what matters to nobody."""
+        return float(self.problem.grams.count.sum()) + self.unresolved
+
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
         """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)

@@ -1,0 +1,50 @@
+"""Guards that only a whole data set can break, on drawn cranes that once broke them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from campaign.gap import owner_files
+from campaign.gap_cases import Case
+from campaign.rig import DRAWN, make_dataset
+from winch_friction.discrepancy.assembly import LEFT_AS_GIVEN
+from winch_friction.discrepancy.detectors.reversals import blurred_travel
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.signals import Run
+
+
+def _answer(kind, seed, *effects):
+    case = Case(kind, effects, DRAWN, seed)
+    crane, model = owner_files(case)
+    data = make_dataset(case.seed, case.flavour, case.effects, sigma=case.sigma)
+    runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(data)]
+    return find_gap(runs, crane, model, GapOptions(plan=False, proposals=False)), model
+
+
+@pytest.mark.parametrize("seed", [1800051, 2200048])
+def test_the_blur_of_a_reversal_is_not_presliding(seed):
+    """Nothing is hidden; 20 Hz, where three samples after a reversal are a travel, and 166 Hz, where the smoothing
+    reaches across it."""
+    result, _ = _answer("drawn_null", seed)
+    assert result.verdict == "nothing_missing"
+
+
+def test_a_refit_that_harms_the_locked_runs_is_not_written():
+    result, given = _answer("drawn_outside", 1800112, ("cold_load_grip", 1.0))
+    assert result.verdict == "unexplained"
+    assert result.model.values == given.values
+    assert result.model.name == given.name
+    assert result.holdout.size_after.value == pytest.approx(result.holdout.size_before.value)
+    assert LEFT_AS_GIVEN in result.notes
+
+
+@pytest.mark.parametrize("rate", [20.0, 50.0])
+def test_the_blurred_travel_is_that_of_three_samples(rate):
+    """A shaft that turns at 10 rad/s^2 has gone 0.5 a t^2 by then, half a sample more or less."""
+    time = np.arange(0.0, 10.0, 1.0 / rate)
+    run = SimpleNamespace(speed=10.0 * (time - 5.01), dt=1.0 / rate)
+    low, high = (0.5 * 10.0 * (n / rate) ** 2 for n in (2.5, 4.0))
+    assert low < blurred_travel([run]) < high
+    assert blurred_travel([SimpleNamespace(speed=np.full(200, 3.0), dt=0.02)]) == 0.0

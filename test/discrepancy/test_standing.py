@@ -9,7 +9,8 @@ from campaign.gap import owner_files
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN, make_dataset
 from winch_friction.discrepancy.assembly import LEFT_AS_GIVEN
-from winch_friction.discrepancy.detectors.reversals import blurred_travel
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.detectors.reversals import blurred_travel, too_short
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
@@ -47,4 +48,7 @@ def test_the_blurred_travel_is_that_of_three_samples(rate):
     run = SimpleNamespace(speed=10.0 * (time - 5.01), dt=1.0 / rate)
     low, high = (0.5 * 10.0 * (n / rate) ** 2 for n in (2.5, 4.0))
     assert low < blurred_travel([run]) < high
+    bristles = next(each for each in all_candidates() if each.name == "presliding")
+    refused = [shape.values["d_z"] for shape in bristles.shapes([]) if too_short(bristles, shape, [run])]
+    assert refused == ([0.009] if rate == 50.0 else [0.009, 0.02, 0.04, 0.09])
     assert blurred_travel([SimpleNamespace(speed=np.full(200, 3.0), dt=0.02)]) == 0.0

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.interval import chance_of_no_gain
@@ -63,6 +63,14 @@ def blurred_travel(runs: Sequence[PreparedRun]) -> float:
     return float(np.median(travels)) if travels else 0.0
 
 
+def too_short(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> bool:
+    """Whether a travel is over before the instant of a reversal is known."""
+    if candidate.shortest is None:
+        return False
+    name, least = candidate.shortest
+    return shape.values[name] <= max(least, blurred_travel(runs))
+
+
 def detect(
     given: Given, expansion: Expansion, explanation: Explanation, candidates: Sequence[Candidate],
     train: Sequence[str], rng: np.random.Generator, cleaned: Callable[[Expansion], Expansion],
@@ -89,7 +97,7 @@ def detect(
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = cross.gain(base, trials[best])
     candidate, shape = trials[best].slots[-1].origin
-    if candidate.shortest and shape.values[candidate.shortest[0]] <= max(candidate.shortest[1], blurred_travel(chosen)):
+    if too_short(candidate, shape, chosen):
         return None
     # what a named effect's law leaves of itself is its own second order, here as elsewhere
     own = max(cross.explain(()).loss - base.loss, 0.0) if kept else 0.0

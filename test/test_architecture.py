@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,17 @@ def test_the_node_path_needs_no_desk_library(package):
         "for each in pkgutil.walk_packages(package.__path__, package.__name__ + '.'):\n"
         "    importlib.import_module(each.name)\n"
         f"print(sorted({DESK_ONLY!r} & set(sys.modules)))"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "[]"
+
+
+@pytest.mark.skipif(not find_spec("rclpy"), reason="rclpy is not installed")
+@pytest.mark.parametrize("node", ["compensator", "estimator"])
+def test_a_node_starts_without_what_it_does_not_use(node):
+    """Half a second of its start: filterpy is the reference of a test, scipy's statistics are a few closed forms."""
+    code = (
+        f"import sys, winch_friction.nodes.{node}; print(sorted({{'scipy', 'filterpy', 'numba'}} & set(sys.modules)))"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from filterpy.kalman import ExtendedKalmanFilter
 from scipy.linalg import expm
+from scipy.stats import chi2
 
-from winch_friction.estimation import EstimatorConfig
+from winch_friction.estimation import EstimatorConfig, chi_squared
 from winch_friction.estimation.answers import ParameterStatus
 from winch_friction.estimation.compiled_filter import CompiledFilter
 from winch_friction.estimation.dynamics import (
@@ -28,6 +29,7 @@ from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import mean_direction
 from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
+from winch_friction.estimation.reference import ReferenceFilter
 from winch_friction.estimation.sample import HangingLoad
 from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
 from winch_friction.physics.friction.seed_range import seed_range
@@ -45,8 +47,8 @@ def kind(request):
 
 def unbounded(each):
     """The range of the parameters has tests of its own."""
-    each._parameters.contains = lambda phi: True
-    each._parameters.lower[:], each._parameters.upper[:] = -np.inf, np.inf
+    each.parameters.contains = lambda phi: True
+    each.parameters.lower[:], each.parameters.upper[:] = -np.inf, np.inf
 
 
 def some_filter(model, config=None, seed=1, kind=StateFilter):
@@ -131,22 +133,14 @@ def test_a_step_is_filterpys_predict_and_update(kind, seed):
     """filterpy's extended Kalman filter with the same F, Q, H and R, over a hundred steps."""
     config = EstimatorConfig(forgetting_time=1e12)  # the fading of the parameters' covariance has a test of its own
     each, step = some_filter(seed, config, kind=kind)
-    size = each.size
-    plain, row = ExtendedKalmanFilter(size, 1), np.zeros((1, size))
-    row[0, [SPEED, ENCODER_CHANGE]] = 1.0
-    plain.x, plain.P = each.state
-    rng = np.random.default_rng(5)
+    plain, rng = ReferenceFilter(each), np.random.default_rng(5)
+    assert isinstance(plain, ExtendedKalmanFilter)
     for _ in range(100):
         step = step._replace(torque=float(rng.normal(scale=100.0)), heave=float(rng.normal()))
         measured = float(plain.x[SPEED, 0] + rng.normal())
-        each._propagation.take(step, plain.x[FIRST_PARAMETER:, 0])
-        matrix = each._propagation.matrix
-        noise = np.diag(noise_variances(step, config, 1.0, False))
-        plain.F, plain.Q = matrix[:, :size].copy(), matrix[:, size:] @ noise @ matrix[:, size:].T
         following = moved(plain.x[:, 0], step, config)
-        plain.predict_x = lambda u=0, ahead=following: setattr(plain, "x", ahead[:, None].copy())
-        plain.predict()
-        plain.update(np.array([[measured]]), lambda _: row, lambda x: row @ x, R=each.speed_variance)
+        plain.take(step, measured)
+        assert plain.x_prior[:, 0] == pytest.approx(following, rel=1e-9, abs=1e-9)
         each.predict_step(step, True, False)
         innovation, variance = each.innovation(measured)
         unbounded(each)
@@ -154,6 +148,16 @@ def test_a_step_is_filterpys_predict_and_update(kind, seed):
         scale = np.sqrt(np.outer(np.diag(plain.P), np.diag(plain.P))) + 1e-12
         assert np.abs((each.P - plain.P) / scale).max() < 1e-9
         assert each.x == pytest.approx(plain.x, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 10, 50, 51, 1000])
+def test_chi_squared_is_scipys(count):
+    for tail in (1e-9, 1e-3, 0.025, 0.5, 0.975, 1.0 - 1e-6):
+        squares = chi2.ppf(tail, count)
+        assert chi_squared.survival(squares, count) == pytest.approx(chi2.sf(squares, count), rel=1e-9)
+        assert chi_squared.quantile(tail, count) == pytest.approx(squares, rel=1e-6 if tail < 1e-6 else 1e-9)
+    assert chi_squared.survival(0.0, count) == 1.0
+    assert chi_squared.survival(2000.0 + 10.0 * count, count) == pytest.approx(chi2.sf(2000.0 + 10.0 * count, count))
 
 
 @pytest.mark.parametrize("learning", [True, False])
@@ -209,10 +213,10 @@ def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
     for each in (early, late):
         unbounded(each)
         covariance = start.copy()
-        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each._parameters.prior
+        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each.parameters.prior
         each.state = np.zeros((each.size, 1)), covariance
-    early.change_prior(lambda: early._parameters.widen([1, 2, 8]))
-    assert early.phi_covariance == pytest.approx(early._parameters.prior, rel=1e-9, abs=1e-12)
+    early.change_prior(lambda: early.parameters.widen([1, 2, 8]))
+    assert early.phi_covariance == pytest.approx(early.parameters.prior, rel=1e-9, abs=1e-12)
     for k in range(300):
         gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
         step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
@@ -220,8 +224,8 @@ def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
             each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
             innovation, variance = each.innovation(0.01 * k)
             each.correct(innovation, variance, True)
-    late.change_prior(lambda: late._parameters.widen([1, 2, 8]))
-    assert late._parameters.widened_names == tuple(seed.parameter_names[k] for k in (1, 2, 8))
+    late.change_prior(lambda: late.parameters.widen([1, 2, 8]))
+    assert late.parameters.widened_names == tuple(seed.parameter_names[k] for k in (1, 2, 8))
     assert late.phi == pytest.approx(early.phi, rel=1e-6, abs=1e-8)
     assert late.phi_covariance == pytest.approx(early.phi_covariance, rel=1e-6, abs=1e-10)
     assert late.sensitivity == pytest.approx(early.sensitivity, rel=1e-6, abs=1e-8)
@@ -233,7 +237,7 @@ def test_the_compiled_step_is_numpys(seed, widths):
     each, step = some_filter(seed, EstimatorConfig(forgetting_time=50.0))
     other, _ = some_filter(seed, EstimatorConfig(forgetting_time=50.0), kind=CompiledFilter)
     for one in (each, other):
-        parameters = one._parameters
+        parameters = one.parameters
         parameters.lower[:], parameters.upper[:] = -widths, widths
         parameters._lows, parameters._highs = parameters.lower.tolist(), parameters.upper.tolist()
     rng, at_edge = np.random.default_rng(8), 0

@@ -1,4 +1,4 @@
-"""The online estimator: an extended Kalman filter around the seed (the only place that imports filterpy)."""
+"""The online estimator: an extended Kalman filter around the seed (filterpy: in `reference` alone)."""
 
 from winch_friction.estimation.answers import Estimate, ParameterEstimate
 from winch_friction.estimation.config import EstimatorConfig

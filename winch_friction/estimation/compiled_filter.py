@@ -29,9 +29,9 @@ class CompiledFilter(StateFilter):
     def _predict(self, step: Step, load_known: bool) -> None:
         top, middle, bottom = step.wire
         self._wire_bytes.pack_into(self._wire_at, 0, *top, *middle, *bottom)
-        noises = noise_variances(step, self._config, self._factor.value, load_known)
+        noises = noise_variances(step, self.config, self._factor.value, load_known)
         self._given_bytes.pack_into(
-            self._given_at, 0, step.torque - step.friction, step.heave, fading(step.duration, self._config), *noises,
+            self._given_at, 0, step.torque - step.friction, step.heave, fading(step.duration, self.config), *noises,
             *step.by_parameters, *step.by_sensors,
         )  # fmt: skip
         self._kernel_ahead(
@@ -43,7 +43,7 @@ class CompiledFilter(StateFilter):
         return seen(-1), seen(SPEED) + seen(ENCODER_CHANGE)
 
     def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
-        parameters = self._parameters
+        parameters = self.parameters
         return bool(
             self._kernel_in(
                 self._now, self._ahead, self._seen, innovation, variance, learning, parameters.lower, parameters.upper

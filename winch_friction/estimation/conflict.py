@@ -10,8 +10,8 @@ shows stays where the seed has it, but no longer with the sigma of a seed that w
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtrc
 
+from winch_friction.estimation import chi_squared
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.parameters import ScaledParameters
@@ -43,9 +43,9 @@ def shift_of(phi: FloatArray, covariance: FloatArray, considered: FloatArray, pr
     told = taken > TOLD
     along = directions[:, told].T @ whitening
     by_sensors = np.einsum("ij,jk,ik->i", along, considered - covariance, along)
-    squares = (along @ phi) ** 2 / (taken[told] + np.clip(by_sensors, 0.0, None))
+    squares = float(((along @ phi) ** 2 / (taken[told] + np.clip(by_sensors, 0.0, None))).sum())
     count = int(told.sum())
-    return Shift(float(squares.sum()), count, float(chdtrc(count, squares.sum())) if count else 1.0)
+    return Shift(squares, count, chi_squared.survival(squares, count) if count else 1.0)
 
 
 class SeedConflict:

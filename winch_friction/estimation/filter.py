@@ -1,15 +1,16 @@
-"""The filter: filterpy's, over shaft, wire, load, disturbance, encoder and scaled parameters as one state.
+"""The filter: an extended Kalman filter over shaft, wire, load, disturbance, encoder and scaled parameters.
 
-filterpy's own predict and update take four products of whole matrices, an inverse and a dozen small arrays. Here the
-noises stand beside the states in one covariance, so that a prediction is one congruence, and the single speed that is
-measured makes the correction a change of rank one; the states and their sensitivities to sensor errors go through the
-same two products as further rows. A test holds all of it against filterpy's. `compiled_filter` does the same by loops.
+It is filterpy's filter by interface (`x`, `P`, `dim_x`, `dim_z`) and by its numbers: `reference` is filterpy's own
+class on the same F, Q, H and R, and a test holds every step against it. Its predict and update take four products of
+whole matrices, an inverse and a dozen small arrays. Here the noises stand beside the states in one covariance, so
+that a prediction is one congruence, and the single speed that is measured makes the correction a change of rank one;
+the states and their sensitivities to sensor errors go through the same two products as further rows. `compiled_filter`
+does the same by loops.
 """
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.dynamics import (
@@ -33,24 +34,24 @@ FADE_PERIOD = 1.0  # s between two steps of forgetting, which goes over hours
 EVEN_EVERY = 50  # steps; the rounding of one step is 1e-16 of the covariance
 
 
-class StateFilter(ExtendedKalmanFilter):
+class StateFilter:
     """Predicts by steps, takes speeds in; a prediction that is not taken in changes nothing.
 
-    `x` (n, 1) and `P` (n, n) are filterpy's. When not learning the parameters are considered: their gain is zero, while
-    their uncertainty and their correlation with the others stay in the account (Schmidt 1966; Simon, Optimal State
-    Estimation, section 10.1). Constant sensor errors (standard deviations `sensors`) are considered always, and by the
-    gain of a filter that does not know them: `sensitivity` (errors, n) is what one of each does to the state's error
-    (Tapley, Schutz and Born, Statistical Orbit Determination, chapter 6), so that the covariance of the error is
-    P + sensitivity' diag(sensors^2) sensitivity. Their own states would share the innovation's variance with the
-    noises, and its check would no longer tell. All noise variances share one factor, which `adapt` lets follow the
-    innovations. SI throughout.
+    `x` (n, 1) and `P` (n, n) are named as filterpy's. When not learning the parameters are considered: their gain is
+    zero, while their uncertainty and their correlation with the others stay in the account (Schmidt 1966; Simon,
+    Optimal State Estimation, section 10.1). Constant sensor errors (standard deviations `sensors`) are considered
+    always, and by the gain of a filter that does not know them: `sensitivity` (errors, n) is what one of each does to
+    the state's error (Tapley, Schutz and Born, Statistical Orbit Determination, chapter 6), so that the covariance of
+    the error is P + sensitivity' diag(sensors^2) sensitivity. Their own states would share the innovation's
+    variance with the noises, and its check would no longer tell. All noise variances share one factor, which `adapt`
+    lets follow the innovations. SI throughout.
     """
 
     def __init__(self, config: EstimatorConfig, parameters: ScaledParameters, sensors: Sequence[float] = ()) -> None:
-        self._config, self._parameters = config, parameters
+        self.config, self.parameters = config, parameters
         self._propagation = Propagation(config, parameters.free, parameters.scale)
         size = self._propagation.size
-        super().__init__(dim_x=size, dim_z=1)
+        self.dim_x, self.dim_z = size, 1
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
@@ -86,7 +87,7 @@ class StateFilter(ExtendedKalmanFilter):
     @property
     def size(self) -> int:
         """Number n of the states."""
-        return int(self.dim_x)
+        return self.dim_x
 
     @property
     def speed(self) -> float:
@@ -125,7 +126,7 @@ class StateFilter(ExtendedKalmanFilter):
     @property
     def speed_variance(self) -> float:
         """Variance of a measured speed's white noise, (rad/s)^2."""
-        return self._factor.value * self._config.speed_noise**2
+        return self._factor.value * self.config.speed_noise**2
 
     # -- one step
     def predict_step(self, step: Step, learning: bool, load_known: bool) -> None:
@@ -133,7 +134,7 @@ class StateFilter(ExtendedKalmanFilter):
         self._predict(step, load_known)
         self._unfaded = self._learned_for + step.duration if learning else self._learned_for
         if self._unfaded >= FADE_PERIOD:
-            self._ahead_P[self._phi, self._phi] += self._parameters.faded(self.phi_covariance, self._unfaded)
+            self._ahead_P[self._phi, self._phi] += self.parameters.faded(self.phi_covariance, self._unfaded)
             self._unfaded = 0.0
 
     def _predict(self, step: Step, load_known: bool) -> None:
@@ -142,7 +143,7 @@ class StateFilter(ExtendedKalmanFilter):
         acting[-1, TORQUE_NOISE], acting[-1, HEAVE_NOISE] = self._propagation.take(step, self.phi)
         for k, each in enumerate(step.by_sensors):
             acting[k, TORQUE_NOISE] = each
-        self._noises[:] = noise_variances(step, self._config, self._factor.value, load_known)
+        self._noises[:] = noise_variances(step, self.config, self._factor.value, load_known)
         self._now.dot(matrix.T, out=self._half)
         matrix.dot(self._half_of_P, out=self._ahead_P)
         self._ahead_carried[:] = self._half_carried
@@ -167,7 +168,7 @@ class StateFilter(ExtendedKalmanFilter):
         inside = self._take_in(innovation, variance, learning)
         self._learned_for = self._unfaded
         if learning and not inside:
-            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+            self._flat[:] = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
 
     def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
         """The prediction becomes what is; whether the learned parameters are inside their range."""
@@ -184,7 +185,7 @@ class StateFilter(ExtendedKalmanFilter):
             self.P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self.P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
             return True
         self._even()
-        return self._parameters.contains(self.phi)
+        return self.parameters.contains(self.phi)
 
     def _even(self) -> None:
         """Now and then, take away what rounding left unequal between the halves of P."""
@@ -204,17 +205,17 @@ class StateFilter(ExtendedKalmanFilter):
         With the prior's mean at the seed (phi = 0) and dJ the change of its precision:
         P' = (P^-1 + dJ)^-1, x' = x - P' dJ phi, here without the inverse of P.
         """
-        before = np.linalg.inv(self._parameters.prior)
+        before = np.linalg.inv(self.parameters.prior)
         change()
-        change_of_precision = np.linalg.inv(self._parameters.prior) - before
+        change_of_precision = np.linalg.inv(self.parameters.prior) - before
         across = self.P[:, self._phi].copy()
         factor = change_of_precision @ np.linalg.inv(np.eye(len(before)) + self.phi_covariance @ change_of_precision)
         self._flat -= across @ (factor @ self.phi)
         self.sensitivity -= self.sensitivity[:, self._phi] @ factor.T @ across.T
         covariance = self.P - across @ factor @ across.T
         self.P[:] = 0.5 * (covariance + covariance.T)
-        if not self._parameters.contains(self.phi):
-            self._flat[:] = self._parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+        if not self.parameters.contains(self.phi):
+            self._flat[:] = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
 
     # -- beginning anew
     def begin_load(self, variance: float, torque: float = 0.0) -> None:

@@ -3,8 +3,7 @@
 import math
 from functools import lru_cache
 
-from scipy.stats import chi2
-
+from winch_friction.estimation import chi_squared
 from winch_friction.estimation.config import EstimatorConfig
 
 RESTART_AFTER = 10  # rejections in a row that mean the filter was wrong, not the sensor
@@ -86,7 +85,7 @@ class Excitation:
 def nis_band(samples: int) -> tuple[float, float]:
     """The 95 % band of the mean of `samples` independent NIS values of one measurement."""
     tail = 0.5 * (1.0 - CONFIDENCE)
-    return chi2.ppf(tail, samples) / samples, chi2.ppf(1.0 - tail, samples) / samples
+    return chi_squared.quantile(tail, samples) / samples, chi_squared.quantile(1.0 - tail, samples) / samples
 
 
 class VarianceFactor:

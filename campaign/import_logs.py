@@ -31,7 +31,7 @@ BASES = ("test_02", "test_03", "test_08", "test_09", "ahc_160", "ahc_215", *REAL
 SLOWEST = 5.0  # s for an answer
 _ROUNDING = 5e-3  # of a channel's largest value: the digits that a log keeps
 
-_SMALL_CRANE = """\
+SMALL_CRANE = """\
 schema: winch_friction.crane/1
 name: crane_50t
 drive: hydraulic
@@ -66,7 +66,7 @@ def trial(variant: Variant, folder: Path, seed: int) -> Outcome:
     crane = REAL.get(variant.base, "crane_150t")
     if variant.mistake.name == "wrong crane":
         small = folder / "crane_50t.yaml"
-        small.write_text(_SMALL_CRANE, encoding="utf-8")
+        small.write_text(SMALL_CRANE, encoding="utf-8")
         crane = str(small)
     mapped, out = folder / f"map_{variant.number:03d}.yaml", folder / f"runs_{variant.number:03d}"
     first = _timed("import", str(log), "--propose", "--crane", crane, "--map", str(mapped))
@@ -188,7 +188,10 @@ def main() -> None:
                 flush=True,
             )
     if options.only < 0:
-        options.out.write_text(table(outcomes, options.seed), encoding="utf-8")
+        from campaign.import_habits import every, section
+
+        page = table(outcomes, options.seed) + "\n" + section(every())
+        options.out.write_text(page, encoding="utf-8")
         print(f"good {sum(o.good for o in outcomes)} of {len(outcomes)}; written {options.out}")
 
 

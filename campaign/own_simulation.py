@@ -1,18 +1,26 @@
-"""`make campaign-own-simulation`: is a hidden effect named as often against a user's column as against our model?
+"""`make campaign-own-simulation`: is a hidden effect named as often against a user's simulation as against our model?
 
-The same winch, motion, noise and effect twice: once the measured friction is the built-in model's and `gap` compares
-with that model; once it is of laws that the package does not have, and `gap` compares with a column of these laws.
-Prints a table in Markdown.
+The same winch, motion, noise and effect three times: once the measured friction is the built-in model's and `gap`
+compares with that model; else it is of laws that the package does not have, and `gap` compares with a column of these
+laws, or with an FMU of them (built here with pythonfmu), through the verb. Prints a table in Markdown.
 """
 
 import argparse
+import contextlib
+import io
+import json
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from campaign.commit import commit
+from campaign.own_fmu import build
+from winch_friction.cli import main as cli
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.friction import FrictionModel
@@ -22,6 +30,7 @@ from winch_friction.physics.winch import Crane
 from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import write_run
 
 STEP, LENGTH = 0.02, 110.0  # s
 LAYER = 6  # the outer one
@@ -71,10 +80,11 @@ TORQUES: dict[str, Torque] = {
 SIGNALS: dict[str, Callable[[Run], Run]] = {
     "pressure_offset": _moved("main.pressure_a", 6.0 * BAR),
     "tare_load": _moved("hook_load", -3000.0),
-    "displacement_offset": _moved("main.displacement", 4.0 * CM3_PER_REV),
+    "swivel_offset": _moved("main.displacement", 4.0 * CM3_PER_REV),
     "signal_delay": _late(0.12),
 }
-EFFECTS = (*TORQUES, *SIGNALS)
+QUICK = "signal_delay, quick cycles"  # a delay shows while the speed changes: in slow cycles it is below the noise
+EFFECTS = (*TORQUES, *SIGNALS, QUICK)
 
 
 def own_friction(c: Cycle) -> FloatArray:
@@ -82,10 +92,10 @@ def own_friction(c: Cycle) -> FloatArray:
     return np.tanh(c.speed / 2.0) * (0.11 * c.weight + 60.0) + 1.9 * c.speed
 
 
-def drawn(rng: np.random.Generator, crane: Crane) -> Cycle:
-    """A joystick cycle."""
+def drawn(rng: np.random.Generator, crane: Crane, between: float = 12.0) -> Cycle:
+    """A joystick cycle; another speed every `between` s."""
     time_ = np.arange(0.0, LENGTH, STEP)
-    knots = np.arange(0.0, LENGTH + 50.0, 12.0)
+    knots = np.arange(0.0, LENGTH + 50.0, between)
     speed = np.interp(time_, knots, rng.uniform(-190.0, 190.0, len(knots)))
     kernel = np.hanning(75)
     speed = np.convolve(np.pad(speed, 37, mode="edge"), kernel / kernel.sum(), mode="valid")[: len(time_)]
@@ -101,7 +111,8 @@ def logged(number: int, seed: int, effect: str, crane: Crane, model: FrictionMod
     The user's simulation is driven by the log, so that an error of the log's load, speed or displacement is in it too.
     """
     rng = np.random.default_rng((seed, number))
-    c = drawn(rng, crane)
+    c = drawn(rng, crane, 4.0) if effect == QUICK else drawn(rng, crane)
+    effect = effect.partition(",")[0]
     size = np.ones(len(c.time))
     columns = {
         "time": c.time, "motor_speed": c.speed, "main.pressure_a": 2.0 * BIAS * size, "main.pressure_b": BIAS * size,
@@ -140,28 +151,75 @@ def simulated(run: Run, c: Cycle, crane: Crane) -> FloatArray:
 def named(effect: str, seed: int, column: bool, crane: Crane, model: FrictionModel) -> tuple[bool, str]:
     """Whether the effect stands in the answer, alone or in its set; and the answer in words."""
     runs = [logged(k, seed, effect, crane, None if column else model) for k in range(CYCLES)]
-    result = find_gap(runs, crane, model, GapOptions(plan=False)).content()
+    return answered(effect, find_gap(runs, crane, model, GapOptions(plan=False)).content())
+
+
+def named_by_fmu(effect: str, seed: int, crane: Crane, folder: Path) -> tuple[bool, str]:
+    """The same through `gap --fmu`, from run files without a simulated column and the FMU in `folder`."""
+    place = folder / f"{effect.replace(', ', '_')}_{seed}"
+    for k in range(CYCLES):
+        run = logged(k, seed, effect, crane, None)
+        bare = {name: values for name, values in run.columns.items() if not name.endswith("_simulated")}
+        write_run(replace(run, columns=bare), place / "runs" / f"{run.name}.parquet")
+    call = [
+        "gap",
+        str(place / "runs"),
+        "--crane",
+        "crane_150t",
+        "--model",
+        "a6vm215_crane2",
+        "--out",
+        str(place / "gap"),
+    ]
+    said, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):
+        status = cli.run(
+            [
+                *call,
+                "--fmu",
+                str(folder / "OwnWinch.fmu"),
+                "--fmu-map",
+                str(folder / "map.yaml"),
+                "--no-report",
+                "--json",
+            ]
+        )
+    if status:
+        return False, f"exit {status}: {errors.getvalue().strip().splitlines()[-1]}"
+    return answered(effect, json.loads(said.getvalue()))
+
+
+def answered(effect: str, result: dict[str, Any]) -> tuple[bool, str]:
+    """Whether gap.json names the effect, alone or in a set; and what it says."""
     sets = [[each["name"], *each["indistinguishable_from"]] for each in result["effects"]]
-    return any(effect in each for each in sets), f"{result['verdict']}: " + (", ".join(map(" or ".join, sets)) or "-")
+    return any(effect.partition(",")[0] in each for each in sets), f"{result['verdict']}: " + (
+        ", ".join(map(" or ".join, sets)) or "-"
+    )
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--effects", default=",".join(EFFECTS))
+    parser.add_argument("--first", type=int, default=9000, help="the first seed")
+    parser.add_argument("--effects", default=";".join(EFFECTS), help="separated by ;")
     options = parser.parse_args()
     crane, model, began = load_crane("crane_150t"), load_model("a6vm215_crane2"), time.process_time()
-    print("| hidden effect | seed | against the built-in model | against a simulated column |\n|---|---|---|---|")
-    hits = np.zeros(2, int)
-    cases = [(effect, seed) for effect in options.effects.split(",") for seed in range(9000, 9000 + options.seeds)]
-    for effect, seed in cases:
-        answers = [named(effect, seed, column, crane, model) for column in (False, True)]
-        hits += [found for found, _ in answers]
-        cells = [f"{'named' if found else 'NOT named'}; {said}" for found, said in answers]
-        print(f"| {effect} | {seed} | {cells[0]} | {cells[1]} |", flush=True)
+    print("| hidden effect | seed | against the built-in model | against a simulated column | against an FMU |")
+    print("|---|---|---|---|---|")
+    hits = np.zeros(3, int)
+    seeds = range(options.first, options.first + options.seeds)
+    cases = [(effect, seed) for effect in options.effects.split(";") for seed in seeds]
+    with tempfile.TemporaryDirectory() as place:
+        build(Path(place))
+        for effect, seed in cases:
+            answers = [named(effect, seed, column, crane, model) for column in (False, True)]
+            answers.append(named_by_fmu(effect, seed, crane, Path(place)))
+            hits += [found for found, _ in answers]
+            cells = [f"{'named' if found else 'NOT named'}; {said}" for found, said in answers]
+            print(f"| {effect} | {seed} | {' | '.join(cells)} |", flush=True)
     spent = time.process_time() - began
-    print(f"\nNamed {hits[0]} and {hits[1]} of {len(cases)}; commit {commit()}, {spent:.0f} s of a core.")
+    print(f"\nNamed {', '.join(map(str, hits))} of {len(cases)}; commit {commit()}, {spent:.0f} s of a core.")
 
 
 if __name__ == "__main__":

@@ -43,31 +43,3 @@ def cycle(k, name, missing=True):
         "wire_layer": np.full(len(time), 6.0), "main.pressure_drop_simulated": simulated,
     }  # fmt: skip
     return Run(name, columns)
-
-
-FMU_SOURCE = """
-import math
-
-from pythonfmu import Fmi2Causality, Fmi2Slave, Real
-
-
-class OwnWinch(Fmi2Slave):
-    def __init__(self, **kwargs):
-        super().__init__(**kwargs)
-        self.omega, self.mass, self.swept, self.dp, self.motors = 0.0, 50.0, 215.0, 0.0, 11.0
-        self.before, self.alpha = None, 0.0
-        for name in ("omega", "mass", "swept"):
-            self.register_variable(Real(name, causality=Fmi2Causality.input))
-        self.register_variable(Real("dp", causality=Fmi2Causality.output))
-
-    def do_step(self, time, step):
-        speed, load = self.omega * math.pi / 30.0, 1000.0 * self.mass
-        if self.before is not None:
-            self.alpha += (((speed - self.before) / step) - self.alpha) * 0.2
-        self.before = speed
-        lever = 1.136 / 250.0
-        torque = load * 9.80665 * lever + (1.54 + load * lever**2) * self.alpha
-        torque += math.tanh(speed / 2.0) * (0.11 * load * 9.80665 * lever + 60.0) + 1.9 * speed
-        self.dp = torque / (11.0 * self.swept * 1e-6 / (2.0 * math.pi)) / 1e5
-        return True
-"""

@@ -1,14 +1,13 @@
 """`gap` against a user's own simulation: by its column, and by its FMU."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from own_winch import FMU_SOURCE, churning, cycle
+from own_winch import churning, cycle
 
+from campaign.own_fmu import MAP, build
 from campaign.own_simulation import named
 from winch_friction.cli import main
 from winch_friction.discrepancy.options import GapOptions
@@ -18,15 +17,6 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.runs import write_run
 from winch_friction.simulation.fmu import load_fmu_map, simulate_fmu
-
-MAP = """schema: winch_friction.fmu/1
-inputs:
-  omega: {column: motor_speed, unit: rpm}
-  mass: {column: hook_load, unit: t}
-  swept: {column: main.displacement, unit: cm^3/rev}
-outputs:
-  dp: {column: main.pressure_drop_simulated, unit: bar}
-"""
 
 
 def without_column(run):
@@ -73,12 +63,7 @@ def test_runs_with_and_without_a_simulation_do_not_mix(crane_150t, crane2_model)
 def fmu(tmp_path_factory):
     pytest.importorskip("fmpy")
     pytest.importorskip("pythonfmu")
-    folder = tmp_path_factory.mktemp("fmu")
-    (folder / "fmu_winch.py").write_text(FMU_SOURCE)
-    build = [sys.executable, "-m", "pythonfmu", "build", "-f", "fmu_winch.py"]
-    subprocess.run(build, cwd=folder, check=True, capture_output=True, timeout=60)
-    (folder / "map.yaml").write_text(MAP)
-    return folder / "OwnWinch.fmu", folder / "map.yaml"
+    return build(tmp_path_factory.mktemp("fmu"))
 
 
 def test_an_fmu_gives_the_column_that_its_formulas_give(fmu):

@@ -24,6 +24,8 @@ HOT = (-20.0, 95.0)  # degC, oil outside is unusual
 MAY_SATURATE = ("pressure_a", "pressure_b", "motor_speed", "motor_torque", "motor_current")
 MAY_STAND = ("hook_load", "wire_layer", "oil_temperature", "displacement", "wire_out", "speed_reference")
 
+FROZEN_SPEED, FROZEN_SAMPLES, FROZEN_SWIVEL = 5.0, 100, 0.02  # rad/s both ways; samples; relative span
+
 
 @dataclass(frozen=True)
 class ChannelSummary:
@@ -98,6 +100,26 @@ def _summary(run: Run, name: str, values: FloatArray) -> ChannelSummary:
 def _longest_still(time: FloatArray, values: FloatArray) -> float:
     places = np.concatenate(([0], np.flatnonzero(np.diff(values) != 0.0) + 1, [len(values) - 1]))
     return float(np.diff(time[places]).max(initial=0.0))
+
+
+def frozen_findings(run: Run) -> Iterator[Finding]:
+    """The pressure that holds the load and does not change by a bit while the winch moves both ways at one
+    displacement: friction and acceleration must move it, so nobody measured it.
+    """
+    speed = run["motor_speed"] if "motor_speed" in run else np.zeros(1)
+    moving = np.isfinite(speed).any() and np.nanmin(speed) < -FROZEN_SPEED and np.nanmax(speed) > FROZEN_SPEED
+    for group in run.groups if moving and len(run) >= FROZEN_SAMPLES else ():
+        swept = run[f"{group}.displacement"]
+        ports = [f"{group}.pressure_a", f"{group}.pressure_b"]
+        if np.ptp(swept) > FROZEN_SWIVEL * np.abs(np.median(swept)):
+            continue  # torque may be controlled by the displacement at a pressure that stands
+        held = max(ports, key=lambda name: float(np.nanmean(run[name])))
+        if np.nanmax(run[held]) == np.nanmin(run[held]):
+            said = (
+                f"{run.name}: {held} never changes ({_read(held, float(run[held][0]))}) though the winch hoists and "
+                "lowers: a dead transducer or a frozen channel"
+            )
+            yield Finding("error", "stuck", said, held, (run.name,))
 
 
 def channel_findings(run: Run, crane: Crane) -> Iterator[Finding]:

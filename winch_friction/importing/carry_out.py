@@ -234,10 +234,11 @@ def _within_limits(log: Log, name: str, channel: str, column: LogColumn, values:
 
 
 def _without_footer(columns: Mapping[str, FloatArray], log: Log, said: list[str]) -> dict[str, FloatArray]:
-    """Rows at the end that hold neither a time nor any value are no samples: a footer."""
-    empty = np.all([~np.isfinite(values) for values in columns.values()], axis=0)
+    """Rows at the end without a time and with hardly a value are no samples: a footer, a summary."""
+    known = np.sum([np.isfinite(values) for name, values in columns.items() if name != "time"], axis=0)
+    empty = ~np.isfinite(columns["time"]) & (known <= max(0.25 * (len(columns) - 1), 0.0))
     count = len(empty) - (np.flatnonzero(~empty)[-1] + 1) if (~empty).any() else 0
     if not count:
         return dict(columns)
-    said.append(f"{count} rows at the end hold no value (from {log.place(len(empty) - int(count))}): left out")
+    said.append(f"{count} rows at the end are no samples (from {log.place(len(empty) - int(count))}): left out")
     return {name: values[: len(values) - count] for name, values in columns.items()}

@@ -111,6 +111,27 @@ def as_column(
     return LogColumn(name, values, unit, bad=tuple(bad), note=note)
 
 
+_VALUE_AND_UNIT = re.compile(r"^([+\-\u2212]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([^\d\s.,:;+\-][^\s]{0,11})$")
+
+
+def units_in_cells(rows: Sequence[Sequence[str]]) -> dict[int, str]:
+    """Columns whose cells bear their unit (`116.2 bar`): column -> unit; told from the last rows of a table."""
+    found = {}
+    for k in range(max((len(row) for row in rows), default=0)):
+        cells = [row[k].strip() for row in rows if k < len(row) and not is_missing(row[k])]
+        matched = [m for m in map(_VALUE_AND_UNIT.match, cells) if m]
+        units = {m[2] for m in matched}
+        if len(matched) > 0.8 * len(cells) and len(units) == 1 and len(matched) > 2:
+            found[k] = units.pop()
+    return found
+
+
+def without_unit(cell: str, unit: str) -> str:
+    """A cell without the unit behind its number."""
+    text = cell.strip()
+    return text.removesuffix(unit).rstrip() if text.endswith(unit) else cell
+
+
 def _all_numbers(cells: Sequence[Any], decimal: str, thousands: str) -> FloatArray | None:
     """The cells as numbers when each one is a plain number or empty: a hundred times faster than one by one."""
     if thousands or not all(isinstance(cell, str) for cell in cells):

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from winch_friction.commissioning.check import quick_check
 from winch_friction.importing.balance import drive_torque, power_ratio
 from winch_friction.physics.signals import FloatArray, Run
@@ -12,8 +14,30 @@ LOSSES = 2.0  # power over load times speed: no winch loses half of it
 
 def contradictions(logs: Mapping[str, Mapping[str, FloatArray]], crane: Crane) -> list[str]:
     """What in these logs (name -> columns in SI) cannot be this crane, the likeliest mistake first."""
-    runs = [Run(name, columns) for name, columns in logs.items() if _is_complete(columns, crane)]
-    return run_contradictions(runs, crane)
+    said = [text for name, columns in logs.items() for text in _of_clock(name, columns)]
+    timed = {name: _with_time(columns) for name, columns in logs.items()}
+    runs = [Run(name, columns) for name, columns in timed.items() if _is_complete(columns, crane)]
+    return said or run_contradictions(runs, crane)
+
+
+def _of_clock(name: str, columns: Mapping[str, FloatArray]) -> list[str]:
+    """A clock that goes back by more than a sample: two recordings in one file, of which no run can be made."""
+    time = columns.get("time", np.zeros(0))
+    steps = np.diff(time[np.isfinite(time)])
+    if not len(steps) or steps.min() >= 0.0:
+        return []
+    back = int(np.argmin(steps))
+    times = int(np.sum(steps < 0.0))
+    return [
+        f"{name}: time goes back {times} times, first after sample {back + 1} by {-float(steps[back]):.4g} s: several "
+        "recordings in one file? cut it there"
+    ]
+
+
+def _with_time(columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """The rows that have a time."""
+    known = np.isfinite(columns["time"]) if "time" in columns else np.ones(0, bool)
+    return {name: values[known] if len(values) == len(known) else values for name, values in columns.items()}
 
 
 def run_contradictions(runs: Sequence[Run], crane: Crane) -> list[str]:

@@ -32,6 +32,7 @@ _EXACT = 1.2  # a column that bears the contract's own name
 
 _HYDRAULIC = ("motor_speed", "drum_speed", "rope_speed", "speed_reference", "hook_load", "rope_force", "heave_velocity",
               "oil_temperature", "wire_layer", "wire_out", "shaft_angle")  # fmt: skip
+_GROUPS = ("main", "active", "passive")  # of motors, where no crane names them
 _ELECTRIC = (*_HYDRAULIC, "motor_torque", "load_torque", "mechanical_power", "motor_current")
 
 
@@ -117,7 +118,7 @@ def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> M
         if not unit and any(says_unit(column.name, said) for _, said in readings if said):
             break  # a unit that is said is no word of the name; a single letter may be a port
         unit = unit or column.unit
-        score, why = _reading_score(column, bare, unit, slot, groups)
+        score, why = _reading_score(column, bare, unit, slot, groups, crane.groups if crane else _GROUPS)
         if score <= 0.0:
             continue
         score, size = _with_size(score, column, unit, slot.channel, crane)
@@ -126,8 +127,10 @@ def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> M
     return best
 
 
-def _reading_score(column: LogColumn, bare: str, unit: str, slot: Slot, groups: int) -> tuple[float, str]:
-    if column_unit(bare) is not None:
+def _reading_score(
+    column: LogColumn, bare: str, unit: str, slot: Slot, groups: int, known: Iterable[str]
+) -> tuple[float, str]:
+    if column_unit(bare) is not None and bare.rpartition(".")[0] in ("", *known):
         return (_EXACT, "the contract's own name") if bare == slot.name else (0.0, "")
     fitting = fitting_si_unit(slot.channel, unit) if unit else ""
     if fitting is None or (slot.channel == "rope_speed" and unit and fitting != "m/s"):

@@ -22,11 +22,21 @@ def settle_orientation(draft: Draft, said: frozenset[str] = frozenset()) -> None
     """Ports, groups and signs by what the crane's physics allows."""
     if draft.crane is None:
         return
+    if "hook_load" in draft.log_map.columns and "hook_load" not in said:
+        _settle_load(draft)
     _settle_ports(draft, draft.crane)
     if "motor_speed" in draft.log_map.columns and "motor_speed" not in said:
         _settle_speed(draft, draft.crane)
     if "mechanical_power" in draft.log_map.columns and "mechanical_power" not in said:
         _settle_power(draft, draft.crane)
+
+
+def _settle_load(draft: Draft) -> None:
+    """A hanging load pulls: a cell that counts it negative counts downwards."""
+    loads = np.concatenate([each.columns.get("hook_load", np.zeros(0)) for each in draft.converted()])
+    loads = loads[np.isfinite(loads)]
+    if len(loads) and np.percentile(loads, 95.0) < 0.0:
+        draft.change("hook_load", sign=-1, because="sign turned: a hanging load counts negative in this log")
 
 
 def _settle_speed(draft: Draft, crane: Crane) -> None:

@@ -16,6 +16,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 
 TIME = "time"  # the name given to the times that a file keeps beside its signals
+_PEEKED = 300  # cells of a column of text whose decimal mark is looked at
 _DEEPEST = 6  # structs within structs of a .mat file
 _MOST = 50_000_000  # values of one signal: ten days at 50 Hz
 
@@ -89,9 +90,11 @@ def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
         return LogColumn(name, np.full(len(values), np.nan), signal.unit, text=values, note=signal.note)
     if values.dtype.kind in "biuf":
         return number_column(name, values, signal.unit, signal.note)
-    from winch_friction.importing.cells import as_column
+    from winch_friction.importing.cells import as_column, decimal_mark
 
-    return as_column(name, values.tolist(), ".", "", signal.unit, signal.note)
+    cells = values.tolist()
+    decimal, thousands = decimal_mark(cells[-_PEEKED:], "\t")
+    return as_column(name, cells, decimal, thousands, signal.unit, signal.note)
 
 
 def _parquet(path: Path) -> tuple[list[Signal], dict[str, Any]]:

@@ -9,9 +9,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from winch_friction.importing.cells import as_column, decimal_mark, is_missing, is_number
+from winch_friction.importing.cells import as_column, decimal_mark, is_missing, is_number, units_in_cells, without_unit
 from winch_friction.importing.layout import Layout, find_layout
 from winch_friction.importing.log import Log, LogColumn, Place, listed, unique_names
+from winch_friction.importing.units import looks_like_unit
 from winch_friction.physics.errors import InputError
 
 LARGEST = 1 << 30  # bytes of text: ten hours of ten channels at 100 Hz; more is split first
@@ -31,11 +32,13 @@ def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     delimiter = given.get("delimiter") or _delimiter(lines)
     lines = _without_empty_tail(lines, delimiter, notes)
     rows, numbers = _split(path, lines, delimiter)
+    _take_units_out(rows, notes)
     if "decimal" in given:
         decimal, thousands = given["decimal"], given.get("thousands", "")
     else:
         decimal, thousands = decimal_mark((cell for row in rows[-_SAMPLE:] for cell in row), delimiter)
     layout = _layout(path, given, rows, numbers, decimal, thousands)
+    rows, numbers = _without_repeated_heads(rows, numbers, layout, notes)
     columns = _columns(path, rows, numbers, layout, decimal, thousands, notes, delimiter)
     found = {"kind": "text", "encoding": encoding, "delimiter": delimiter, "decimal": decimal, "thousands": thousands}
     row_numbers = {"names_row": layout.names, "unit_row": layout.units, "first_row": layout.first}
@@ -177,6 +180,39 @@ def _split(path: Path, lines: Sequence[str], delimiter: str) -> tuple[list[list[
     except csv.Error as error:
         raise InputError(f"{path}: line {reader.line_num}: {error}") from error
     return rows, numbers
+
+
+def _take_units_out(rows: list[list[str]], notes: list[str]) -> None:
+    """Cells that bear their unit become numbers; the unit stands above them, in the row before the first of them."""
+    found = {k: unit for k, unit in units_in_cells(rows[-_SAMPLE:]).items() if looks_like_unit(unit)}
+    if not found:
+        return
+    bears = lambda row: any(k < len(row) and without_unit(row[k], unit) != row[k] for k, unit in found.items())
+    first = next(n for n, row in enumerate(rows) if bears(row) and any(c.isdigit() for cell in row for c in cell))
+    for row in rows[max(first, 1) :]:
+        for k, unit in found.items():
+            if k < len(row):
+                row[k] = without_unit(row[k], unit)
+    head = rows[first - 1] if first else []
+    for k, unit in found.items():
+        if k < len(head):
+            head[k] = f"{head[k]} [{unit}]"
+    notes.append(
+        f"cells of {len(found)} columns bear their unit: taken off ({', '.join(dict.fromkeys(found.values()))})"
+    )
+
+
+def _without_repeated_heads(
+    rows: list[list[str]], numbers: list[int], layout: Layout, notes: list[str]
+) -> tuple[list[list[str]], list[int]]:
+    """Rows without the names and units that a logger writes again whenever it starts a page."""
+    heads = [rows[k] for k in (layout.names, layout.units) if k >= 0]
+    again = {k for k in range(layout.first, len(rows)) if rows[k] in heads}
+    if not again:
+        return rows, numbers
+    notes.append(f"the header stands {len(again)} times more (line {numbers[min(again)]}): left out")
+    kept = [k for k in range(len(rows)) if k not in again]
+    return [rows[k] for k in kept], [numbers[k] for k in kept]
 
 
 def _layout(path: Path, given: Mapping[str, Any], rows: Sequence[Sequence[str]], numbers: Sequence[int], decimal: str,

@@ -18,6 +18,7 @@ from winch_friction.physics.units import CM3_PER_REV
 
 _COMBINATIONS = 300  # of units tried against the torque balance
 _ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")
+_TORQUES = ("pressures", "displacements", "hook_load", "rope_force", "motor_torque")  # what closes the balance
 _AS_WELL = 0.3  # evidence of another unit over the chosen one's from which the log does not tell them apart
 _RARER = 0.6  # prior of each next unit in the order of usual ones
 
@@ -52,6 +53,27 @@ def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
             continue
         for name in members[kind]:
             _set_unit(draft, name, options, chosen.get(kind))
+    _ask_odd_pair(draft, members)
+
+
+def _ask_odd_pair(draft: Draft, members: Mapping[str, list[str]]) -> None:
+    """Two kinds of channel without a unit, neither in its most usual one: a factor wrong in one of them, which the
+    other's unit makes up for, would look the same.
+    """
+    odd = []
+    for kind, names in members.items():
+        entry = draft.log_map.columns[names[0]]
+        usual = usual_units(names[0].rpartition(".")[2])
+        if kind in _TORQUES and entry.unit and "no unit is said" in entry.because and usual and entry.unit != usual[0]:
+            odd.append((names[0], entry))
+    if len(odd) < 2:
+        return
+    together = " and ".join(f"{name} in {entry.unit}" for name, entry in odd)
+    for name, entry in odd:
+        draft.questions.append(
+            f"{name}: '{entry.source}' says no unit, and only {together} together would be this crane's: is a gain "
+            f"wrong? set {name}.unit"
+        )
 
 
 def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:

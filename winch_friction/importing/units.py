@@ -38,6 +38,9 @@ CHANNEL_UNITS: dict[str, tuple[str, ...]] = {
 _BRACKETED = re.compile(r"^(.*?)\s*[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\))?[^\[\](){}<>]*)\s*[\])}>]\s*(.*)$")
 _AFTER_MARK = re.compile(r"^(.*\S)\s+(?:in|/)\s*([^\s]+)$|^(.*\S)\s*[,;:]\s*([^\s,;:]+)$", re.IGNORECASE)
 _SUFFIX = re.compile(r"^(.+?)[_\s\-]+([^\s_]{1,9}(?:_per_[a-z]+)?)$")
+# a unit of two words behind an underscore: displacement_cc_rev, speed_rad_s, torque_N_m
+_LONG_SUFFIX = re.compile(r"^(.+?)[_\s\-]+([^\s_/]{1,6}_(?:rev|rad|min|s|h|u|o|omdr|m|cm2))$", re.IGNORECASE)
+_OVER = re.compile(r"^(.+)_(rev|rad|min|s|h|u|o|omdr|cm2)$", re.IGNORECASE)
 _WORDED = (("_per_", "/"), (" per ", "/"), (" pro ", "/"))
 
 
@@ -57,7 +60,7 @@ def header_readings(name: str) -> list[tuple[str, str]]:
         bare, unit = f"{match[1]} {match[3]}".strip(), match[2].strip()
         return [(bare, worded(unit)), (name, "")] if looks_like_unit(unit) else [(name, ""), (bare, "")]
     readings = []
-    for pattern in (_AFTER_MARK, _SUFFIX):
+    for pattern in (_AFTER_MARK, _LONG_SUFFIX, _SUFFIX):
         match = pattern.match(name)
         parts = match.groups() if match else ()
         bare, unit = next((pair for pair in zip(parts[::2], parts[1::2], strict=True) if pair[0]), ("", ""))
@@ -90,7 +93,7 @@ def worded(unit: str) -> str:
     """A unit in words as a formula: `cm3_per_rev` -> `cm3/rev`."""
     for word, mark in _WORDED:
         unit = unit.replace(word, mark)
-    return unit.strip()
+    return _OVER.sub(r"\1/\2", unit.strip())
 
 
 @lru_cache(maxsize=4096)

@@ -116,6 +116,8 @@ def _delay(columns: Columns, run: Run, c: Correction) -> Columns:
     """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
     time = columns["time"]
     late = [name for name in affected(c, run.groups) if name in columns]
+    if "motor_speed" in late and "heave_velocity" not in columns:  # a simulation that the log drove is late as well
+        late += [name for name in columns if name.endswith("_simulated")]
     if not late or len(time) < 2:
         return columns
     inside = (time + c.value <= time[-1]) & (time + c.value >= time[0])

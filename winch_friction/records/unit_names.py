@@ -15,6 +15,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         "rpm": (
             "1/min", "min-1", "min^-1", "/min", "u/min", "upm", "umdr/min", "umdrehungen/min", "r/min", "rev/min",
             "r.p.m", "o/min", "omdr/min", "omdr./min", "omdreininger/min", "tr/min", "giri/min", "u/minute", "rot/min",
+            "omw/min", "toeren/min", "tpm", "tr/mn", "tours/min", "varv/min", "v/min", "vueltas/min",
         ),
         "rev/s": ("u/s", "rps", "r/s", "rev/s", "umdr/s", "omdr/s", "o/s", "rev/sec"),
         "rad/s": ("rad/sec", "rad/sek", "rads", "rad s-1", "rad*s^-1"),
@@ -38,6 +39,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
             "ccm", "ccm/u", "ccm/rev", "ccm/r", "ccm/umdr", "ccm/omdr", "ccm/o", "cc", "cc/rev", "cc/r", "cc/u",
             "cm3/rev",            "cm3/u", "cm3/r", "cm3/umdr", "cm3/o", "cm3/omdr", "cm^3/u",
             "cm^3/r", "cm^3/o", "cm^3/omdr", "cm^3/umdr",
+            "cm3/omw", "cc/omw", "cm3/tr", "cc/tr", "cm3/varv", "cm3/vuelta", "cm3/giro", "cc/giro",
             "ml/rev", "ml/u", "ml/r", "cm3/revolution", "cm3/umdrehung",
         ),
         "l/rev": ("l/u", "l/r", "liter/u", "dm3/rev", "dm^3/rev", "l/omdr"),
@@ -63,7 +65,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         "lbf": ("lbs", "lb"),
     },
     "N*m": {
-        "N*m": ("nm", "n m", "n.m", "n·m", "newtonmeter"),
+        "N*m": ("nm", "n_m", "n m", "n.m", "n·m", "newtonmeter"),
         "kN*m": ("knm", "kn m", "kn.m"),
         "mN*m": ("mnm", "mn m", "mn.m"),
         "N*cm": ("ncm",),

@@ -111,6 +111,12 @@ class Balance:
     states: tuple[FloatArray, ...]  # of the model's terms with memory
     jacobian: FloatArray
     unit_torque: float  # N m per bar of the balancing group; per N m of a motor for an electric drive
+    simulated: FloatArray | None = None  # the drive torque of a user's simulation
+
+    @property
+    def simulated_torque(self) -> FloatArray:
+        """Drive torque of what is compared with, N m: the user's simulation, else the model."""
+        return self.predicted if self.simulated is None else self.simulated
 
     @property
     def gap(self) -> FloatArray:
@@ -139,7 +145,8 @@ class Balancing:
         stood = balance if known.model is self.model else self._as_simulated(known, load)
         error = simulated_error(self.grid.columns, self.run, balance.groups, self.crane, load.radius)
         error = error + displacement_error(self.grid.columns, balance.groups, stood.groups)
-        return replace(balance, measured=stood.predicted + self._smoothed(error))
+        off = self._smoothed(error)
+        return replace(balance, measured=stood.predicted + off, simulated=balance.measured - off)
 
     def _as_simulated(self, known: Stood, load: SuspendedLoad) -> Balance:
         """By the model that the simulation stands for, with load, displacement, radius and inertia that it knew."""

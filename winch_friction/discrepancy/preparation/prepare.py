@@ -61,7 +61,7 @@ def prepare(
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
-        from_speed=balance.predicted - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
+        from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
         constants=_constants(crane, model), unit_torque=balance.unit_torque,
         used=used & grid.valid & ~spikes,
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),

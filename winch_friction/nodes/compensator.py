@@ -60,7 +60,7 @@ class CompensatorNode(WinchNode):
         model.compile(len(topics.groups))  # now, not while the first sample waits
         self.service = CompensatorService(crane, model, topics, config, self._service_options())
         self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
-        self.inputs = Inputs(self, self.service, self._publish, self._latest(config))
+        self.inputs = Inputs(self, self.service, self._answer, self._latest(config))
         patience = self.options.watchdog_timeout
         self._input_health = InputHealth(self.service.inputs, self.inputs, self._needed, self.service_now, patience)
         self._torque = self.publisher(JointState, "~/friction_torque", OUTPUT, qos_overriding_options=overridable())
@@ -85,7 +85,7 @@ class CompensatorNode(WinchNode):
         )
         self.while_active(models)
         share = 0.2 * self.options.watchdog_timeout
-        self.every(min(max(self.service.options.watch_period, share), LONGEST_WATCH), self._watch)
+        self._watchdog = self.every(min(max(self.service.options.watch_period, share), LONGEST_WATCH), self._watch)
 
     def stop(self) -> None:
         """Shut the inputs out and publish the ramp to zero."""
@@ -104,6 +104,13 @@ class CompensatorNode(WinchNode):
     def _on_model(self, message: String) -> None:
         if self.own.follow_model_topic:
             self.models.offer(message.data)
+            self._take_models()
+
+    def _answer(self, feedforward: Feedforward) -> None:
+        """To a believed speed; the watchdog's period begins anew, so that it wakes the node only where none comes."""
+        self._publish(feedforward)
+        self._watchdog.reset()
+        if self.models.waiting or self.service.refused_models:
             self._take_models()
 
     def _watch(self) -> None:

@@ -9,10 +9,12 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
+from winch_friction.nodes.polling import Seldom
 from winch_friction.physics.errors import InputError
 
 BAD_INPUT = 2
-HEARTBEAT = 0.1  # s; the executor looks this often whether it was told to end
+HEARTBEAT = 0.1  # s; the executor looks this often whether it was told to end, and for what comes seldom
+URGENT = ("change_state", "enable", "reset", "load_model", "save")  # services that are answered at once
 MOST_DEFECTS = 1000  # of the executor itself in a row, with nothing done in between
 
 
@@ -65,7 +67,9 @@ def _start(node: Any, ending: Ending) -> int:
 def _spin(node: Any, ending: Ending) -> int:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    node.create_timer(HEARTBEAT, lambda: None, clock=node.steady_clock)
+    seldom = Seldom(URGENT)
+    seldom.open(node)
+    node.create_timer(HEARTBEAT, lambda: seldom.open(node), clock=node.steady_clock)
     defects = 0
     try:
         while not ending.asked and rclpy.ok() and defects < MOST_DEFECTS:

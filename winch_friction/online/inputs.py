@@ -66,25 +66,32 @@ class InputGate:
         self._taking = source.channels, now
         if source.topic == self.topics.speed_topic:
             return self._speed(source, message, receipt, now, sent)
-        if source.stamped and not self._near(stamp_time(message), now):
+        if not source.stamped:
+            if refusal := self._unstamped_refusal(source, message, now):
+                self._refuse(arrivals, refusal)
+            else:
+                self._stream.put_off(source, message, receipt if sent is None else sent)
+                arrivals.believed = now
+            return None
+        stamp = stamp_time(message)
+        if not self._near(stamp, now):
             self._refuse(arrivals, Stamp.AHEAD.value)
-        elif refusal := self._unstamped_refusal(source, message):
-            self._refuse(arrivals, refusal)
+        elif self._stream.put(source, stamp, message):
+            arrivals.believed = now
         else:
-            before = self._stream.rejected[source.topic]
-            self._stream.take(source, message, receipt, sent)
-            rejected = self._stream.rejected[source.topic] > before
-            self._judged(arrivals, now, (self._refusal or UNREADABLE) if rejected else "")
+            self._refuse(arrivals, self._refusal or UNREADABLE)
         return None
 
-    def _unstamped_refusal(self, source: Input, message: Any) -> str:
+    def _unstamped_refusal(self, source: Input, message: Any, now: float) -> str:
         """Why a message without a stamp is not believed: it waits for the next speed, but is judged now."""
-        if source.stamped:
-            return ""
         stamp = self.last_stamp if math.isfinite(self.last_stamp) else 0.0
-        found = {column: self._plausible.refusal(column, stamp, x) for column, x in source.decode(message).items()}
-        self._came |= {column: self._taking[1] for column, refusal in found.items() if not refusal}
-        return "; ".join(f"{column}: {refusal}" for column, refusal in found.items() if refusal)
+        refusals = []
+        for column, value in source.decode(message).items():
+            if refusal := self._plausible.refusal(column, stamp, value):
+                refusals.append(f"{column}: {refusal}")
+            else:
+                self._came[column] = now
+        return "; ".join(refusals)
 
     def _near(self, stamp: float, now: float) -> bool:
         """Whether a held input's stamp is not ahead of the speed's clock: it would lock the input out until then."""
@@ -103,19 +110,22 @@ class InputGate:
         elif worth is not Stamp.GOOD:
             self._refuse(arrivals, worth.value)
             return None
-        sample = self._stream.take(source, message, receipt, sent)
-        self._judged(arrivals, now, (self._refusal or UNREADABLE) if sample is None else "")
-        if sample is not None:
-            self.last_stamp, self.last_arrival = stamp, now
-            self._without_stale(sample, now)
+        sample = self._stream.take_speed(source, message, stamp, receipt if sent is None else sent)
+        if sample is None:
+            self._refuse(arrivals, self._refusal or UNREADABLE)
+            return None
+        self.last_stamp = stamp
+        self.last_arrival = arrivals.believed = now
+        self._without_stale(sample, now)
         return sample
 
     def _without_stale(self, sample: Sample, now: float) -> None:
         """What arrived too long ago is lost: stamps alone do not tell an input's age where the speed comes late."""
         if not self.options.paced:
             return
+        limit = self.hold.limit
         for column, came in self._came.items():
-            if now - came > self.hold.limit(column):
+            if now - came > limit(column):
                 group, _, channel = column.rpartition(".")
                 owner = sample.groups.get(group) if group else sample
                 if owner is not None:
@@ -123,17 +133,14 @@ class InputGate:
 
     def _admit(self, column: str, stamp: float, value: float) -> bool:
         refusal = self._plausible.refusal(column, stamp, value)
-        if refusal and (value == value or not self._refusal):
-            self._refusal = f"{column}: {refusal}"
-        if not refusal and column in self._taking[0]:
-            self._came[column] = self._taking[1]
-        return not refusal
-
-    def _judged(self, arrivals: Arrivals, now: float, refusal: str) -> None:
         if refusal:
-            self._refuse(arrivals, refusal)
-        else:
-            arrivals.believed = now
+            if value == value or not self._refusal:
+                self._refusal = f"{column}: {refusal}"
+            return False
+        columns, arrived = self._taking
+        if column in columns:
+            self._came[column] = arrived
+        return True
 
     def _refuse(self, arrivals: Arrivals, reason: str) -> None:
         arrivals.refused += 1

@@ -51,6 +51,11 @@ class ModelIntake:
         if not self.beside:
             self._parse()
 
+    @property
+    def waiting(self) -> bool:
+        """Whether there is anything to `take`."""
+        return self._text is not None or bool(self._done)
+
     def take(self) -> list[FrictionModel | InputError]:
         """What has been parsed since; starts on what waits. To be called often: it never waits."""
         busy = self._worker is not None and self._worker.is_alive()

@@ -36,6 +36,8 @@ class InputHold:
 
     def __post_init__(self) -> None:
         self._held: dict[str, deque[tuple[float, float]]] = {}
+        self._limits: dict[str, float] = {}
+        self._limits_of: tuple[float, Mapping[str, float]] = self.max_age, self.max_ages
 
     def put(self, column: str, time: float, value: float) -> bool:
         """Take a value with its stamp in s; False when it is implausible or older than what is held, and so ignored."""
@@ -107,10 +109,15 @@ class InputHold:
 
     def limit(self, column: str) -> float:
         """Age in s beyond which a value of this column is lost."""
-        own = self.max_ages.get(column)
-        if own is not None:
-            return own
-        return self.max_ages.get(column.rpartition(".")[2], self.max_age)
+        max_age, max_ages = self._limits_of
+        if max_age != self.max_age or max_ages is not self.max_ages:  # other settings
+            self._limits.clear()
+            self._limits_of = self.max_age, self.max_ages
+        found = self._limits.get(column)
+        if found is None:
+            by_channel = self.max_ages.get(column.rpartition(".")[2], self.max_age)
+            found = self._limits[column] = self.max_ages.get(column, by_channel)
+        return found
 
 
 @lru_cache(maxsize=256)

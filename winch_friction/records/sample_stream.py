@@ -45,28 +45,36 @@ class SampleStream:
         """
         sent = receipt if sent is None else sent
         if source.topic == self.topics.speed_topic:
-            return self._speed(source, message, stamp_time(message) if source.stamped else receipt, sent)
+            return self.take_speed(source, message, stamp_time(message) if source.stamped else receipt, sent)
         if source.stamped:
-            self._put(source, stamp_time(message), message)
+            self.put(source, stamp_time(message), message)
         else:
-            self._unstamped.append((sent, source, message))
+            self.put_off(source, message, sent)
         return None
 
-    def _speed(self, source: Input, message: Any, stamp: float, sent: float) -> Sample | None:
+    def put_off(self, source: Input, message: Any, sent: float) -> None:
+        """Keep a message without a stamp until the next speed that was sent after it."""
+        self._unstamped.append((sent, source, message))
+
+    def take_speed(self, source: Input, message: Any, stamp: float, sent: float) -> Sample | None:
+        """The sample at a speed's stamp in s; None where the message shows none."""
         if stamp < self.last_stamp - BACKWARD_JUMP:
             self.forget()
             self._on_jump()
-        if not self._put(source, stamp, message):
+        if not self.put(source, stamp, message):
             return None
         self._date_unstamped(stamp, sent)
         self.last_stamp = stamp
         return self.hold.sample(stamp)
 
     def _date_unstamped(self, stamp: float, sent: float) -> None:
+        later = []
         for each in self._unstamped:
             if each[0] <= sent:
-                self._put(each[1], stamp, each[2])
-        self._unstamped = [each for each in self._unstamped if each[0] > sent]
+                self.put(each[1], stamp, each[2])
+            else:
+                later.append(each)
+        self._unstamped = later
 
     def forget(self) -> None:
         """Drop what is held, after a jump of time."""
@@ -74,13 +82,14 @@ class SampleStream:
         self._unstamped = []
         self.last_stamp = float("-inf")
 
-    def _put(self, source: Input, stamp: float, message: Any) -> bool:
-        readings = source.decode(message)
-        accepted = [
-            self._admit(channel, stamp, value) and self.hold.put(channel, stamp, value)
-            for channel, value in readings.items()
-        ]
-        taken = bool(accepted) and accepted[0]
+    def put(self, source: Input, stamp: float, message: Any) -> bool:
+        """Hold what a message with this stamp in s says; whether its first channel was believed."""
+        taken, first = False, True
+        for channel, value in source.decode(message).items():
+            accepted = self._admit(channel, stamp, value) and self.hold.put(channel, stamp, value)
+            if first:
+                taken, first = accepted, False
         self.counts[source.topic] += 1
-        self.rejected[source.topic] += not taken
+        if not taken:
+            self.rejected[source.topic] += 1
         return taken

@@ -31,11 +31,10 @@ class Input:
     type_name: str
     channels: tuple[str, ...]
     decode: Callable[[Any], Readings]
+    stamped: bool = field(init=False, compare=False)  # whether its messages say when they were measured
 
-    @property
-    def stamped(self) -> bool:
-        """Whether its messages say when they were measured."""
-        return self.type_name != FLOAT64
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stamped", self.type_name != FLOAT64)
 
 
 class MessageFactory(Protocol):
@@ -72,8 +71,10 @@ class TopicMap:
     prefix: str = "winch"
     drive_scalars: tuple[str, ...] = DRIVE_SCALARS
     inputs: Mapping[str, Input] = field(init=False, compare=False, repr=False)
+    speed_topic: str = field(init=False, compare=False, repr=False)  # the topic that drives the sampling
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "speed_topic", f"{self.prefix}/joint_states")
         _one_of("pressure_reference", self.pressure_reference, PRESSURE_REFERENCES)
         _one_of("displacement_unit", self.displacement_unit, DISPLACEMENT_UNITS)
         _one_of("speed_joint", self.speed_joint, (self.motor_joint, self.drum_joint))
@@ -83,11 +84,6 @@ class TopicMap:
             _one_of("float64_channels", channel, known)
         plain = [self._plain(each) for each in inputs]
         object.__setattr__(self, "inputs", {each.topic: each for each in plain})
-
-    @property
-    def speed_topic(self) -> str:
-        """The topic that drives the sampling."""
-        return f"{self.prefix}/joint_states"
 
     def swash_of(self, group: str) -> str:
         """Name of the joint that carries a group's displacement."""

@@ -152,7 +152,7 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
     return run_blocks(
         old.time,
         old.gap / old.unit_torque,
-        gap[:, None],
+        (gap[:, None],),
         used,
         old.direction,
         old.channels,

@@ -3,7 +3,7 @@
 A proposal says on what the gap depends and how, with amounts and units, so that it shrinks; not what it is.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -177,6 +177,19 @@ def _signals(word: Word, run: PreparedRun) -> FloatArray:
     return np.array(own) if own else np.zeros((1, len(run.time)))
 
 
+def _columns(single: Sequence[Factor], grouped: Sequence[Factor], run: PreparedRun, most: int) -> Iterator[FloatArray]:
+    """One factor after the other along a run, those of the motor groups once for each of `most` groups."""
+    signals = {name: _signals(BY_NAME[name], run) for name in {f.signal for f in (*single, *grouped)}}
+    for f in single:
+        yield shape(f.kind, signals[f.signal][0], dict(f.constants), run.dt)
+    for f in grouped:
+        own = signals[f.signal]
+        for row in own:
+            yield shape(f.kind, row, dict(f.constants), run.dt)
+        for _ in range(most - len(own)):
+            yield np.zeros(len(run.time))
+
+
 def _evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int) -> dict[Factor, FloatArray]:
     """Block means of factors over all runs, aligned with the problem's blocks."""
     length = segment_length(sum(run.time[-1] for run in runs))
@@ -184,14 +197,9 @@ def _evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int)
     grouped = [f for f in wanted if BY_NAME[f.signal].of_run is None]
     tables = []
     for run in runs:
-        signals = {name: _signals(BY_NAME[name], run) for name in {f.signal for f in wanted}}
-        columns = [shape(f.kind, signals[f.signal][0], dict(f.constants), run.dt) for f in single]
-        for f in grouped:
-            own = [shape(f.kind, row, dict(f.constants), run.dt) for row in signals[f.signal]]
-            columns += own + [np.zeros(len(run.time))] * (most - len(own))
-        if columns:
-            size = block_size(run)
-            table = run_blocks(run.time, run.gap, np.column_stack(columns), run.used, run.direction, {}, size, length)
+        columns = (each[:, None] for each in _columns(single, grouped, run, most))
+        if single or (grouped and most):
+            table = run_blocks(run.time, run.gap, columns, run.used, run.direction, {}, block_size(run), length)
             tables.append(table.x)
     if not tables:
         return {}

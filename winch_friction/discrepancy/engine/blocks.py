@@ -3,7 +3,7 @@
 Values are in the gap's unit and weighted by each record's own noise.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -77,17 +77,21 @@ def segment_length(total: float) -> float:
 
 
 def run_blocks(
-    time: FloatArray, gap: FloatArray, columns: FloatArray, mask: np.ndarray, direction: FloatArray,
+    time: FloatArray, gap: FloatArray, columns: Iterable[FloatArray], mask: np.ndarray, direction: FloatArray,
     features: Mapping[str, FloatArray], size: int, length: float,
 ) -> RunBlocks:  # fmt: skip
-    """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long."""
+    """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long.
+
+    `columns` come in parts (samples, some columns), each of which is let go once its means are taken: all of them over
+    all samples of an hour are a gigabyte.
+    """
     starts = np.arange(0, len(time), size)
     counts = np.add.reduceat(mask.astype(float), starts)
     keep = counts >= LIMITS.fullest_block * size
     means = {name: _means(values, starts, counts, mask)[keep] for name, values in features.items()}
     return RunBlocks(
         y=_means(gap, starts, counts, mask)[keep],
-        x=_means(columns, starts, counts, mask)[keep],
+        x=np.column_stack([_means(part, starts, counts, mask)[keep] for part in columns]),
         segment=(time[starts[keep]] / length).astype(int),
         position=np.flatnonzero(keep),
         features=means,

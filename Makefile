@@ -11,7 +11,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation
 
-.PHONY: docs demo test test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
+.PHONY: docs demo test test-nodes test-computing test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 
 setup: $(READY)
 
@@ -25,12 +25,18 @@ $(READY): setup.py constraints.txt
 demo: $(READY)
 	$(BIN)/winch-friction demo --out out/demo
 
-# whatever only computes shares the cores, file by file; so do the two whole loops over DDS, which wait for each other's
-# answers; then what is judged by the clock, two files at a time: each has domains of its own
+# tests that start nodes mostly wait; whatever only computes fills the time that they leave and gives way to them at once.
+# The two whole loops over DDS wait for each other's answers; what is judged by the clock then runs two files at a time,
+# each with domains of its own
 test: lint browser
-	$(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile
+	$(MAKE) --no-print-directory -j 2 --output-sync=recurse test-nodes test-computing
+
+test-nodes: $(READY)
 	$(BIN)/python -m pytest -m "ros and slow" -n 2 --dist loadfile
 	$(BIN)/python -m pytest -m "ros and not slow" -n 2 --dist loadfile
+
+test-computing: $(READY)
+	nice -n 19 $(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 lint: $(READY)
 	$(BIN)/ruff check .

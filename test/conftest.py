@@ -3,11 +3,18 @@
 from pathlib import Path
 
 import pytest
+from longest_first import SECONDS
 
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+def pytest_collection_modifyitems(items):
+    """Long files first; within a file, and among the others, as they stand."""
+    here = Path(__file__).parent
+    items.sort(key=lambda item: -SECONDS.get(item.path.relative_to(here).as_posix(), 0))
 
 
 @pytest.fixture(scope="session")

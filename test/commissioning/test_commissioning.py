@@ -18,6 +18,8 @@ from winch_friction.records.model_file import load_model
 LENGTH = 0.3  # of a campaign's runs, to be quick
 WORLDS = ((0, rig.DRAWN), (3, rig.DRAWN), (1, "rough"))
 SOME = (1, 4, 8, 10)  # of the twelve runs: two of constant speeds, two of heave compensation
+# every mistake in two worlds: all in one, every second of them in either of the others
+OF_WORLD = {(0, rig.DRAWN): slice(0, None, 2), (3, rig.DRAWN): slice(1, None, 2), (1, "rough"): slice(None)}
 RIGHT = 0.9  # share of first causes that must be right; the docs say what the campaign gives
 
 
@@ -59,7 +61,7 @@ def test_the_first_cause_is_the_true_one(seed, flavour, tmp):
     crane, model = world(seed, flavour, tmp)
     plain = [columns_of(seed, flavour)[k] for k in SOME]
     wrong = []
-    chosen = spoils(crane.max_displacement, crane.gear_ratio)
+    chosen = spoils(crane.max_displacement, crane.gear_ratio)[OF_WORLD[seed, flavour]]
     for each in chosen:
         spoilt = [each.apply(columns) if not each.needs or each.needs in columns else columns for columns in plain]
         found = first_contradiction(quick_check(runs_of(spoilt), crane, model))

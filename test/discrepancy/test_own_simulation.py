@@ -49,8 +49,9 @@ def test_a_simulation_that_lacks_nothing_is_left_alone(crane_150t, crane2_model)
     runs = [cycle(20 + k, f"run_{k}", missing=False) for k in range(10)]
     assert find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).verdict == "nothing_missing"
     # the same logs without the column: the built-in model is another winch's and must not be content
-    plain = [without_column(run) for run in runs]
-    assert find_gap(plain, crane_150t, crane2_model, GapOptions(plan=False)).verdict != "nothing_missing"
+    plain = [without_column(run) for run in runs[:6]]
+    options = GapOptions(plan=False, proposals=False)
+    assert find_gap(plain, crane_150t, crane2_model, options).verdict != "nothing_missing"
 
 
 def test_runs_with_and_without_a_simulation_do_not_mix(crane_150t, crane2_model):

@@ -18,39 +18,48 @@ def bounded_fit(
     size = len(g)
     beta = np.clip(np.zeros(size) if start is None else start, lower, upper)
     free = (beta > lower) & (beta < upper) if start is not None else np.ones(size, bool)
-    for _ in range(20 * size + 20):
-        index = np.flatnonzero(free)
-        target = beta.copy()
-        if len(index):
-            fixed = np.flatnonzero(~free)
-            rows = h[index]
-            rhs = g[index] - rows[:, fixed] @ beta[fixed]
-            target[index] = np.linalg.solve(rows[:, index], rhs)
-        step = target - beta
-        limit, blocking = _longest_step(beta, step, lower, upper, index)
-        beta = beta + limit * step
-        if blocking >= 0:
-            beta[blocking] = lower[blocking] if step[blocking] < 0 else upper[blocking]
-            free[blocking] = False
-            continue
-        release = _release(h @ beta - g, beta, lower, upper, free)
-        if release < 0:
-            return beta
-        free[release] = True
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # of `_longest_step`; once, as the loop is short and runs often
+        for _ in range(20 * size + 20):
+            index = free.nonzero()[0]
+            step = _to_free_optimum(h, g, beta, free, index) - beta
+            limit, blocking = _longest_step(beta, step, lower, upper, index)
+            beta = beta + limit * step
+            if blocking >= 0:
+                beta[blocking] = lower[blocking] if step[blocking] < 0 else upper[blocking]
+                free[blocking] = False
+                continue
+            release = _release(h @ beta - g, beta, lower, upper, free)
+            if release < 0:
+                return beta
+            free[release] = True
     return beta
+
+
+def _to_free_optimum(h, g, beta, free, index):  # type: ignore[no-untyped-def]
+    if len(index) == len(g):
+        return np.linalg.solve(h, g)
+    target = beta.copy()
+    if len(index):
+        rows = h[index]
+        target[index] = np.linalg.solve(rows[:, index], g[index] - rows[:, ~free] @ beta[~free])
+    return target
 
 
 def _longest_step(beta, step, lower, upper, index):  # type: ignore[no-untyped-def]
     if not len(index):
         return 1.0, -1
     move, at = step[index], beta[index]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        room = np.where(move > 0, (upper[index] - at) / move, np.where(move < 0, (lower[index] - at) / move, np.inf))
-    k = int(np.argmin(room))
+    # what does not move has room without end, 0/0 included
+    room = np.where(np.abs(move) > 0.0, (np.where(move > 0, upper[index], lower[index]) - at) / move, np.inf)
+    k = int(room.argmin())
     return (float(max(room[k], 0.0)), int(index[k])) if room[k] < 1.0 else (1.0, -1)
 
 
 def _release(gradient, beta, lower, upper, free):  # type: ignore[no-untyped-def]
+    if free.all():
+        return -1
     wrong = np.where(~free & (beta <= lower), -gradient, np.where(~free, gradient, 0.0))
     wrong = np.where(upper - lower < _TOLERANCE, 0.0, wrong)
     k = int(np.argmax(wrong))

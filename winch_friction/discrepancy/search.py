@@ -74,6 +74,7 @@ def search_runs(
     for _ in range(LIMITS.most_expansions):
         shapes = (*selection.final.slots, *near(cross, selection.final))
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
+        del cross  # the largest thing there is, and not needed beside the next one
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)

@@ -135,6 +135,9 @@ def grams(blocks: Blocks) -> Grams:
         return Grams(np.zeros((0, size, size)), np.zeros((0, size)), np.zeros(0), np.zeros(0), np.zeros(0, int))
     _, starts = np.unique(segment, return_index=True)
     ends = np.append(starts[1:], len(segment))
-    full = np.stack([z[a:b].T @ z[a:b] for a, b in zip(starts, ends, strict=True)])
-    run = blocks.run[order][starts]
-    return Grams(full[:, :-1, :-1], full[:, :-1, -1], full[:, -1, -1], (ends - starts).astype(float), run)
+    count, size = len(starts), blocks.x.shape[1]
+    g, b, y2 = np.empty((count, size, size)), np.empty((count, size)), np.empty(count)
+    for k, (first, last) in enumerate(zip(starts, ends, strict=True)):
+        full = z[first:last].T @ z[first:last]
+        g[k], b[k], y2[k] = full[:-1, :-1], full[:-1, -1], full[-1, -1]
+    return Grams(g, b, y2, (ends - starts).astype(float), blocks.run[order][starts])

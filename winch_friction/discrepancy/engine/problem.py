@@ -137,10 +137,11 @@ def problem_of(
 
 
 def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
-    """The same problem for another noise of each record."""
+    """The same problem for another noise of each record; the Gram matrices, the largest thing there is, are changed."""
     ratio = np.array([problem.noise[k] / noise[k] for k in range(len(noise))])
     blocks = replace(problem.blocks, weight=problem.blocks.weight * ratio[problem.blocks.run])
     g = problem.grams
     factor = ratio[g.run] ** 2
-    again = Grams(g.g * factor[:, None, None], g.b * factor[:, None], g.y2 * factor, g.count, g.run)
+    np.multiply(g.g, factor[:, None, None], out=g.g)
+    again = Grams(g.g, g.b * factor[:, None], g.y2 * factor, g.count, g.run)
     return replace(problem, blocks=blocks, grams=again, noise=noise)

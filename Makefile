@@ -28,8 +28,8 @@ demo: $(READY)
 # tests that start nodes mostly wait; whatever only computes fills the time that they leave and gives way to them at once.
 # The two whole loops over DDS wait for each other's answers; what is judged by the clock then runs two files at a time,
 # each with domains of its own
-test: lint browser
-	$(MAKE) --no-print-directory -j 2 --output-sync=recurse test-nodes test-computing
+test: $(READY) browser
+	$(MAKE) --no-print-directory -j 3 --output-sync=recurse lint test-nodes test-computing
 
 test-nodes: $(READY)
 	$(BIN)/python -m pytest -m "ros and slow" -n 2 --dist loadfile

@@ -82,6 +82,9 @@ def drag(tmp_path_factory) -> Path:
 def test_a_drag_without_a_name_gets_a_law(drag):
     content = json.loads((drag / "gap.json").read_text())
     assert content["verdict"] == "unexplained"
+    assert content["effects"] == []
+    assert content["unexplained"]["depends_on"][0] == "wire_out"
+    assert content["unexplained"]["share_of_gap"] > 0.3
     assert 1 <= len(content["proposals"]) <= 3
     first = content["proposals"][0]
     assert first["reads"] == ["wire_out"]

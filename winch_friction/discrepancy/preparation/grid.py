@@ -1,10 +1,11 @@
 """A run's columns on one uniform grid of time: holes marked, channels smoothed without delay, spikes found."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
-from scipy.ndimage import median_filter
-from scipy.signal import savgol_filter
+from scipy.ndimage import convolve1d, median_filter
+from scipy.signal import savgol_coeffs
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
@@ -71,8 +72,21 @@ def noise_level(values: FloatArray) -> float:
 
 def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:
     """Savitzky-Golay over a uniform grid; records shorter than the window get a shorter one."""
-    window = min(window, len(values) - (1 - len(values) % 2))
-    return savgol_filter(values, window | 1, min(order, (window | 1) - 1))
+    window = min(window, len(values) - (1 - len(values) % 2)) | 1
+    inside, begin, end = _weights(window, min(order, window - 1))
+    smoothed = convolve1d(values, inside, mode="constant")
+    half = window // 2
+    smoothed[:half] = begin @ values[:window]
+    smoothed[len(values) - half :] = end @ values[-window:]
+    return smoothed
+
+
+@lru_cache(maxsize=256)
+def _weights(window: int, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of a parabola through the samples around one, and at both ends: `savgol_filter` makes them at each call."""
+    powers = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
+    fitted = powers @ np.linalg.pinv(powers)
+    return savgol_coeffs(window, order), fitted[: window // 2], fitted[window // 2 + 1 :]
 
 
 def thinned(run: Run) -> Run:

@@ -213,6 +213,7 @@ def _log(
     there = plant.date > hidden.pressure_after
     offset = hidden.pressure_offset * there + hidden.pressure_warm * (celsius[index] - 40.0) / 15.0
     gain = hidden.pressure_scale + hidden.pressure_curve * p_a[at] / (200 * BAR)
+    gain += hidden.pressure_bend * np.maximum(1.0 - 150 * BAR / np.maximum(p_a[at], BAR), 0.0)
     shown = instruments.filtered(angle, hidden.speed_filter) if hidden.speed_filter > 0.0 else angle
     play = hidden.swivel_play * (1.0 if (plan.start // 60) % 2 else -1.0)
     columns: Columns = {

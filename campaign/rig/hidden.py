@@ -88,6 +88,7 @@ class Hidden(NamedTuple):
     pressure_scale: float = 0.0  # relative, port A of the driving motors
     pressure_scale_passive: float = 0.0  # relative, port A of the passive motors
     pressure_curve: float = 0.0  # relative at 200 bar, growing with pressure, port A of the driving motors
+    pressure_bend: float = 0.0  # relative of what is above 150 bar, port A of the driving motors
     delay: float = 0.0  # s, of the speed signal
     delay_every: float = 1.0  # share of the runs that it is in
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal

@@ -169,7 +169,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "pressure_scale": (
         Law("passive_side", _set(pressure_scale_passive=0.012)),
-        Law("grows_with_pressure", _set(pressure_curve=0.008), held_out=True),
+        Law("grows_with_pressure", _set(pressure_curve=0.008)),
+        Law("bends_at_150_bar", _set(pressure_bend=0.04), held_out=True),
     ),
     "signal_delay": (
         Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06)),

@@ -300,21 +300,24 @@ WARMS = Law((Factor("fade", "run_time", (("c", 45.0),)),), True)
 LAG = Law((Factor("lag", "pressure", (("c", 30.0),)),), True)
 
 
-@pytest.mark.parametrize(("slots", "law", "share", "falls"), [
-    (SLOTS, ROOT, 0.9, True),  # two names where one law would do
-    (SLOTS, ROOT, 1.1, False),
-    (SLOTS, None, 0.0, False),
-    ((CURVE,), SQUARE, 0.9, False),  # what the curve itself draws
-    ((CURVE,), LAG, 0.9, True),  # a memory: no curve has one
-    ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True),  # of a signal that the curve does not read
-    ((DATED,), WARMS, 0.9, True),  # what fades in every run is no drift over the dates
-    ((LAWED,), ROOT, 0.9, False),  # a given law falls only where the other takes half of what it leaves
-    ((LAWED,), ROOT, 0.4, True),
-    ((LAWED,), SQUARE, 0.4, False),  # which may be its own, bent
+@pytest.mark.parametrize(("slots", "law", "share", "falls", "laws"), [
+    (SLOTS, ROOT, 0.9, True, 2),  # two names where one law would do
+    (SLOTS, ROOT, 1.1, False, 2),
+    (SLOTS, None, 0.0, False, 2),
+    ((CURVE,), SQUARE, 0.9, False, 2),  # what the curve itself draws
+    ((CURVE,), LAG, 0.9, True, 2),  # a memory: no curve has one
+    ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True, 2),  # of a signal that the curve does not read
+    ((DATED,), WARMS, 0.9, True, 2),  # what fades in every run is no drift over the dates
+    ((LAWED,), ROOT, 0.9, False, 2),  # a given law falls only where the other takes half of what it leaves
+    ((LAWED,), ROOT, 0.4, True, 2),
+    ((LAWED,), SQUARE, 0.4, False, 2),  # which may be its own, bent
+    ((LAWED,), SQUARE, 0.4, True, 1),  # whose cause has one law and no other
 ])  # fmt: skip
-def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, share, falls):
+def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, share, falls, laws):
     """`share`: what the law leaves above the noise, of what the names do."""
     cross = crossfit(noise())
+    known = (*SLOTS, *(replace(SLOTS[0], law=f"bent {k}") for k in range(1, laws)))
+    cross.problem = replace(cross.problem, layout=replace(cross.problem.layout, slots=known))
     noise_alone = float(cross.problem.grams.count.sum())
     named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=slots)
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)

@@ -1,6 +1,7 @@
 """What is locked is not learned from."""
 
 import numpy as np
+import pytest
 
 from winch_friction.discrepancy.holdout import lock_holdout
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -24,3 +25,17 @@ def test_of_a_few_runs_the_ends_are_locked_with_a_pause_between():
     assert len(few.train) == len(few.holdout) == 2
     for train, locked in zip(few.train, few.holdout, strict=True):
         assert times[train][1] < times[locked][0] - 0.9 * LIMITS.guard_time
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_is_locked_lies_within_what_is_learned_from(seed):
+    """The heaviest and the lightest run, and the first and the last, are never locked where others are there."""
+    rng = np.random.default_rng(seed)
+    loads, days = rng.permutation(np.linspace(1e4, 1e5, 12)), rng.permutation(12)
+    log = [
+        Run(f"r{k}", {"time": 86400.0 * days[k] + np.arange(200.0) * 0.02, "hook_load": np.full(200, loads[k])})
+        for k in range(12)
+    ]
+    locked = [int(name[1:]) for name in lock_holdout(log, 0.25, np.random.default_rng(seed)).holdout]
+    assert len(locked) == 3
+    assert not {int(np.argmin(loads)), int(np.argmax(loads)), int(np.argmin(days)), int(np.argmax(days))} & set(locked)

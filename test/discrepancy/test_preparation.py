@@ -19,3 +19,16 @@ def test_samples_beside_a_reversal_are_left_out_even_where_none_is_at_zero(crane
     for k in crossings[2:-2]:
         assert not motion.used[k : k + 2].any()
     assert motion.used.mean() > (0.2 if rate < 20.0 else 0.6)
+
+
+def test_a_shaft_that_waits_for_its_start_has_not_just_reversed(crane_150t):
+    """A smoothed speed swings below zero before a quick start; the shaft, under a load that has not let go, rests."""
+    time = np.arange(0.0, 40.0, 0.05)
+    back, start = (time > 18.0) & (time < 18.5), time > 20.0
+    speed = np.where(back, -2.0 * np.sin(2.0 * np.pi * (time - 18.0)), 0.0)
+    speed = np.where(start, 150.0 * np.minimum(time - 20.0, 0.5), speed)
+    motion = motion_of(uniform(Run("start", {"time": time, "motor_speed": speed})), crane_150t, "start", turning=True)
+    rests = (time > 18.8) & (time <= 20.0)
+    assert motion.speed[rests].min() < -0.5, "the swing is there"
+    assert not motion.used[rests].any()
+    assert motion.used[start].any()

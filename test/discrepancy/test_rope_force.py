@@ -135,7 +135,10 @@ def test_the_real_winch_has_the_inertia_that_hindsight_gives_it():
     assert inertia["parameters"]["dJ"]["value"] == pytest.approx(4989.0, rel=0.05)
     assert found["gap"]["holdout"]["after"] < 0.25 * found["gap"]["holdout"]["before"]
     sizes = {key: p["value"] for each in found["effects"] for key, p in each["parameters"].items()}
-    assert sizes["C2"] == pytest.approx(441.0, rel=0.15)
+    # friction falls from 661 to 453 N over these cycles: which of them are locked moves the level by a deviation
+    coulomb = next(each for each in found["effects"] if each["name"] == "coulomb")["parameters"]["C2"]
+    assert coulomb["std"] < 60.0
+    assert coulomb["value"] == pytest.approx(441.0, abs=2.0 * coulomb["std"])
     assert sizes["C5"] == pytest.approx(216.0, rel=0.1)
     assert sizes["e_R"] == pytest.approx(0.118, abs=0.02)
     assert len(found["effects"]) == 4, "nothing after that"

@@ -73,6 +73,8 @@ def spoiled(run, correction):
                 columns[name] = true + e * warmer
             elif action is Action.SCALE:
                 columns[name] = true * (1.0 + e)
+            elif action is Action.CURVATURE:
+                columns[name] = true * (1.0 + e * true)
             elif action is Action.DELAY:
                 columns[name] = np.interp(time - e, time, true)
             elif action is Action.MASS:

@@ -11,7 +11,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import BAR, GRAVITY
 from winch_friction.simulation import Simulator, simulate
 
-SIGNALS = [n for n, d in DECLARED.items() if d.action in (Action.OFFSET, Action.SCALE, Action.DELAY)]
+SIGNALS = [n for n, d in DECLARED.items() if d.action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.DELAY)]
 OF_THE_PLANT = [n for n, d in DECLARED.items() if d.action in (Action.WARMTH, Action.HEAT, Action.SLIP)]
 STILL = {**CLEAN, "sea": {"kind": "still"}, "duration": 20.0}
 

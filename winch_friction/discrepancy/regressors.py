@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
@@ -71,6 +72,7 @@ def correction_std(correction: Correction) -> float:
 def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
     """Give every shape of every candidate its columns."""
     slots, scales = [], list(base.scale)
+    curves: list[tuple[tuple[int, ...], FloatArray]] = []
     known = model.as_dict()
     lower, upper = list(base.lower), list(base.upper)
     for candidate in candidates:
@@ -92,6 +94,10 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                     )
                 lower.append(low)
                 upper.append(high)
+            if candidate.free and candidate.term is not None and candidate.term.table is not None:
+                form = bending(candidate.term.table)
+                # a level at the first knot has no slope
+                curves += [] if form is None else [(columns[len(columns) - len(form) :], form)]
             slots.append(
                 Slot(
                     candidate.name,
@@ -105,7 +111,11 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                     candidate.plain_in(model),
                 )
             )
-    return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper))
+    whole = np.zeros((len(scales), len(scales))) if curves else None
+    for columns, form in curves:
+        assert whole is not None
+        whole[np.ix_(columns, columns)] = form
+    return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper), whole)
 
 
 def tolerance_columns(run: PreparedRun) -> FloatArray:

@@ -54,16 +54,23 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     return as_given(split, options, judged.search, rng) if harmful else judged
 
 
-def by_surfaces(
-    split: Split, crane: Crane, options: GapOptions, unexplained: Trial, rng: np.random.Generator
-) -> Trial:  # fmt: skip
-    """What no known law explains, once more with laws that only the data know; the trial as it is where that does not
-    end in a proven name."""
-    search = search_runs(split, unexplained.search.given, options, rng, surfaces=True)
+def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
+    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
+    it is where that does not end in a proven name that leaves surely less."""
+    given = trial.search
+    named = given.verdict.kind in (MISSING, AMBIGUOUS)
+    left = excess(given.cross, given.explanation)
+    if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
+        return trial
+    search = search_runs(split, given.given, options, rng, surfaces=True)
     if not search.selection.found:
-        return unexplained
-    trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    return trial if trial.search.verdict.kind in (MISSING, AMBIGUOUS) else unexplained
+        return trial
+    if named and excess(search.cross, search.selection.final) > LIMITS.outdone * left:
+        return trial
+    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
+        return trial
+    return other if not named or adds(trial.holdout, other.holdout, rng) else trial
 
 
 def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
@@ -95,7 +102,7 @@ def outdone(law: Scored | None, cross: CrossFit, selection: Selection) -> str:
         return ""
     if len(slots) == 1:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
-        if any(_could_be(law.law, slot) for slot in rivals):
+        if any(_could_be(law.law, slot) for slot in rivals if _has_laws(slot, cross)):
             return ""
     names = " and ".join(slot.name for slot in slots)
     together = "together " if len(slots) > 1 else ""
@@ -107,6 +114,11 @@ def _could_be(law: Law, slot: Slot) -> bool:
     term = slot.origin[0].term
     own = {_SAME.get(name, name) for name in term.reads} if term is not None else set()
     return set(law.signals) <= own and not any(factor.kind in UNLIKE_A_CURVE for factor in law.factors)
+
+
+def _has_laws(slot: Slot, cross: CrossFit) -> bool:
+    """Whether its cause is known under more laws than one: viscous friction of another power is no viscous friction."""
+    return slot.free or len({each.law for each in cross.problem.slots if each.name == slot.name}) > 1
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:

@@ -65,6 +65,7 @@ class Thresholds:
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third
     surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
+    stiffness: float = 0.01  # of what the data know of an interval of a curve, that speaks against a change of slope
     outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
@@ -93,6 +94,8 @@ class Thresholds:
     least_named_share: float = 0.02  # of the remainder, that a signal must predict to be named before others
     # -- locked runs
     fewest_to_lock_whole: int = 4  # runs; with fewer, the end of every run is locked instead
+    lock_draws: int = 200  # of locked runs, of which the one is taken that reaches least beyond the others
+    lock_range: tuple[float, float] = (0.05, 0.95)  # quantiles of a signal between which a run covers it
     guard_time: float = 0.5  # s between the two parts of a divided run
     bootstrap_draws: int = 1000  # of segments, for an interval
     runs_to_redraw: int = 8  # locked runs, from which on runs are redrawn and not only their segments

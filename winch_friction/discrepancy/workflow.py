@@ -18,7 +18,7 @@ from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.seed_claim import try_seed, widened
 from winch_friction.discrepancy.standing import by_surfaces, not_one_law, standing
-from winch_friction.discrepancy.verdict import UNEXPLAINED
+from winch_friction.discrepancy.verdict import NOTHING
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -52,7 +52,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         search = search_runs(split, widened(given), options, rng)
     options.told("proving on the locked runs")
     trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    if trial.search.verdict.kind == UNEXPLAINED and not options.candidates:
+    if trial.search.verdict.kind != NOTHING and not options.candidates:
         options.told("drawing surfaces")
         trial = by_surfaces(split, crane, options, trial, rng)
     options.told("planning")

@@ -1,7 +1,8 @@
 """Corrections taken out: of whole runs, of live samples, of the crane (declared in `physics.friction.correction`).
 
-What happens to a channel on its way into the log is a delay, then a gain, then an offset; they are taken out in the
-opposite order. Loads, calculated gas pressures and the commanded speed follow, from signals that are right by then.
+What happens to a channel on its way into the log is a delay, then a gain, which may grow, then an offset; they are
+taken out in the opposite order. Loads, calculated gas pressures and the commanded speed follow, from signals that are
+right by then.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -33,7 +34,9 @@ __all__ = [
 ]  # fmt: skip
 
 Columns = dict[str, FloatArray]
-SIGNAL_ORDER = (Action.OFFSET, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP)
+SIGNAL_ORDER = (
+    Action.OFFSET, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP,
+)  # fmt: skip
 
 
 def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]:
@@ -112,6 +115,16 @@ def _scale(columns: Columns, run: Run, c: Correction) -> Columns:
     return columns | {name: columns[name] / (1.0 + c.value) for name in affected(c, run.groups) if name in columns}
 
 
+def _curvature(columns: Columns, run: Run, c: Correction) -> Columns:
+    return columns | {name: straight(columns[name], c.value) for name in affected(c, run.groups) if name in columns}
+
+
+def straight(logged: Any, per_pascal: float) -> Any:
+    """The true x of logged = x (1 + e x): the root near the logged value, without a division by a small e. Far below
+    zero, where no pressure is, the root would end; there it is held."""
+    return 2.0 * logged / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * per_pascal * logged, 0.0)))
+
+
 def _delay(columns: Columns, run: Run, c: Correction) -> Columns:
     """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
     time = columns["time"]
@@ -160,6 +173,7 @@ def _slip(columns: Columns, run: Run, c: Correction) -> Columns:
 _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction], Columns]] = {
     Action.OFFSET: _offset,
     Action.SCALE: _scale,
+    Action.CURVATURE: _curvature,
     Action.DELAY: _delay,
     Action.MASS: _mass,
     Action.WARMTH: _warmth,
@@ -222,5 +236,8 @@ def _correct(sample: Sample, c: Correction) -> bool:
 def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
     for channel in c.declared.channels:
         value: Any = getattr(member, channel)
-        right = value - error if c.declared.action is Action.OFFSET else value / (1.0 + error)
-        setattr(member, channel, right)
+        if c.declared.action is Action.OFFSET:
+            right = value - error
+        else:
+            right = straight(value, error) if c.declared.action is Action.CURVATURE else value / (1.0 + error)
+        setattr(member, channel, float(right))

@@ -31,7 +31,7 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
                 f"of the model and use --hide {_OF_THE_PLANT[action]}"
             )
-        if action in (Action.OFFSET, Action.SCALE, Action.DELAY):
+        if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.DELAY):
             _put_signal(each, scenario, channels)
         elif action is Action.MASS:
             _put_mass(each, scenario, plant[0])
@@ -51,6 +51,8 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
             row["offset"] += correction.value * factor
         elif correction.declared.action is Action.SCALE:
             row["scale"] *= 1.0 + correction.value
+        elif correction.declared.action is Action.CURVATURE:
+            row["curvature"] += correction.value
         else:
             row["delay"] += correction.value
 

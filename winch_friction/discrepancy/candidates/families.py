@@ -158,6 +158,7 @@ SURFACES = (
     Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="hoisting"),
     Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="lowering"),
     Free("gear_load_loss", (LOAD, SPEED), (), Scope.SYSTEM, "rising falling", "low none"),
+    Free("sheave_bending", (LOAD, SPEED), (), Scope.SHAFT, "rising falling", "low none", presumes=("gear_load_loss",)),
     Free("tare_load", ("wire_out",), (), Scope.SHAFT, "convex_rising", opposing=False, needs=("hook_load", "wire_out")),
 )
 
@@ -199,6 +200,25 @@ def name_of(row: Free) -> str:
     parts += row.signals if len(row.signals) > 1 else ()
     parts += [row.side] if row.side != "both" else []
     return "_".join([*parts, "falling"] if row.shape == "falling" and not row.times else parts)
+
+
+def bending(table: Table) -> FloatArray | None:
+    """Quadratic form of a curve's coefficients that grows with every change of its slope, shape (intervals,
+    intervals); None for what is no curve of one signal.
+
+    Where no run has been, a curve goes on as it went; fitted freely it would go anywhere.
+    """
+    if len(table.knots) != 1:
+        return None
+    axis = table.axes[0]
+    widths = np.diff(axis.knots) / (axis.knots[-1] - axis.knots[0])
+    if axis.shape == "convex_rising":  # one hinge per knot: every one after the first is a change of slope
+        change = np.diag(1.0 / np.cumsum(widths[::-1])[::-1])[1:]
+    else:
+        slopes = np.diag(1.0 / widths)
+        change = np.diff(slopes, axis=0)
+    change *= float(np.mean(widths))
+    return np.asarray(change.T @ change)
 
 
 def _knots(values: FloatArray, shares: Sequence[float]) -> FloatArray:

@@ -38,6 +38,10 @@ p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
 )
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
+c_p = Parameter(
+    "c_p", "1/Pa", 0.01 / (200 * BAR), lower=-0.1 / (200 * BAR), upper=0.1 / (200 * BAR),
+    doc="gain error of the transducers per pressure",
+)  # fmt: skip
 e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
@@ -85,6 +89,21 @@ def _scale_a(g: GroupSignals) -> FloatArray:
 def scale_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Gain error of both transducers of a group, or of that at port A alone."""
     return group_columns(_scale_a if values["port_a"] else _scale, run, values)
+
+
+def curved_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Gain error and what the pressure adds to it, of both transducers of a group or of that at port A alone, shape
+    (samples, 2)."""
+    curve = group_columns(_curve_a if values["port_a"] else _curve, run, values)
+    return np.hstack([scale_columns(run, values), curve])
+
+
+def _curve(g: GroupSignals) -> FloatArray:
+    return _scale(g) * g.pressure_sum
+
+
+def _curve_a(g: GroupSignals) -> FloatArray:
+    return _scale_a(g) * 0.5 * (g.pressure_sum + g.pressure)
 
 
 def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
@@ -156,6 +175,11 @@ def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     return [correction(name, found[e_p.name], groups=_groups(shape, sides))]
 
 
+def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    name = "pressure_curvature_a" if shape.values["port_a"] else "pressure_curvature"
+    return [*_to_scale(found, shape, sides), correction(name, found[c_p.name], groups=_groups(shape, sides))]
+
+
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     """A speed that comes late, or pressures that do, which is a speed that comes early."""
     if shape.values["late"] == SPEED:
@@ -188,6 +212,17 @@ def signal_candidates() -> list[Candidate]:
             corrects=_to_warm,
         ),
         _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes, _to_scale),
+        Candidate(
+            "pressure_scale",
+            r"\sum_g n_g D_g\,(e_p p_g+c_p p_g^2)",
+            (e_p, c_p),
+            curved_columns,
+            _scale_shapes,
+            kind="signal",
+            law_name="grows with the pressure",
+            hydraulic=True,
+            corrects=_to_curved,
+        ),
         _in_groups(
             "swivel_offset",
             r"D_0\sum_g n_g\,\Delta p_g",

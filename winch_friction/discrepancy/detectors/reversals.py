@@ -38,14 +38,16 @@ class ReversalFinding:
     expansion: Expansion
 
     def holds_on(self, names: Sequence[str], rng: np.random.Generator) -> bool:
-        """Whether it also shrinks the gap just after reversals of runs that it was not fitted to."""
+        """Whether it also shrinks the gap just after reversals of runs that it was not fitted to, each run by its own
+        noise: one whose reversals are blurred would otherwise speak for all."""
         chosen = [run for run in self.expansion.runs if run.name in names and run.used.any()]
         if not chosen:
             return False
         blocks = build_problem(chosen, self.expansion.layout, by_sample=True).blocks
         columns = self.cross.problem.columns
         without, with_it = (
-            blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta for each in (self.base, self.fitted)
+            (blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta) * blocks.weight
+            for each in (self.base, self.fitted)
         )
         return chance_of_no_gain(without, with_it, blocks.segment, blocks.run, rng) <= LIMITS.proof_p
 

@@ -36,6 +36,7 @@ class Layout:
     scales: FloatArray  # physical value of one unit of each column
     lower: FloatArray
     upper: FloatArray
+    bending: FloatArray | None = None  # of curves, shape (columns, columns); None: there is none
 
     def only(self, slots: Sequence[Slot]) -> "tuple[Layout, tuple[Slot, ...]]":
         """The layout of the base and of these candidates alone, and the candidates' places in it."""
@@ -45,7 +46,8 @@ class Layout:
         for slot in slots:
             placed.append(replace(slot, columns=tuple(range(at, at + len(slot.columns)))))
             at += len(slot.columns)
-        small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own])
+        bending = None if self.bending is None else self.bending[np.ix_(own, own)]
+        small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own], bending)
         return small, tuple(placed)
 
     def slot_like(self, other: Slot) -> Slot:
@@ -106,6 +108,10 @@ class Problem:
         rhs[:k] -= LIMITS.prior_weight * self.base.shift
         rest = np.arange(k, len(index))
         h[rest, rest] += RIDGE * h[rest, rest] + TINY
+        if self.layout.bending is not None and self.layout.bending[index, index].any():
+            own = self.layout.bending[np.ix_(index, index)]
+            curved = np.diag(own) > 0.0
+            h += LIMITS.stiffness * float(np.mean(np.diag(h)[curved])) * own
         return bounded_fit(h, rhs, self.layout.lower[index], self.layout.upper[index], start)
 
     def covariance(self, g: FloatArray, columns: Sequence[int]) -> FloatArray:

@@ -110,7 +110,9 @@ def _just_reversed(
     near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
     # sooner, most of the kernel reaches across the reversal: what is measured is smeared, what is predicted is not
     near &= since > window // 4
-    near &= (direction != 0.0) & (direction * speed > guard / 8.0)
+    # the smoothed speed swings below zero before a start; then the angle has not moved on
+    advances = np.minimum(direction * speed, progress / dt)
+    near &= (direction != 0.0) & (advances > guard / 8.0)
     return direction, direction * progress / dt, near
 
 

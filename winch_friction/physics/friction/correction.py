@@ -20,6 +20,7 @@ class Action(Enum):
 
     OFFSET = "offset"  # measured = true + e (times the oil's temperature above 40 degC where it is named)
     SCALE = "scale"  # measured = true (1 + e)
+    CURVATURE = "curvature"  # measured = true (1 + e true)
     DELAY = "delay"  # measured(t) = true(t - e)
     MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
     RADIUS = "radius"  # rope radius = crane file's + e
@@ -92,6 +93,14 @@ _DECLARED = (
         "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES
     ),
     _signal("pressure_scale_a", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducer at port A", "pressure_a"),
+    _signal(
+        "pressure_curvature", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR),
+        "gain error of the transducers at both ports per pressure", *_PRESSURES,
+    ),
+    _signal(
+        "pressure_curvature_a", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR),
+        "gain error of the transducer at port A per pressure", "pressure_a",
+    ),
     _signal(
         "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
         "zero error of the displacement feedback", "displacement",

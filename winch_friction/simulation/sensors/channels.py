@@ -16,7 +16,7 @@ OPTIONAL = ("wire_layer",)  # besides the plant's own columns
 
 CHANNEL = np.dtype(
     [("source", np.int64)]
-    + [(name, np.float64) for name in ("delay", "noise", "relative_noise", "step", "scale", "offset")]
+    + [(name, np.float64) for name in ("delay", "noise", "relative_noise", "step", "scale", "curvature", "offset")]
 )
 
 

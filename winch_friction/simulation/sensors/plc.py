@@ -68,7 +68,8 @@ def scan(history, period, settings, ends, normals, j, row):
             row[1] = (second - first) / (end - begin) if j > 0 else 0.0
             continue
         value = at_time(history, s.source, period, middle - s.delay)
-        value = value * s.scale * (1.0 + s.relative_noise * normals[j, c]) + s.offset + s.noise * normals[j, c]
+        value *= s.scale * (1.0 + s.curvature * s.scale * value)
+        value = value * (1.0 + s.relative_noise * normals[j, c]) + s.offset + s.noise * normals[j, c]
         row[c + 1] = quantise(value, s.step)
 
 

@@ -102,3 +102,29 @@ def test_names_complete():
     assert names.complete_model("a6vm215_cr") == ["a6vm215_crane1", "a6vm215_crane2", "a6vm215_crane2_loop2"]
     assert "stribeck" in names.complete_shown("strib")
     assert names.complete_kind("mo") == ["models"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["show", "churnin"], "did you mean churning?"),
+        (["simulate", "ahc_55t_21", "--out", "x.csv"], "did you mean ahc_55t_215"),
+        (["simulate", "ahc_55t_215", "--hide", "tare", "--out", "x.csv"], "tare_load"),
+        (["simulate", "ahc_55t_215", "--hide", "churnin", "--out", "x.csv"], "did you mean churning?"),
+        (["compare", "a6vm215_crane2", "a6vm215_cran2"], "did you mean a6vm215_crane2"),
+        (
+            ["check", "one.csv", "two.csv", "--crane", "crane_150t"],
+            "one.csv: no such file or folder | two.csv: no such",
+        ),
+        (["import", "logs", "--propose", "--map", "m.yaml"], "give the logs themselves, as logs/*.csv"),
+        (["show", "a6vm215_crane2", "--out", "/proc/x.html"], "/proc/x.html: cannot be written"),
+    ],
+)
+def test_a_slip_is_one_line_that_says_what_was_meant(words, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "logs").mkdir()
+    assert run(words) == 2
+    error = capsys.readouterr().err.strip()
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert [each.name for each in tmp_path.iterdir()] == ["logs"]

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath
 
@@ -33,14 +33,13 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.inputs import crane_of, folders_of_cranes, run_paths
+    from winch_friction.cli.inputs import crane_of, folders_of_cranes, read_all, run_paths
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.model_file import load_model
-    from winch_friction.records.runs import read_run
 
     if terms_file is not None:
         load_file(terms_file)
@@ -49,7 +48,7 @@ def command(
     winch = crane_of(crane, seed, paths)
     if seed is not None:
         refuse_other_crane(seed, winch)
-    read = [read_run(path, winch) for path in progress(paths, "reading runs")]
+    read = read_all(paths, winch)
     near = folders_of_cranes([*paths, *([Path(crane)] if crane else [])])
     result = check(read, winch, seed, known_cranes(*near))
     content = result.content()

@@ -82,7 +82,7 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
                 "at [rpm]": float(a.speed[k] / RPM),
                 "in sigmas": float(sigma),
                 "RMS [N*m]": float(np.sqrt(np.mean(difference**2))),
-                "mostly by": f"{leading} ({parts[leading]:+.3g} N*m)" if abs(parts[leading]) > 0.0 else "-",
+                "mostly by": f"{leading} ({parts[leading]:+.3g} N·m)" if abs(parts[leading]) > 0.0 else "-",
             }
         )
     said = _said(one.name, two.name, rows)
@@ -117,7 +117,7 @@ def _said(first: str, second: str, rows: list[dict[str, Any]]) -> str:
         else (" - more than" if sigma > CERTAIN else " - within") + " what they do not know of themselves"
     )
     return (
-        f"{second} differs from {first} by {size:+.3g} N*m at most, at {worst['at [rpm]']:.0f} rpm and "
+        f"{second} differs from {first} by {size:+.3g} N·m at most, at {worst['at [rpm]']:.0f} rpm and "
         f"{worst['load [t]']:g} t ({100 * abs(size) / max(abs(worst['of [N*m]']), 1e-9):.0f} %){sure}."
     )
 
@@ -152,5 +152,5 @@ def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any
             }
         )
     worst = max(rows, key=lambda row: row["RMS [N*m]"])
-    said = f"{two.name} differs from {one.name} by {worst['RMS [N*m]']:.3g} N*m RMS at most, in {worst['run']}."
+    said = f"{two.name} differs from {one.name} by {worst['RMS [N*m]']:.3g} N·m RMS at most, in {worst['run']}."
     return {"said": said, "first": one.name, "second": two.name, "crane": crane.name, "rows": rows}

@@ -87,7 +87,7 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import crane_of, read_all, refuse_implausible, run_paths
     from winch_friction.discrepancy.options import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
@@ -95,7 +95,6 @@ def run_gap(
     from winch_friction.records.atomic import write_text
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
-    from winch_friction.records.runs import read_run
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
@@ -110,7 +109,7 @@ def run_gap(
     refuse_other_crane(seed_model, loaded_crane)
     show_warnings(unstated(seed_model))
     mapping = bag_options_of(params_file)
-    read = [read_run(path, loaded_crane, **mapping) for path in progress(paths, "reading runs")]
+    read = read_all(paths, loaded_crane, **mapping)
     for run in read:
         show_warnings(run.warnings)
     read = _simulated(read, fmu, fmu_map)

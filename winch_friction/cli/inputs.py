@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from winch_friction.cli.console import show_warnings
+from winch_friction.cli.console import progress, show_warnings
 from winch_friction.physics.errors import InputError
 
 RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
@@ -33,6 +33,21 @@ def _is_run(path: Path) -> bool:
     if path.stem.endswith(TRUTH) or path.name.startswith("."):
         return False
     return path.suffix in RUN_SUFFIXES if path.is_file() else (path / "metadata.yaml").is_file()
+
+
+def read_all(paths: Sequence[Path], crane: Any, **options: Any) -> list[Any]:
+    """The runs of these files, with a bar; whatever is wrong with any of them is said at once."""
+    from winch_friction.records.runs import read_run
+
+    runs, problems = [], []
+    for path in progress(paths, "reading runs"):
+        try:
+            runs.append(read_run(path, crane, **options))
+        except InputError as error:
+            problems.append(str(error))
+    if problems:
+        raise InputError(" | ".join(problems))
+    return runs
 
 
 def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:

@@ -148,6 +148,11 @@ def kind_of(name: str) -> str | None:
     return None
 
 
+def names_of(one: str) -> Iterable[str]:
+    """The names of the models, cranes, scenarios, effects or terms; `one` is the kind's name for one of them."""
+    return KINDS[_OF_ONE[one]].names()
+
+
 def _completion(*kinds: str) -> Callable[[str], list[str]]:
     def complete(incomplete: str) -> list[str]:
         return [name for kind in kinds for name in KINDS[kind].names() if name.startswith(incomplete)]

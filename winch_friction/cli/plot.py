@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_table, show_warnings
+from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 
 
@@ -28,16 +28,16 @@ def command(
 
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
+    from winch_friction.cli.inputs import read_all
     from winch_friction.physics.errors import InputError
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
-    from winch_friction.records.runs import read_run
     from winch_friction.report.run_page import channel_rows, write_run_page
 
     if model and not crane:
         raise InputError("plot: --model needs --crane")
     machine = load_crane(crane) if crane else None
-    read = [read_run(path, machine) for path in progress(runs, "reading runs")]
+    read = read_all(runs, machine)
     for run in read:
         show_warnings(run.warnings)
     page = write_run_page(out, read, machine, load_model(model) if model else None)

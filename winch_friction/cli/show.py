@@ -6,9 +6,10 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import show_json, show_table
-from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of
+from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.errors import InputError
+from winch_friction.records.paths import meant
 
 LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
 
@@ -50,7 +51,10 @@ def command(
 def _of_file(name: str) -> str:
     path = Path(name)
     if not path.is_file():
-        raise InputError(f"show: '{name}' is neither a file nor a known name; 'winch-friction list' says what there is")
+        near = meant(name, (each for kind in SHOWN for each in names_of(kind)))
+        raise InputError(
+            f"show: '{name}' is neither a file nor a known name;{near} 'winch-friction list' says what there is"
+        )
     from winch_friction.records.strict_yaml import read_yaml
 
     content = read_yaml(path)

@@ -8,6 +8,7 @@ import typer
 from winch_friction.cli.names import complete_crane, complete_model, complete_scenario
 from winch_friction.cli.optional import OptionalTexts
 from winch_friction.physics.errors import InputError
+from winch_friction.records.paths import meant
 
 LARGEST_EFFECT = 10.0  # times the typical size: ten times an effect of the catalogue is another machine
 FASTEST = 1000.0  # rad/s, 9500 rpm: no motor of a winch turns faster, so the load has run away
@@ -88,7 +89,8 @@ def _effect(text: str) -> tuple[str, float]:
 
     name, _, size = text.partition("=")
     if name not in effect_names():
-        raise InputError(f"--hide {name}: not an effect; known effects are {', '.join(sorted(effect_names()))}")
+        known = sorted(effect_names())
+        raise InputError(f"--hide {name}: not an effect;{meant(name, known)} known effects are {', '.join(known)}")
     try:
         value = float(size) if size else 1.0
     except ValueError:

@@ -24,6 +24,8 @@ def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     if not path.exists():
         raise InputError(f"{path}: no such file")
     suffix = path.suffix.lower()
+    if path.is_dir() and not any(each.suffix in (*BAGS, ".yaml") for each in path.iterdir()):
+        raise InputError(f"{path}: a folder, and no rosbag2 recording; give the logs themselves, as {path}/*.csv")
     if path.is_file() and path.stat().st_size == 0:
         raise InputError(f"{path}: the file is empty")
     if suffix in WORKBOOK:

@@ -21,7 +21,10 @@ def atomic_path(path: Path) -> Iterator[Path]:
     path.parent.mkdir(parents=True, exist_ok=True)
     remove_stale(path)
     temporary = _beside(path)
-    temporary.touch(mode=0o600)
+    try:
+        temporary.touch(mode=0o600)
+    except OSError as error:  # nobody knows the temporary file's name
+        raise OSError(error.errno, f"cannot be written ({error.strerror})", str(path)) from None
     try:
         yield temporary
         _flush_to_disk(temporary)

@@ -15,7 +15,7 @@ from winch_friction.records.headers import conversion_to_si
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import for_people, paragraph, table_html
 
 KILO = 1e3  # N m per kN m
 MOST_RUNS_DRAWN = 24  # runs; beyond, the page would weigh more than a phone takes
@@ -79,18 +79,18 @@ def _balance(result: CheckResult) -> str:
         (b.run, b.score, b.before, b.after, b.level, ", ".join(f"{a.channel} {a.ratio:.3g}" for a in b.agreements))
         for b in result.balance
     ]
-    head = ("run", "misfit", "as it stands, N m", "after ordinary errors, N m", "load, N m", "speed told by")
+    head = ("run", "misfit", "as it stands [N·m]", "after ordinary errors [N·m]", "load [N·m]", "speed told by")
     plots = "".join(plot_html(_balance_plot(result, k)) for k in range(min(len(result.closures), MOST_RUNS_DRAWN)))
     return table_html(head, rows) + plots
 
 
 def _balance_plot(result: CheckResult, number: int) -> Plot:
     closure = result.closures[number]
-    x, names = "time [s]", ("drive, measured [kN m]", "load, friction and inertia [kN m]")
+    x, names = "time [s]", ("drive, measured [kN·m]", "load, friction and inertia [kN·m]")
     columns = {x: closure.time - closure.time[0], names[0]: closure.drive / KILO, names[1]: closure.expected / KILO}
     lines = [Line("measured", x, names[0], role="measured"), Line("expected", x, names[1], role="before")]
     caption = f"{closure.run}: torque of all motors at the shaft, against what load, friction and inertia ask for."
-    return Plot(f"Balance {closure.run}", [Frame(closure.run, columns)], lines, x, ["torque [kN m]"], caption, "runs")
+    return Plot(f"Balance {closure.run}", [Frame(closure.run, columns)], lines, x, ["torque [kN·m]"], caption, "runs")
 
 
 def _channels(result: CheckResult) -> str:
@@ -105,7 +105,7 @@ def _numbers(result: CheckResult, run: Run) -> str:
         smallest, unit = _shown(c.channel, np.array([c.smallest]))
         largest, _ = _shown(c.channel, np.array([c.largest]))
         rows.append((c.channel, unit, smallest[0], largest[0], 100.0 * c.missing, c.longest_still))
-    return table_html(("channel", "unit", "smallest", "largest", "missing, %", "longest still, s"), rows)
+    return table_html(("channel", "unit", "smallest", "largest", "missing [%]", "longest still [s]"), rows)
 
 
 def _drawn(run: Run) -> str:
@@ -133,15 +133,15 @@ def _shown(column: str, values: FloatArray) -> tuple[FloatArray, str]:
     if channel is None:
         return values, "SI"
     if channel.display == channel.unit:
-        return values, channel.unit
+        return values, for_people(channel.unit)
     scale, offset = conversion_to_si(channel.display, channel.unit, column)
-    return (values - offset) / scale, channel.display
+    return (values - offset) / scale, for_people(channel.display)
 
 
 def _lessons(result: CheckResult) -> str:
     if not result.identifiable:
         return ""
     rows = [(p.name, 100.0 * p.before, 100.0 * p.after, p.words) for p in result.identifiable]
-    head = ("parameter", "model's std, %", "std with these runs, %", "these runs teach")
+    head = ("parameter", "model's std [%]", "std with these runs [%]", "these runs teach")
     words = "By the Jacobian of the model at these runs, terms with memory left out; nothing was fitted."
     return paragraph(words) + table_html(head, rows)

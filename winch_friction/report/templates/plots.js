@@ -88,7 +88,7 @@
   };
 
   const axisLook = (c) => ({gridcolor: c.grid, zerolinecolor: c.grid, linecolor: c.faint, tickfont: {color: c.ink},
-    automargin: true, title: {font: {color: c.ink, size: narrow() ? 12 : 13}, standoff: 8}});
+    automargin: true, exponentformat: "power", title: {font: {color: c.ink, size: narrow() ? 12 : 13}, standoff: 8}});
   const layout = (content, c) => {
     const rows = Math.max(content.rows.length, 1), made = {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: {color: c.ink, size: narrow() ? 11 : 13, family: "system-ui, sans-serif"},

@@ -1,13 +1,19 @@
-"""Peak memory of the verbs on an hour's bag, beside its size."""
+"""Peak memory of the verbs on an hour's log, beside its size: a bag, for `import` text, for `identify` test cycles."""
 
+import math
 import os
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from bench.measuring import Row, sea
-from winch_friction.records.runs import write_run
+from winch_friction.physics.signals import Run
+from winch_friction.records.paths import config_directory
+from winch_friction.records.runs import read_run, write_run
 
 HOUR, SHORT = 3600.0, 10.0  # s
 # a verb may find something and say so by its status; the peak is /proc's, which is this program's alone: getrusage's
@@ -38,10 +44,44 @@ def measure(smoke: bool = False) -> list[Row]:
         }
         if smoke:
             del verbs["gap"]  # a few seconds of sea are too short for it
-        return [
-            Row(f"memory: peak of {name}", _peak(verb), "MB", note, at_most=300.0 + 2.0 * size)
-            for name, verb in verbs.items()
-        ]
+        rows = [_row(name, verb, size, note) for name, verb in verbs.items()]
+        return [*rows, _of_import(run, Path(folder)), _of_identify(Path(folder), SHORT if smoke else HOUR)]
+
+
+def _row(name: str, verb: tuple[str, ...], size: float, note: str) -> Row:
+    return Row(f"memory: peak of {name}", _peak(verb), "MB", note, at_most=300.0 + 2.0 * size)
+
+
+def _of_import(run: Run, folder: Path) -> Row:
+    """The hour as somebody's text file, with a proposed map of its columns."""
+    log, table = write_run(run, folder / "log.csv"), str(folder / "map.yaml")
+    size = log.stat().st_size / 1e6
+    proposed = _peak(("import", str(log), "--propose", "--crane", "crane_150t", "--map", table))
+    verb = ("import", str(log), "--map", table, "--out", str(folder / "runs"), "--crane", "crane_150t")
+    note = f"of a text of {size:.0f} MB, {run.time[-1]:.0f} s at 50 Hz; its map was proposed at {proposed:.0f} MB"
+    return _row("import", verb, size, note)
+
+
+def _of_identify(folder: Path, duration: float) -> Row:
+    """The tests of the shipped example, again and again until they last so many s together."""
+    tests = [
+        read_run(path) for path in sorted((config_directory() / "examples" / "practice_150t").glob("test_*.parquet"))
+    ]
+    again = max(math.ceil(duration / sum(float(test.time[-1]) for test in tests)), 1)
+    files = [write_run(_repeated(test, again), folder / f"{test.name}.parquet") for test in tests]
+    size = sum(each.stat().st_size for each in files) / 1e6
+    seconds = again * sum(float(test.time[-1]) for test in tests)
+    search = ("--resamples", "2", "--restarts", "1", "--evaluations", "500")  # again and again in the same memory
+    verb = ("identify", "system", *map(str, files), "--motor", "a6vm215", "--out", f"{folder}/model.yaml", *search)
+    return _row("identify system", verb, size, f"of {len(files)} tests, {seconds:.0f} s in {size:.1f} MB")
+
+
+def _repeated(run: Run, times: int) -> Run:
+    """A run one time after the other."""
+    step = float(run.time[-1] - run.time[0] + np.median(np.diff(run.time)))
+    columns = {name: np.tile(values, times) for name, values in run.columns.items()}
+    columns["time"] = np.concatenate([run.time + k * step for k in range(times)])
+    return replace(run, columns=columns, aside={})
 
 
 def _peak(verb: tuple[str, ...]) -> float:

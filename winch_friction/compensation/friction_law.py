@@ -1,6 +1,6 @@
 """One model as the compensator uses it: its torque term by term, with gains, and its memory."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import mul
 
 from winch_friction.physics.errors import InputError
@@ -20,8 +20,11 @@ class FrictionLaw:
         self.gains = tuple(gains.get(t.name, 0.0 if t.place == NOT_FELT else 1.0) for t in model.terms)
         self._all_used = min(self.gains, default=0.0) > 0.0
         self.reads = frozenset(name for term in model.terms for name in term.reads)
-        self._compiled: dict[int, CompiledTerms] = {}
-        self._states: tuple[float, ...] | None = None
+        self._values = model.values
+        self._compiled: CompiledTerms
+        self._contributions: Callable[..., tuple[float, ...]]
+        self._states: tuple[float, ...]
+        self.reset()
 
     def torque(self, x: Sequence[float], groups: int) -> float:
         """Sum of gain times contribution, N m at the motor shaft; overflow comes out as NaN."""
@@ -38,29 +41,29 @@ class FrictionLaw:
         """Step the terms with memory by `dt` s."""
         functions = self._functions(groups)
         if functions.initial_states:
-            self._states = advance_all(functions, x, self.model.values, self._memory(functions), dt)
+            self._states = advance_all(functions, x, self.model.values, self._states, dt)
 
     def reset(self) -> None:
         """Forget the memory of the terms."""
-        self._states = None
+        self._groups = -1  # of what is at hand: nothing
+        self._states = ()
 
     def _parts(self, x: Sequence[float], groups: int) -> Sequence[float]:
-        functions = self._functions(groups)
+        if groups != self._groups:
+            self._functions(groups)
         try:
-            return functions.scalar_contributions(x, self.model.values, self._memory(functions))
+            return self._contributions(x, self._values, self._states)
         except (OverflowError, ValueError, ZeroDivisionError):
             return [float("nan")] * len(self.gains)
 
-    def _memory(self, functions: CompiledTerms) -> tuple[float, ...]:
-        if self._states is None or len(self._states) != len(functions.initial_states):
-            self._states = functions.initial_states
-        return self._states
-
     def _functions(self, groups: int) -> CompiledTerms:
-        found = self._compiled.get(groups)
-        if found is None:
-            found = self._compiled[groups] = self.model.compile(groups)
-        return found
+        """The model's functions for so many motor groups, at hand until there are others."""
+        if groups != self._groups:
+            self._groups, self._compiled = groups, self.model.compile(groups)
+            self._contributions = self._compiled.scalar_contributions
+            if len(self._states) != len(self._compiled.initial_states):
+                self._states = self._compiled.initial_states
+        return self._compiled
 
 
 def check_gains(gains: Mapping[str, float]) -> None:

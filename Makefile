@@ -25,7 +25,7 @@ $(READY): setup.py constraints.txt
 demo: $(READY)
 	$(BIN)/winch-friction demo --out out/demo
 
-# tests that start nodes mostly wait; whatever only computes fills the time that they leave and gives way to them at once.
+# tests that start nodes mostly wait; whatever only computes fills the time that they leave and gives way
 # The two whole loops over DDS wait for each other's answers; what is judged by the clock then runs two files at a time,
 # each with domains of its own
 test: $(READY) browser
@@ -36,7 +36,7 @@ test-nodes: $(READY)
 	$(BIN)/python -m pytest -m "ros and not slow" -n 2 --dist loadfile
 
 test-computing: $(READY)
-	nice -n 19 $(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+	nice -n 5 $(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 lint: $(READY)
 	$(BIN)/ruff check .

@@ -4,6 +4,7 @@ import base64
 import contextlib
 import importlib.util
 import json
+import os
 import subprocess
 import sys
 import time
@@ -44,6 +45,7 @@ class Listener:
                 "running nodes are heard with rclpy: source ROS 2, or pip install 'winch_friction[ros]'; or give --bag"
             )
         command = [sys.executable, "-m", "winch_friction.nodes.telemetry", "--namespace", namespace, *options]
+        command += ["--reader", str(os.getpid())]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         self._closed = False
 

@@ -29,6 +29,8 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("--namespace", default="")
     parser.add_argument("--raw", action="store_true")
+    # said by the reader itself: one that is killed while this process still starts is nobody's parent any more
+    parser.add_argument("--reader", type=int, default=os.getppid())
     options = parser.parse_args()
     rclpy.init(args=[])
     node = rclpy.create_node("winch_friction_telemetry", namespace=options.namespace, start_parameter_services=False)
@@ -36,7 +38,7 @@ def main() -> int:
         Raw(node)
     else:
         _frames(node)
-    node.create_timer(LOOK_AROUND, partial(_orphaned, os.getppid()))
+    node.create_timer(LOOK_AROUND, partial(_orphaned, options.reader))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
@@ -49,9 +51,9 @@ def main() -> int:
     return 0
 
 
-def _orphaned(parent: int) -> None:
+def _orphaned(reader: int) -> None:
     """End with the reader, even one that was killed and before there is anything to write to it."""
-    if os.getppid() != parent:
+    if os.getppid() != reader:
         raise KeyboardInterrupt
 
 

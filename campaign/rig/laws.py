@@ -148,7 +148,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "line_pressure_drop": (
         Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)),
-        Law("cracking_valve", _line(0.15, 1.0), held_out=True),
+        Law("cracking_valve", _line(0.15, 1.0)),
+        Law("opens_late", lambda s, rng, f: {**_line(2.0)(s, rng, f), "line_from": 0.35}, held_out=True),
     ),
     "case_pressure": (
         Law("port_b", _set(case_b=40 * BAR * MAX_DISPLACEMENT / (150 * BAR))),

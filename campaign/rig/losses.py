@@ -142,6 +142,9 @@ def line_drop(h, flow):
     """Pressure lost between transducer and motor, Pa."""
     if h.line_drop == 0.0 or h.line_side * flow < 0.0:
         return 0.0
+    if h.line_from > 0.0:
+        beyond = max(abs(flow) - h.line_from * h.line_flow, 0.0)
+        return h.line_drop * beyond * beyond * (1.0 if flow > 0.0 else -1.0)
     if h.line_power == 2.0:
         return h.line_drop * flow * abs(flow)
     lost = h.line_drop * h.line_flow**2 * (abs(flow) / h.line_flow) ** h.line_power

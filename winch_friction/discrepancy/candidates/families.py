@@ -56,6 +56,9 @@ def literature() -> list[Candidate]:
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
+        # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
+        _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},
+            law_name="cracking pressure one way", continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
         _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=no_load),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=no_load),

@@ -27,6 +27,7 @@ SHORT, LONG, LONG_SHARE = (0.05, 0.6), (0.8, 2.5), 0.2  # s: a fault lasts so lo
 HEALTHY = 0.5  # s at most until the next
 DIAGNOSED = 1.0  # s after which diagnostics must say so
 LOOKED_AT = 0.05  # share of messages before which the estimator is photographed
+MOST_NOTES = 10  # of a trial
 ACTIONS = 0.02  # chance of an action of an operator or of another node per tick
 HOSTILE = (
     "[" * 20000,
@@ -57,6 +58,7 @@ class Trial:
         self.speed = 0.0
         self.draws = 0
         self.notes: list[str] = []
+        self.latest = ""  # fault, in words
 
     @property
     def row(self) -> Row:
@@ -142,7 +144,10 @@ class Trial:
         if said is not None:
             self.watch.blind = self.fault is not None and self.fault.blind
             self.watch.lead = max(self.watch.lead, self.service.law.config.lead)
+            before = self.row.violations.total()
             self.watch.published(said, self.now, self.speed, self.row)
+            if self.row.violations.total() > before and len(self.notes) < MOST_NOTES:
+                self.notes.append(f"at {self.now:.2f}: {said.friction_torque:.0f} N m; the latest: {self.latest}")
 
     # -- faults come and go
     def _change_fault(self) -> None:
@@ -151,6 +156,7 @@ class Trial:
             self.next_fault = self.now + float(self.rng.uniform(0.05, HEALTHY))
         elif self.fault is None and self.now >= self.next_fault:
             self.fault = self._drawn()
+            self.latest = f"{self.fault.kind} ({self.fault.detail})"
             self.fault_began = self.now
             lasts = LONG if self.rng.random() < LONG_SHARE else SHORT
             self.fault_ends = self.now + float(self.rng.uniform(*lasts))
@@ -167,9 +173,10 @@ class Trial:
         if second.paused:
             return first
         return Fault(
-            "two at once", f"{first.kind} + {second.kind}",
-            lambda m, k, r: second.spoil(first.spoil(m, k, r), k, r), first.silences and first.detection == 0.0,
-            blind=first.blind or second.blind or {SPEED, REFERENCE} <= {first.detail, second.detail},
+            "two at once", f"{first.kind}: {first.detail} + {second.kind}: {second.detail}",
+            lambda m, k, r: second.spoil(first.spoil(m, k, r), k, r),
+            first.silences and first.detection == 0.0 and not second.blind,
+            blind=first.blind or second.blind or _hides_the_motion(first, second),
         )  # fmt: skip
 
     # -- what people and other nodes do
@@ -216,6 +223,13 @@ class Trial:
         self.now = max(self.now, self.watch.time if math.isfinite(self.watch.time) else self.now)
         if self.watch.torque != 0.0:
             self.row.violations["the last torque is not zero"] += 1
+
+
+def _hides_the_motion(first: Fault, second: Fault) -> bool:
+    """Whether neither speed nor command tell the motion: both are spoilt, or one stands for both and is spoilt too."""
+    spoilt = [{topic for topic in (SPEED, REFERENCE) if topic in each.detail} for each in (first, second)]
+    crossed = "speed and command crossed" in (first.kind, second.kind)
+    return spoilt[0] | spoilt[1] == {SPEED, REFERENCE} or (crossed and any(spoilt))
 
 
 def violations(rows: Iterable[Row]) -> int:

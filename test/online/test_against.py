@@ -5,10 +5,12 @@ import math
 from collections.abc import Callable
 
 import pytest
-from sea import PERIOD, Fed, check_invariants, swell
+from sea import CRANE, PERIOD, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.online.agreement import Agreement
 from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.ranges import ChannelRanges
 
 SPEED, REFERENCE = "winch/joint_states", "winch/reference"
 SWASH = "winch/active/displacement"
@@ -185,3 +187,12 @@ def test_an_input_that_came_long_ago_is_lost_however_young_its_stamp_looks() -> 
         fed.now += PERIOD
         fed.send(sample, skip=(SWASH,))
         assert "active.displacement" in fed.service.law.status()["missing"]
+
+
+def test_stamps_that_advance_slowly_do_not_stretch_the_patience():
+    """By the clock the command turned against the speed long ago; by the stamps it has only begun."""
+    agreement = Agreement(CRANE, ChannelRanges(CRANE))
+    for k in range(15):
+        sample = Sample(time=0.004 * k, motor_speed=-50.0, speed_reference=50.0)
+        by_clock = agreement.contradictions(sample, 0.02 * k)
+    assert "speed_reference turns against motor_speed" in by_clock

@@ -77,15 +77,19 @@ class Agreement:
 
     def forget(self) -> None:
         """Another time begins."""
-        self._time = math.nan
+        self._time = self._now = math.nan
         self._command = self._step = math.nan
         self._jumps: list[float] = []
         self._speeds, self._torques, self._turns = Doubt(SPEED_TIME), Doubt(TORQUE_TIME), Doubt(TURN_TIME)
 
-    def contradictions(self, sample: Sample) -> tuple[str, ...]:
-        """What does not fit, in a few words each."""
-        dt = min(max(sample.time - self._time, 0.0), 0.1) if self._time == self._time else 0.0
-        self._time = sample.time
+    def contradictions(self, sample: Sample, now: float = math.nan) -> tuple[str, ...]:
+        """What does not fit, in a few words each.
+
+        `now` s: when it came, by the steady clock; stamps that advance slowly must not stretch the patience.
+        """
+        passed = (sample.time - self._time, now - self._now)
+        dt = min(max(0.0, *(each for each in passed if each == each)), 0.1) if self._time == self._time else 0.0
+        self._time, self._now = sample.time, now
         self._turns.patience = self.lead + TURN_TIME
         found = {
             "speed_reference turns against motor_speed": self._turns.step(_turns_against(sample), dt),

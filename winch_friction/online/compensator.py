@@ -66,7 +66,7 @@ class CompensatorService:
 
     def _answer(self, sample: Sample, now: float) -> Feedforward:
         self._take_over(self.schedule.due(sample.time))
-        self.contradictions = self._agreement.contradictions(sample)
+        self.contradictions = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
         self._silence = _Silence()
         self._last_stamp = sample.time
         return self.law.step(sample, now if self.options.paced else None, self.contradictions)

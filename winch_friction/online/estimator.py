@@ -8,6 +8,7 @@ from winch_friction.compensation.model_schedule import LEARNED_AT
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.online.agreement import LoadBalance
+from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate
 from winch_friction.online.options import ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
@@ -23,8 +24,8 @@ FASTEST_MODELS = 1.0  # s of the service's clock between two models, whatever th
 class EstimatorService:
     """Messages, or rows of a run, in; estimates and, now and then, a learned model out.
 
-    While the measured load contradicts the balance of torques nothing is learned, the seed is published in the place
-    of what was, and every parameter that was learned is invalid.
+    While the measured load contradicts the balance of torques, or the drive's torque has changed its gain, nothing is
+    learned, the seed is published in the place of what was, and every parameter that was learned is invalid.
     """
 
     def __init__(
@@ -39,6 +40,7 @@ class EstimatorService:
         self.missing: tuple[str, ...] = ()
         self.contradiction = ""
         self._balance, self._enabled = LoadBalance(), True
+        self._gain = InertiaBalance(self.law.crane)
         self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
 
@@ -57,7 +59,8 @@ class EstimatorService:
         self.missing = self.law.crane.drive.lacking(sample)
         self.last = self.law.step(sample)
         if self.last.accepted:
-            self.contradiction = self._balance.contradiction(self.law.load_apart, sample.time)
+            gain = self._gain.contradiction(sample)
+            self.contradiction = self._balance.contradiction(self.law.load_apart, sample.time) or gain
             self.law.set_enabled(self._enabled and not self.contradiction)
         if math.isfinite(self.last.friction_torque):
             self.friction_torque = self.last.friction_torque
@@ -83,6 +86,7 @@ class EstimatorService:
         """Back to the seed: everything learned is forgotten."""
         self.law.reset()
         self.contradiction, self._balance = "", LoadBalance()
+        self._gain.forget()
         self.law.set_enabled(self._enabled)
         self.forget()
 
@@ -93,6 +97,7 @@ class EstimatorService:
 
     def _jumped(self) -> None:
         self._published = -math.inf
+        self._gain.forget()
 
     def status(self, now: float) -> dict[str, Any]:
         """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""
@@ -106,6 +111,11 @@ class EstimatorService:
         status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
         status["enabled"] = self._enabled
         return status
+
+    @property
+    def gain_change(self) -> float:
+        """By how much the gain of the drive's torque has changed since the beginning, relative; NaN unknown."""
+        return self._gain.change
 
     def parameters(self) -> list[ParameterEstimate]:
         """What is known of every parameter; what was learned from inputs that contradict each other is invalid."""

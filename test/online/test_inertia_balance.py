@@ -1,0 +1,91 @@
+"""The gain of the drive's torque: a displacement that drifts moves friction and inertia alike, friction does not."""
+
+import math
+from collections.abc import Callable, Iterator
+
+import pytest
+from sea import CRANE, SEED, TOPICS
+
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.inertia_balance import CHANGED, FIRST, InertiaBalance
+from winch_friction.physics.signals import GroupSample, Sample
+
+PERIOD, LOAD = 0.02, 55e3  # s, kg
+DISPLACEMENT = 3e-5  # m^3/rad
+CHANGE_AT, SECONDS = 100.0, 200.0  # s
+
+
+def sailed(friction: Callable[[float], float], shown: Callable[[float], float]) -> Iterator[Sample]:
+    """Heave compensation by plain formulas: `friction` scales it, `shown` is the displacement that is logged over the
+    true one, both over time.
+    """
+    lever = CRANE.drum.radius(math.nan) / CRANE.gear_ratio
+    for k in range(int(SECONDS / PERIOD)):
+        time = k * PERIOD
+        phases = (2.0 * math.pi * time / 8.0, 2.0 * math.pi * time / 5.3 + 1.0)
+        speed = 80.0 * math.sin(phases[0]) + 40.0 * math.sin(phases[1])
+        rate = 80.0 * 0.7854 * math.cos(phases[0]) + 40.0 * 1.1855 * math.cos(phases[1])
+        torque = CRANE.inertia * rate + friction(time) * (300.0 * math.tanh(speed / 3.0) + 1.5 * speed)
+        held = CRANE.drum_torque(LOAD, math.nan) / CRANE.gear_ratio / (CRANE.motor_count("passive") * DISPLACEMENT)
+        drop = torque / (CRANE.motor_count("active") * DISPLACEMENT)
+        yield Sample(
+            time=time, motor_speed=speed, hook_load=LOAD, heave_velocity=-lever * speed,
+            groups={
+                "active": GroupSample(drop + 20e5, 20e5, DISPLACEMENT * shown(time)),
+                "passive": GroupSample(held + 20e5, 20e5, DISPLACEMENT),
+            },
+        )  # fmt: skip
+
+
+def said(samples: Iterator[Sample]) -> tuple[float, float, str]:
+    """When it first spoke, s (NaN: never), the largest change of gain that it saw, and its words."""
+    balance, first, words, largest = InertiaBalance(CRANE), math.nan, "", 0.0
+    for sample in samples:
+        told = balance.contradiction(sample)
+        largest = max(largest, abs(balance.change)) if balance.change == balance.change else largest
+        if told and not words:
+            first, words = sample.time, told
+    return first, largest, words
+
+
+same = lambda _time: 1.0
+stepped = lambda to: lambda time: to if time > CHANGE_AT else 1.0
+
+
+def test_a_displacement_that_is_off_is_told_within_a_minute():
+    first, largest, words = said(sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)))
+    assert CHANGE_AT < first < CHANGE_AT + 60.0
+    assert largest > CHANGED
+    assert "displacement or pressures" in words
+
+
+@pytest.mark.parametrize("friction", [same, stepped(1.3), stepped(0.7), lambda time: 1.0 - 0.3 * time / SECONDS])
+def test_friction_that_changes_is_no_gain(friction):
+    first, largest, _ = said(sailed(friction, same))
+    assert math.isnan(first)
+    assert largest < CHANGED
+
+
+def test_another_load_begins_anew():
+    balance = InertiaBalance(CRANE)
+    for sample in sailed(same, same):
+        if sample.time > FIRST + 5.0:
+            break
+        balance.contradiction(sample)
+    assert balance.change == pytest.approx(0.0, abs=0.01)
+    sample.hook_load = 1.2 * LOAD
+    balance.contradiction(sample)
+    assert math.isnan(balance.change)
+
+
+def test_the_service_declares_it_and_publishes_the_seed():
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for sample in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)):
+        service.take_row(sample)
+    assert "changed its gain" in service.contradiction
+    assert service.status(SECONDS)["state"] == "contradicted"
+    published = service.model_due(SECONDS)
+    assert published is not None
+    assert published.values == SEED.values
+    service.reset()
+    assert not service.contradiction

@@ -88,7 +88,7 @@ def unit_changed(rng: np.random.Generator) -> Fault:
 def coarse(rng: np.random.Generator) -> Fault:
     """Values in steps: 5 bar, 2 rad/s, 5 % of displacement, 5 t."""
     topic, step = one_of(rng, (ACTIVE_A, 5.0 * BAR), (SPEED, 2.0), (REFERENCE, 5.0), (SWASH, 0.05), (LOAD, 5e3))
-    spoil = edited(topic, lambda m, _k, _r: set_value(m, topic, lambda v: step * round(v / step)))
+    spoil = edited(topic, lambda m, _k, _r: set_value(m, topic, lambda v: step * float(np.rint(v / step))))
     return Fault("coarse steps", topic, spoil)
 
 

@@ -64,7 +64,7 @@ EXTRAS = {
     "test": [
         "pytest>=7.4",
         "pytest-timeout>=2.2",
-        "pytest-xdist>=3.5",
+        "pytest-xdist>=3.4",
         "hypothesis>=6.98",
         "pytest-benchmark>=4",
         "moto[s3]>=5",

@@ -104,7 +104,8 @@ def section(outcomes: list[Became]) -> str:
     return "\n".join([
         "## Strangers' habits", "",
         f"{len(outcomes)} kinds, each written out by hand (`campaign/import_kinds.py`): languages, clocks, encodings, "
-        "file formats, units, mistakes.", "",
+        "file formats, units, mistakes. When they were first written, 79.6 % were good, five were written and not the "
+        "run, and two ended in a traceback: what failed was mended, so this is no held-out rate.", "",
         f"Imported as they were {counts['imported']}, answered with the cause {counts['answered']}, data written that "
         f"are not the run {counts['wrong']}, missed {counts['missed']}, tracebacks {counts['crashed']}; good "
         f"{100.0 * good / len(outcomes):.1f} %; slowest answer {slowest:.1f} s of processor time.", "",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from campaign.faults.kinds import REFERENCE, SPEED, Fault, Messages, draw
+from campaign.faults.plain_kinds import NEEDED
 from campaign.faults.voyages import MESSAGES, PERIOD, Voyage
 from campaign.faults.watch import OutputWatch, Row
 from winch_friction.compensation import CompensatorConfig, Feedforward
@@ -175,7 +176,7 @@ class Trial:
         return Fault(
             "two at once", f"{first.kind}: {first.detail} + {second.kind}: {second.detail}",
             lambda m, k, r: second.spoil(first.spoil(m, k, r), k, r),
-            first.silences and first.detection == 0.0 and not second.blind,
+            first.silences and first.detection == 0.0 and not second.blind and not _mends(first, second),
             blind=first.blind or second.blind or _hides_the_motion(first, second),
         )  # fmt: skip
 
@@ -223,6 +224,11 @@ class Trial:
         self.now = max(self.now, self.watch.time if math.isfinite(self.watch.time) else self.now)
         if self.watch.torque != 0.0:
             self.row.violations["the last torque is not zero"] += 1
+
+
+def _mends(first: Fault, second: Fault) -> bool:
+    """Whether both spoil one topic: what the second makes of the first's value may be possible again."""
+    return any(topic in first.detail and topic in second.detail for topic in NEEDED)
 
 
 def _hides_the_motion(first: Fault, second: Fault) -> bool:

@@ -9,6 +9,9 @@ from winch_friction.compensation import Feedforward
 ROUNDING = 1e-6  # N m
 # s beside the look-ahead: a held input's age, the doubt's patience, the fade, and two periods (docs/safety.md)
 LONGEST_AGAINST = 0.1 + 0.1 + 0.1 + 0.05
+# s; a node that published nothing for so long was stopped: what its last message does meanwhile is the consumer's duty
+# (it lets go after its hold time), and the node answers for what it says from then on
+STOPPED = 0.3
 CLEAR = 5.0  # N m and rad/s: below it a torque or a motion has no sign worth speaking of
 
 
@@ -65,6 +68,8 @@ class OutputWatch:
             row.steepest = max(row.steepest, change / (self.slew * passed))
 
     def _against(self, torque: float, now: float, speed: float, row: Row) -> None:
+        if now - self.time > STOPPED:
+            self.against_since, self._excused = math.nan, self.blind
         if torque * speed < 0.0 and abs(torque) > CLEAR and abs(speed) > CLEAR:
             self.against_since = now if math.isnan(self.against_since) else self.against_since
             row.against = max(row.against, now - self.against_since)

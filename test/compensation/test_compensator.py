@@ -322,3 +322,28 @@ def test_the_envelope_bounds_what_is_published_below_the_absolute_limit():
         if k == 49:
             assert output.torque == -300.0
     assert output.torque == pytest.approx(-900.0)
+
+
+def _faded(stamps_per_second, jitter=0.0):
+    """Torques by the steady clock after an input is lost at 1 s, from when on stamps run so fast."""
+    output = SafeOutput(absolute=1000.0, slew=2000.0, ramp_time=0.5, hold=0.1)
+    rng, stamp, found = np.random.default_rng(3), 0.0, []
+    for k in range(150):
+        now, lost = k * PERIOD + jitter * float(rng.uniform(-1.0, 1.0)), k * PERIOD > 1.0
+        stamp += PERIOD * (stamps_per_second if lost else 1.0)
+        output.arrive(stamp, now)
+        found.append(output.follow(200.0, 1000.0, usable=not lost, enabled=True, motion=50.0))
+    return np.array(found)
+
+
+def test_stamps_that_run_slowly_do_not_hold_up_a_fade():
+    slow, ordinary = _faded(0.3), _faded(1.0)
+    at = np.arange(150) * PERIOD
+    assert ordinary[at <= 1.0].max() == pytest.approx(200.0)
+    assert at[np.flatnonzero(slow == 0.0)[-1]] > 2.0, "it stays there"
+    assert slow[at > 1.0 + 0.1 + 0.5 + 3 * PERIOD].max() == 0.0
+    assert np.abs(np.diff(slow)).max() <= 2000.0 * (0.1 + 2 * PERIOD)
+
+
+def test_a_network_that_jitters_within_the_age_limit_changes_nothing():
+    np.testing.assert_array_equal(_faded(1.0, jitter=0.02), _faded(1.0))

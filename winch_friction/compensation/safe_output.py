@@ -52,6 +52,7 @@ class SafeOutput:
         self._ramp_from, self._turns_at = math.nan, math.inf  # stamps: the ramp begins, the motion may turn; s
         self._steady, self._credit = math.nan, self.hold
         self._dt = self._against = self._carried = 0.0
+        self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
         self._bump = self._usable = self._new_time = False
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
@@ -81,9 +82,10 @@ class SafeOutput:
 
         After a silence the ramp that nobody may have published is taken as done. Stamps that run ahead of the steady
         clock by more than `hold` gain nothing: a backlog that is worked off in a burst moves the output as little as
-        the moment that it takes.
+        the moment that it takes. Stamps that fall behind it by more than `hold` hold up no way out: a fade to zero is
+        then as quick as the steady clock.
         """
-        self._dt = self._elapsed(time)
+        self._dt, self._overdue = self._elapsed(time), 0.0
         if now is not None:
             self._dt = self._paced(self._dt, now)
         self._fed = self.time = time
@@ -108,6 +110,9 @@ class SafeOutput:
     def _paced(self, dt: float, now: float) -> float:
         passed = now - self._steady if self._steady == self._steady else 0.0
         self._steady = now
+        self._behind = max(0.0, self._behind + passed - dt)
+        self._overdue = max(0.0, self._behind - self.hold)
+        self._behind -= self._overdue
         self._credit = min(self.hold, self._credit + FASTEST_STAMPS * max(0.0, passed))
         counted = min(dt, self._credit)
         self._credit -= counted
@@ -123,6 +128,8 @@ class SafeOutput:
         that nobody can steer is over by then. `motion` rad/s is the measured speed, NaN if unknown.
         """
         carried = usable and enabled
+        if not carried:
+            self._dt = min(self._dt + self._overdue, LONGEST_STEP)
         if usable and not self._usable:
             self._bump = True
         self._usable, self._asked, self._motion = usable, target, motion

@@ -199,7 +199,7 @@ def test_what_no_balance_closes_is_nobodys_effect():
     before, after = 0.16 * (WAVE + noise()), 0.158 * (WAVE + noise())
     small = replace(side(before, after), least_noise=0.1)
     small = replace(small, size_before=Size(small.size_before.value, (small.size_before.value,) * 2))
-    proof = prove("wave", side(before, before), small, np.random.default_rng(1))
+    proof = prove("wave", side(before, before, floor=0.05), small, np.random.default_rng(1))
     assert not proof.holds
     assert "any balance" in proof.why
 
@@ -209,6 +209,14 @@ def test_a_name_that_does_no_more_than_a_refit_is_refused():
     proof = proven(2.0 * WAVE + noise(), noise(), 1.001 * noise())
     assert not proof.holds
     assert "refit" in proof.why
+
+
+def test_a_refit_that_reaches_the_noise_needs_no_name():
+    """The name takes a little more off, surely: of what the model's own freedom has brought to the noise already."""
+    refit, after = side(2.0 * WAVE + noise(), 1.2 * noise(), 1.25), side(2.0 * WAVE + noise(), noise(), 1.25)
+    proof = prove("wave", refit, after, np.random.default_rng(1))
+    assert "at their noise" in proof.why
+    assert prove("wave", replace(refit, noise_floor=1.0), after, np.random.default_rng(1)).holds
 
 
 def test_one_run_that_gets_worse_refuses_a_name():

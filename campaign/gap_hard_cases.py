@@ -102,7 +102,7 @@ def _logged(columns: dict[str, np.ndarray], case: HardCase, rng: np.random.Gener
         return own
     at = np.arange(own["time"][0], own["time"][-1], 1.0 / case.rate)
     if case.rate < RIG_RATE:  # a slower logger takes instants; it does not average
-        index = np.searchsorted(own["time"], at)
+        index = np.searchsorted(own["time"], at).clip(max=len(own["time"]) - 1)
         return {name: values[index] for name, values in own.items()} | {"time": at}
     # a faster one sees the same signals with more of the same noise
     noisy = {"motor_speed": 0.05, "pressure_a": 2e4, "pressure_b": 2e4}

@@ -75,6 +75,9 @@ class Thresholds:
     as_much: float = 1.05  # times the excess that the names leave, which the freed base may leave beside them
     ordinary_shift: float = 4.0  # stated deviations: further off it is more likely an effect than a careless seed
     effect_price: float = 12.0  # twice the log-likelihood that a name must be worth: one of sixty, and its size
+    # of the excess just after reversals that an effect must explain: over drawn cranes true ones did 0.35 to 0.97,
+    # air in the oil, which none of them is, 0.24
+    reversal_share: float = 0.33
     # -- remainder
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves

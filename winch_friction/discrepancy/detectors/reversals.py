@@ -105,6 +105,9 @@ def detect(
     own = max(cross.explain(()).loss - base.loss, 0.0) if kept else 0.0
     if base.loss - trials[best].loss < LIMITS.small_left_over * own:
         return None
+    # what swings, rings or is squeezed after a reversal is imitated in part; what is there is most of it
+    if base.loss - trials[best].loss < LIMITS.reversal_share * (base.loss - cross.floor):
+        return None
     least = 1.0 if candidate.reversal_gain is None else candidate.reversal_gain
     if p[best] > SIGNIFICANCE_AFTER_REVERSALS or gain < least:
         return None

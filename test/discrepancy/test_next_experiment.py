@@ -1,6 +1,5 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
@@ -8,6 +7,7 @@ from winch_friction.records.model_file import load_model
 from winch_friction.simulation import load_scenario, simulate
 
 HIDDEN = [("pressure_offset", 1.0)]
+MOST = 3  # experiments
 
 
 def recorded(scenario: str, seed: int) -> Run:
@@ -17,16 +17,24 @@ def recorded(scenario: str, seed: int) -> Run:
     return Run(f"{scenario}_{seed}", run.columns)
 
 
-def test_running_the_proposed_scenario_resolves_the_ambiguity():
+def test_running_the_proposed_scenarios_resolves_the_ambiguity():
+    """Each experiment parts the two that it was proposed for, and a few of them leave the one that is there."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-    poor = [recorded("test_02", seed) for seed in range(6)]  # one load, one displacement
-    first = find_gap(poor, crane, model)
-    assert first.verdict == "ambiguous"
-    assert len(first.effects[0].rivals) >= 1
-    plan = first.content()["next_experiment"]
-    assert plan["expected_z"] > 3.0
-    assert set(plan["separates"]) <= {first.effects[0].name, *first.effects[0].rivals}
-    more = [recorded(plan["scenario"].removesuffix(".yaml"), seed) for seed in (50, 51, 52)]
-    second = find_gap(poor + more, crane, model, GapOptions(plan=False))
-    assert second.verdict == "missing_effect"
-    assert [effect.name for effect in second.effects] == ["pressure_offset"]
+    runs = [recorded("test_02", seed) for seed in range(6)]  # one load, one displacement
+    result, at_first = find_gap(runs, crane, model), None
+    for k in range(MOST):
+        if result.verdict != "ambiguous":
+            break
+        plan = result.content()["next_experiment"]
+        assert plan["expected_z"] > 3.0
+        together = {result.effects[0].name, *result.effects[0].rivals}
+        at_first = at_first or together
+        assert set(plan["separates"]) <= together
+        scenario = plan["scenario"].removesuffix(".yaml")
+        runs += [recorded(scenario, 50 + 10 * k + j) for j in range(3)]
+        result = find_gap(runs, crane, model)
+        assert not set(plan["separates"]) <= {result.effects[0].name, *result.effects[0].rivals}
+    assert at_first, "it was ambiguous"
+    assert len(at_first) > 1
+    assert result.verdict == "missing_effect"
+    assert [effect.name for effect in result.effects] == ["pressure_offset"]

@@ -92,10 +92,8 @@ def scale_columns(run: PreparedRun, values: Values) -> FloatArray:
 
 
 def curved_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Gain error and what the pressure adds to it, of both transducers of a group or of that at port A alone, shape
-    (samples, 2)."""
-    curve = group_columns(_curve_a if values["port_a"] else _curve, run, values)
-    return np.hstack([scale_columns(run, values), curve])
+    """Gain error that grows with the pressure, of both transducers of a group or of that at port A alone."""
+    return group_columns(_curve_a if values["port_a"] else _curve, run, values)
 
 
 def _curve(g: GroupSignals) -> FloatArray:
@@ -177,7 +175,7 @@ def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
 
 def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_curvature_a" if shape.values["port_a"] else "pressure_curvature"
-    return [*_to_scale(found, shape, sides), correction(name, found[c_p.name], groups=_groups(shape, sides))]
+    return [correction(name, found[c_p.name], groups=_groups(shape, sides))]
 
 
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
@@ -214,8 +212,8 @@ def signal_candidates() -> list[Candidate]:
         _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes, _to_scale),
         Candidate(
             "pressure_scale",
-            r"\sum_g n_g D_g\,(e_p p_g+c_p p_g^2)",
-            (e_p, c_p),
+            r"c_p\sum_g n_g D_g\,p_g^2",
+            (c_p,),
             curved_columns,
             _scale_shapes,
             kind="signal",

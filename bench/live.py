@@ -141,7 +141,7 @@ def measure(smoke: bool = False) -> list[Row]:
     if importlib.util.find_spec("rclpy") is None:
         raise InputError("the benchmark live needs rclpy, which is not installed: pip install '.[ros]'")
     os.environ |= {
-        "ROS_DOMAIN_ID": str(101 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
     }  # fmt: skip
     samples, driver = there_and_back(sea(20.0)[2]), Driver()

@@ -23,7 +23,7 @@ def test_the_start_page_can_be_typed(tmp_path, monkeypatch, capsys):
     commands = [line for block in fenced(ROOT / "docs/start.md", "sh") for line in block.splitlines()]
     assert len(commands) > 5
     for line in commands:
-        assert run(shlex.split(line)[1:]) == 0, f"{line}: {capsys.readouterr().err}"
+        assert run(shlex.split(line)[1:]) == 0, f"{line}: {capsys.readouterr()}"
     for block in fenced(ROOT / "docs/start.md", "python"):
         exec(compile(block, "docs/start.md", "exec"), {})
     assert "feedforward active" in capsys.readouterr().out

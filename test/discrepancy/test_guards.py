@@ -197,7 +197,7 @@ def test_a_name_that_leaves_the_locked_gap_as_it_was_is_refused():
 def test_what_no_balance_closes_is_nobodys_effect():
     """A fall that is sure, by so little that no winch's balance tells it."""
     before, after = 0.16 * (WAVE + noise()), 0.158 * (WAVE + noise())
-    small = replace(side(before, after), least_noise=0.1)
+    small = replace(side(before, after, floor=0.05), least_noise=0.1)
     small = replace(small, size_before=Size(small.size_before.value, (small.size_before.value,) * 2))
     proof = prove("wave", side(before, before, floor=0.05), small, np.random.default_rng(1))
     assert not proof.holds

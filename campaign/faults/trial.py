@@ -228,7 +228,8 @@ class Trial:
 
 def _mends(first: Fault, second: Fault) -> bool:
     """Whether both spoil one topic: what the second makes of the first's value may be possible again."""
-    return any(topic in first.detail and topic in second.detail for topic in NEEDED)
+    crossed = "speed and command crossed" in (first.kind, second.kind)
+    return crossed or any(topic in first.detail and topic in second.detail for topic in NEEDED)
 
 
 def _hides_the_motion(first: Fault, second: Fault) -> bool:

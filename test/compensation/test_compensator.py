@@ -347,3 +347,22 @@ def test_stamps_that_run_slowly_do_not_hold_up_a_fade():
 
 def test_a_network_that_jitters_within_the_age_limit_changes_nothing():
     np.testing.assert_array_equal(_faded(1.0, jitter=0.02), _faded(1.0))
+
+
+def test_time_that_a_ramp_has_used_is_not_used_again():
+    """Stamps run slowly, the watchdog ramps between two samples: no pair lies further apart than the slew limit."""
+    output = SafeOutput(absolute=1000.0, slew=2000.0, ramp_time=0.5, hold=0.1)
+    stamp, now, said = 0.0, 0.0, [(0.0, 0.0)]
+    for k in range(400):
+        stamp, now = stamp + (PERIOD if k < 60 else 0.3 * PERIOD), now + PERIOD
+        lost = k > 60 and k % 7 > 3
+        if k > 60 and k % 9 == 0:  # half a second without a sample; the watchdog speaks shortly before the next
+            stamp, now = stamp + 0.15, now + 0.5
+            output.decay(stamp)
+            said.append((now, output.torque))
+            stamp, now = stamp + 0.001, now + 0.001
+        output.arrive(stamp, now)
+        said.append((now, output.follow(600.0, 1000.0, usable=not lost, enabled=True, motion=-50.0 if lost else 50.0)))
+    at, torque = np.array(said).T
+    assert np.abs(torque).max() > 100.0
+    assert np.all(np.abs(np.diff(torque)) <= 2000.0 * np.maximum(np.diff(at), 1e-3) + 1e-6)

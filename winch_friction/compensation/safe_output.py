@@ -85,9 +85,12 @@ class SafeOutput:
         the moment that it takes. Stamps that fall behind it by more than `hold` hold up no way out: a fade to zero is
         then as quick as the steady clock.
         """
+        ramped = self.time > self._fed  # what has passed since the last sample is used up already
         self._dt, self._overdue = self._elapsed(time), 0.0
         if now is not None:
             self._dt = self._paced(self._dt, now)
+        if ramped:
+            self._overdue = 0.0
         self._fed = self.time = time
         return self._dt
 

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from campaign.faults.plain_kinds import (
     SWASH,
     Fault,
     Messages,
+    doubled,
     edited,
     one_of,
     set_value,
@@ -97,14 +99,10 @@ def contradicting_copies(rng: np.random.Generator) -> Fault:
     topic, factor = one_of(rng, SPEED, REFERENCE, ACTIVE_A, SWASH, LOAD), float(rng.uniform(-1.0, 2.0))
 
     def spoil(messages: Messages, _tick: int, r: np.random.Generator) -> Messages:
-        out: Messages = []
-        for name, message in messages:
-            out.append((name, message))
-            if name == topic:
-                other = copy.copy(message)
-                set_value(other, topic, lambda v: factor * v)
-                out.insert(len(out) - int(r.integers(0, 2)), (name, other))
-        return out
+        def either_first(own: Any, other: Any) -> Messages:
+            return [own, other] if r.integers(0, 2) == 0 else [other, own]
+
+        return doubled(messages, topic, lambda v: factor * v, either_first)
 
     return Fault("copies that contradict", topic, spoil)
 

@@ -257,19 +257,30 @@ def flood(rng: np.random.Generator) -> Fault:
     return Fault("flood", "x 10", spoil)
 
 
+def doubled(
+    messages: Messages, topic: str, change: Callable[[float], float], arranged: Callable[[Any, Any], Messages]
+) -> Messages:
+    """Every message of a topic with a copy of changed value, as they are `arranged`."""
+    out: Messages = []
+    for name, message in messages:
+        if name != topic:
+            out.append((name, message))
+            continue
+        other = copy.copy(message)
+        set_value(other, topic, change)
+        out += arranged((name, message), (name, other))
+    return out
+
+
 def second_publisher(rng: np.random.Generator) -> Fault:
     """Somebody else publishes the opposite of speed or command between ours."""
     topic = one_of(rng, SPEED, REFERENCE, ACTIVE_A)
 
     def spoil(messages: Messages, _tick: int, _r: np.random.Generator) -> Messages:
-        out: Messages = []
-        for name, message in messages:
-            out.append((name, message))
-            if name == topic:
-                other = copy.copy(message)
-                set_value(other, topic, lambda v: -v)
-                out += stamped([(name, other)], {name}, lambda time: time + 0.003)
-        return out
+        def later(own: Any, other: Any) -> Messages:
+            return [own, *stamped([other], {topic}, lambda time: time + 0.003)]
+
+        return doubled(messages, topic, lambda v: -v, later)
 
     return Fault("second publisher", topic, spoil, detection=1.0)
 

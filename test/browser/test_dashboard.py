@@ -20,7 +20,14 @@ def frames(stop):
         if stop.wait(0.1):
             return
         now = [[0.1 * k, 300.0 * math.sin(0.1 * k)]]
-        values = {"C1": "2", "C1 std": "0.5", "C1 status": "learned"}
+        values = {
+            "K2": "3.8e10",
+            "K2 std": "1e9",
+            "K2 status": "seed",
+            "C1": "2",
+            "C1 std": "0.5",
+            "C1 status": "learned",
+        }
         status = {
             "estimator: parameters": {"level": 0, "message": "", "values": values},
             "compensator: feedforward": {"level": 1, "message": "an input was lost", "values": {}},
@@ -58,6 +65,7 @@ def test_the_page_draws_what_comes_and_reconnects(visit, stop):
         page.wait_for_function("document.querySelector('#torque .main-svg')")
         assert "an input was lost" in page.inner_text("#faults")
         assert "learned" in page.inner_text("#estimates")
+        assert "3.8e+10" in page.inner_text("#estimates")  # not a row of zeros
         assert violations(page) == []
         assert said == []
     page.wait_for_function("document.documentElement.dataset.link === 'lost'", timeout=15000)

@@ -8,6 +8,13 @@ from pages import INK, KINDS, SCHEMES, SIZES, keep_screenshot, small_gap, violat
 pytestmark = pytest.mark.browser
 INKS = "[...document.querySelectorAll('.canvas')].filter((c) => c.layout).map((c) => c.layout.font.color)"
 
+# what a reader cannot see without finding out that it scrolls: a title wider than its card, a legend with a scroll bar
+CUT_OFF = """[
+    ...[...document.querySelectorAll(".caption, p, li, dd, h2, h3, figcaption")].filter((each) =>
+        each.scrollWidth > each.clientWidth + 1 || each.getBoundingClientRect().right > innerWidth),
+    ...[...document.querySelectorAll(".legend .scrollbar")].filter((each) => +each.getAttribute("height") > 0)
+].map((each) => each.outerHTML.slice(0, 120))"""
+
 
 @pytest.fixture(scope="module")
 def gap_page(tmp_path_factory):
@@ -42,6 +49,7 @@ def test_every_report_is_accessible_silent_and_drawn(kind, path, visit, width):
         assert violations(page) == []
         keep_screenshot(page, kind, width, scheme)
     assert said == []
+    assert page.evaluate(CUT_OFF) == []
     assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
 
 

@@ -63,7 +63,7 @@ def test_the_report_is_one_page_with_the_papers_tables(practice):
     out, _ = practice
     page = (out / "report.html").read_text(encoding="utf-8")
     assert not re.search(r"(src|href)=.https?://", page)
-    for expected in ("paper 2 Table 3", "paper 2 Table 4", "paper 2 Tables 2 and 5", "C4 [rev/min]",
+    for expected in ("paper 2 Table 3", "paper 2 Table 4", "paper 2 Tables 2 and 5", "C4 [rpm]",
                      "Huhtala: a reconstruction", "paper 1 Fig 6 and 7", "GENERATED, not measured",
                      "K1 and C5 (cosine 1.00000)"):  # fmt: skip
         assert expected in page, expected

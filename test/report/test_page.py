@@ -40,6 +40,16 @@ def test_what_people_wrote_is_escaped():
     assert "<script" not in text
 
 
+def test_a_table_can_be_folded_to_the_width_of_a_phone():
+    """Its title stands outside what scrolls, long names may break after an underscore, a hash anywhere."""
+    table = table_html(["name", "hash"], [["oil_temperature", "f612bf17f8a2f2126c7b7e7edc4f615e"]], caption="Files")
+    before, _, inside = table.partition("<table>")
+    assert "Files" in before.partition('<div class="scroll"')[0]
+    assert "Files" not in inside
+    assert "oil_<wbr>temperature" in inside
+    assert "f612bf17f8a2f212<wbr>6c7b7e7edc4f615e" in inside
+
+
 def test_pictures_follow_the_colours_of_the_page():
     text = figure_html(picture(), 'a "line"')
     assert "currentColor" in text

@@ -114,7 +114,7 @@ def _said(first: str, second: str, rows: list[dict[str, Any]]) -> str:
     sure = (
         ""
         if sigma != sigma
-        else (" - more than" if sigma > CERTAIN else " - within") + " what they do not know of themselves"
+        else (", more than" if sigma > CERTAIN else ", within") + " what they do not know of themselves"
     )
     return (
         f"{second} differs from {first} by {size:+.3g} N·m at most, at {worst['at [rpm]']:.0f} rpm and "

@@ -108,8 +108,10 @@ def next_steps(result: "GapResult") -> list[str]:
         )
     steps += [f"{e.name}: {effect_text(e.name).look}" for e in result.effects]
     if result.effects:
-        steps.append("Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the "
-                     "compensator load it (service ~/load_model); it takes over without a bump.")  # fmt: skip
+        steps.append(
+            "Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the running "
+            "compensator load it (`winch-friction load model.yaml`); it takes over without a bump."
+        )
     if result.verdict == "insufficient":
         steps += [f"Bring runs with more of it: {each.sentence}." for each in result.adequacy if not each.met]
     if result.verdict == "unexplained":

@@ -22,7 +22,7 @@ def joint_html(practice: Practice) -> str:
     columns = ("parameter", "unit", "before", "its σ", "joint fit", "σ", "σ, bootstrap")
     tied = "; ".join(f"{tie.first} and {tie.second} (cosine {tie.cosine:.5f})" for tie in system.ties) or "none"
     unseen = "; ".join(f"{direction} (seen {direction.seen:.2g})" for direction in system.unseen) or "none"
-    sensors = [[key.replace("_", " "), *pair] for key, pair in joint.sensor_errors.items()]
+    sensors = [_sensor_error(*each) for each in joint.sensor_errors.items()]
     return (
         paragraph(f"Act alike in these tests: {tied}.", "verdict")
         + paragraph(
@@ -30,9 +30,15 @@ def joint_html(practice: Practice) -> str:
             "Along them the estimate stays at the prior, and its σ says so."
         )
         + table_html(columns, rows)
-        + table_html(("sensor error", "estimate", "σ"), sensors, "Systematic errors found beside (relative, and Pa)")
+        + table_html(("sensor error", "estimate", "σ", "unit"), sensors, "Systematic errors found beside")
         + joint_breakdown_html(practice)
     )
+
+
+def _sensor_error(name: str, found: tuple[float, float]) -> list[object]:
+    """A row: an offset is a pressure, the rest are relative."""
+    unit = "Pa" if name.endswith("offset") else "1"
+    return [name.replace("_", " "), *(value_for_people(each, unit) for each in found), for_people(unit)]
 
 
 def joint_breakdown_html(practice: Practice) -> str:

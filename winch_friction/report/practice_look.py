@@ -52,8 +52,8 @@ def curve_label(curve: FrictionCurve) -> str:
 
 def label(parameter: str) -> str:
     """A parameter with its unit, C4 in rpm as the paper prints it."""
-    units = {"K1": "N·m·s", "K2": "N·s²/m⁸", "K3": "–", "K4": "N·m", "K5": "m⁵/N", "C1": "–", "C2": "N·m", "C3": "N·m",
-             "C4": "rev/min", "C5": "N·m·s", "C6": "–"}  # fmt: skip
+    units = {"K1": "N·m·s/rad", "K2": "N·s²/m⁸", "K3": "–", "K4": "N·m", "K5": "m⁵/N", "C1": "–", "C2": "N·m",
+             "C3": "N·m", "C4": "rpm", "C5": "N·m·s/rad", "C6": "–"}  # fmt: skip
     return f"{parameter} [{units.get(parameter, '')}]"
 
 

@@ -28,18 +28,18 @@ def loop_html(practice: Practice) -> str:
     """Table 4, the motor before and after, derived system friction, map against model."""
     system = practice.system
     loops = system.loops
-    columns = ["model", *(f"loop {loop.number}" for loop in loops)]
+    columns = ["parameter", *(f"loop {loop.number}" for loop in loops)]
     rows: list[list[Any]] = [
         [label(p), *(shown(loop.model, p) for loop in loops)]
         for p in (*MOTOR, *SYSTEM)
         if p in loops[0].model.as_dict() or p in SYSTEM
     ]
-    rows.append(["E", *(loop.cost for loop in loops)])
+    rows.append(["cost E", *(loop.cost for loop in loops)])
     if system.held_out_costs:
-        rows.append(["E on held-out tests", *system.held_out_costs])
+        rows.append(["cost E on held-out tests", *system.held_out_costs])
     return (
         paragraph(_loop_verdict(practice), "verdict")
-        + table_html(columns, rows, "Optimized friction parameters (paper 2 Table 4)")
+        + table_html(columns, rows, "Optimised friction parameters (paper 2 Table 4)")
         + motor_change_html(practice)
         + derived_html(practice)
         + map_derived_html(practice)

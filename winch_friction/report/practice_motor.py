@@ -38,7 +38,7 @@ def ranking_html(motor: MotorIdentification) -> str:
          score.fitted.parameter_count, score.fitted.rms, score.held_out, score.bic]
         for score in motor.scores
     ]  # fmt: skip
-    columns = ("model", "year", "displacement", "parameters", "RMS N·m", "held-out RMS N·m", "BIC")
+    columns = ("model", "year", "displacement", "parameters", "RMS [N·m]", "held-out RMS [N·m]", "BIC")
     notes = "; ".join(f"{each.title}: {each.note}" for each in described.values() if each.note)
     verdict = (
         f"Used: {described[motor.chosen.name].title}. Held-out displacements, with the parameters counted, recommend "

@@ -48,7 +48,7 @@ def _tests_html(practice: Practice) -> str:
         ]
         for test in (*practice.system.tests, *practice.system.held_out)
     ]  # fmt: skip
-    columns = ("name", "displacement cm³/rev", "load t", "plateaus", "from rpm", "to rpm", "use")  # fmt: skip
+    columns = ("name", "displacement [cm³/rev]", "load [t]", "plateaus", "from [rpm]", "to [rpm]", "use")  # fmt: skip
     return table_html(columns, rows, "Evaluated test scenarios (paper 2 Tables 2 and 5)") + plateau_html(practice)
 
 
@@ -79,14 +79,14 @@ def friction_html(curves: Sequence[FrictionCurve]) -> str:
 def _system_html(practice: Practice) -> str:
     fits = practice.system.fits
     first = next(iter(fits))
-    columns = ["model", *fits]
+    columns = ["parameter", *fits]
     rows = [[label(p), *(shown(each.model, p) for each in fits.values())] for p in SYSTEM]
-    rows.append(["E", *(each.cost for each in fits.values())])
+    rows.append(["cost E", *(each.cost for each in fits.values())])
     rows.append(["model evaluations", *(each.evaluations for each in fits.values())])
     said = f"Eq 7 with the supplier's motor model, cost of eq 9; condition number {fits[first].condition:.3g} for eq 8."
     return (
         paragraph(said)
-        + table_html(columns, rows, "Optimized system friction parameters (paper 2 Table 3)")
+        + table_html(columns, rows, "Optimised system friction parameters (paper 2 Table 3)")
         + breakdown_html(practice)
     )
 

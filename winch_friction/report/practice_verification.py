@@ -25,7 +25,7 @@ def verification_sections(practice: Practice) -> list[TextSection]:
 
 def _friction_html(practice: Practice) -> str:
     names = list(practice.errors)
-    columns = ["test", "use", "nominal N·m"]
+    columns = ["test", "use", "nominal [N·m]"]
     columns += [f"{_SHORT.get(model, model)} {where}250" for model in names for where in ("≥", "<")]
     fitted = len(practice.system.tests)
     rows: list[list[Any]] = []
@@ -80,7 +80,7 @@ def _check_rows(checks: dict[str, list[PressureCheck]]) -> list[list[Any]]:
     ]  # fmt: skip
 
 
-_COLUMNS = ("run", "model", "RMS turning, bar", "RMS all, bar", "mean hoisting, bar", "mean lowering, bar")  # fmt: skip
+_COLUMNS = ("run", "model", "RMS turning [bar]", "RMS all [bar]", "mean hoisting [bar]", "mean lowering [bar]")
 
 
 def _normal_html(practice: Practice) -> str:

@@ -18,6 +18,7 @@ from winch_friction.report.replay_picture import most_learned
 from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
 
 TIME = "time [s]"
+NEXT = "<h3>What to do next</h3>"
 TAUGHT = ("learning", "learned", "frozen")  # statuses of parameters that the recording told something about
 
 
@@ -25,7 +26,9 @@ def write_replay_page(path: Path, result: Replayed, seed: FrictionModel, provena
     """Write the page; opens offline."""
     content = summary(result)
     sections = [
-        TextSection("Decision", decision_html(sentence(content), facts(content), list_html(next_steps(content)))),
+        TextSection(
+            "Decision", decision_html(sentence(content), facts(content), NEXT + list_html(next_steps(content)))
+        ),
         TextSection("Friction torque and speed", plot_html(torque_plot(result.compensator, result.estimator))),
         TextSection("What was learned", learned_html(result, seed)),
     ]
@@ -47,7 +50,7 @@ def sentence(content: Mapping[str, Any]) -> str:
         f"{len(learned)} of {len(content['parameters'])} parameters were learned" if learned else "nothing was learned"
     )
     torque = number(content["feedforward_rms_Nm"], 3)
-    return f"The feedforward carried {torque} N·m RMS, {content['active_share']:.0%} of the time; {said}."
+    return f"The feedforward carried {torque} N·m RMS, {100 * content['active_share']:.0f} % of the time; {said}."
 
 
 def facts(content: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -57,8 +60,8 @@ def facts(content: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [
         ("Largest feedforward", f"{number(content['feedforward_peak_Nm'], 3)} N·m"),
         ("Recording", f"{content['duration_s']:.0f} s, {content['samples']} samples"),
-        ("Samples that the estimator took", f"{content['accepted_share']:.1%}"),
-        ("Innovations inside their 95 % band", f"{inside:.0%}" if known else ""),
+        ("Samples that the estimator took", f"{100 * content['accepted_share']:.1f} %"),
+        ("Innovations inside their 95 % band", f"{100 * inside:.0f} %" if known else ""),
     ]
 
 
@@ -124,7 +127,7 @@ def parameter_plot(estimator: Run, seed: FrictionModel, shown: list[str]) -> Plo
         columns |= dict(zip(labels, (value, value - std, value + std), strict=True))
         rows.append(labels[0])
         lines.append(Line("± 1 σ", TIME, labels[1], row=k, kind="band", upper=labels[2], role="noise"))
-        lines.append(Line(name, TIME, labels[0], row=k, role="after"))
+        lines.append(Line("learned", TIME, labels[0], row=k, role="after"))
         columns[f"seed {name} [{unit}]"] = np.full(len(estimator), value_for_people(seed.value(name), units[name]))
         lines.append(Line("seed", TIME, f"seed {name} [{unit}]", row=k, role="before"))
     return Plot("Learned parameters", [Frame("estimator", columns)], lines, TIME, rows,

@@ -15,10 +15,11 @@ def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: s
     numeric = [bool(rows) and all(_is_number(row[k]) for row in rows) for k in range(len(columns))]
     head = "".join(f'<th scope="col"{_class(n)}>{escape(name)}</th>' for name, n in zip(columns, numeric, strict=True))
     body = "".join("<tr>" + _cells(row, numeric, digits) + "</tr>" for row in rows)
-    title = f"<caption>{escape(caption)}</caption>" if caption else ""
-    table = f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    # above what scrolls: as the table's own caption it would be as wide as the table, and cut off on a phone
+    title = f'<p class="caption">{escape(caption)}</p>' if caption else ""
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     label = escape(caption or "table: " + ", ".join(columns), quote=True)
-    return f'<div class="scroll" tabindex="0" role="group" aria-label="{label}">{table}</div>'
+    return f'{title}<div class="scroll" tabindex="0" role="group" aria-label="{label}">{table}</div>'
 
 
 def paragraph(text: str, kind: str = "") -> str:
@@ -42,6 +43,7 @@ def number(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}"
 
 
+_SENTENCE = 40  # characters from which a cell counts as a sentence
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # the unit that people read a quantity in; one per quantity on every page and in every table
 _PEOPLE = {"rad/s": ("rpm", 1.0 / RPM), "Pa": ("bar", 1.0 / BAR), "kg": ("t", 1e-3), "degC": ("°C", 1.0),
@@ -62,14 +64,29 @@ def value_for_people(value: float, unit: str) -> float:
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:
-    return "".join(f"<td{_class(n)}>{_shown(value, digits)}</td>" for value, n in zip(row, numeric, strict=True))
+    return "".join(
+        f"<td{_class(n) or _wide(value)}>{_shown(value, digits)}</td>" for value, n in zip(row, numeric, strict=True)
+    )
+
+
+def _wide(value: Any) -> str:
+    """Sentences keep a width that can be read, whatever else stands in the row."""
+    return ' class="words"' if len(str(value)) > _SENTENCE and " " in str(value) else ""
+
+
+def _foldable(text: str) -> str:
+    """Escaped text that may break after `_` and `/`, and every 16 characters of a hash; symbols stay whole."""
+    if len(text) < 12:
+        return escape(text)
+    marked = re.sub(r"[0-9A-Za-z]{16}(?=[0-9A-Za-z]{8})|[_/](?=\w)", lambda found: found[0] + "\0", text)
+    return escape(marked).replace("\0", "<wbr>")
 
 
 def _shown(value: Any, digits: int) -> str:
     if value is None:
         return "–"
     if isinstance(value, bool) or not _is_number(value):
-        return escape(str(value))
+        return _foldable(str(value))
     return str(value) if isinstance(value, int) else number(float(value), digits)
 
 

@@ -14,7 +14,7 @@ from winch_friction.replay.live import AGREEMENT, Comparison
 from winch_friction.report.base import Section, TextSection
 from winch_friction.report.decision import decision_html
 from winch_friction.report.plots import plot_html
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import for_people, paragraph, table_html, value_for_people
 
 
 def sections(
@@ -45,10 +45,13 @@ def _decision(plan: DemoPlan, rows: list[PhaseFigures], agreements: Sequence[Com
     sentence = (
         f"The feedforward of the learned model ({plan.feedforwards[-1].title}) leaves "
         f"{min(r.residual for r in last) * 1e3:.1f} to {max(r.residual for r in last) * 1e3:.1f} mm RMS of the heave: "
-        f"{gains[0]:.0%} to {gains[-1]:.0%} less than "
+        f"{100 * gains[0]:.0f} to {100 * gains[-1]:.0f} % less than "
         "without feedforward."
     )
-    facts = [(each.title, _range(of_feedforward(rows, each.name))) for each in plan.feedforwards]
+    facts = [
+        (f"Left of the heave by leg, {each.title}", _range(of_feedforward(rows, each.name)))
+        for each in plan.feedforwards
+    ]
     same = all(each.equal for each in agreements)
     facts.append(("Live equals replay", "yes" if same else "NO"))
     return decision_html(sentence, facts)
@@ -83,7 +86,7 @@ def residual_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
 
 
 def _residual(row: PhaseFigures) -> str:
-    return f"{row.residual * 1e3:.1f}" + (f" (−{row.gain:.0%})" if row.phase.feedforward.enabled else "")
+    return f"{row.residual * 1e3:.1f}" + (f" (−{100 * row.gain:.0f} %)" if row.phase.feedforward.enabled else "")
 
 
 def error_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
@@ -94,7 +97,7 @@ def error_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
         for each in plan.feedforwards
         for row in of_feedforward(rows, each.name)
     ]
-    caption = "RMS error in N m and as a share of the true friction, of the model behind the feedforward (sent / scale)"
+    caption = "RMS error in N·m and as a share of the true friction, of the model behind the feedforward (sent / scale)"
     reversal = (
         "Below 50 rpm no model can be right: the feedforward spreads the change of sign over time on purpose, and at "
         "rest friction is whatever holds the load."
@@ -103,7 +106,7 @@ def error_table(plan: DemoPlan, rows: list[PhaseFigures]) -> str:
 
 
 def _error(error: float, share: float) -> str:
-    return "–" if np.isnan(error) else f"{error:.0f} ({share:.0%})"
+    return "–" if np.isnan(error) else f"{error:.0f} ({100 * share:.0f} %)"
 
 
 def search_table(plan: DemoPlan, search: EfficiencySearch) -> str:
@@ -122,7 +125,11 @@ def search_table(plan: DemoPlan, search: EfficiencySearch) -> str:
 
 def learned_table(parameters: Sequence[LearnedParameter]) -> str:
     """Seed, learned and true parameters, with the stated sigma."""
-    body = [(p.name, p.unit, p.seed, p.learned, p.std, p.truth, f"{p.sigmas:+.1f}") for p in parameters]
+    body = [
+        (p.name, for_people(p.unit), *(value_for_people(each, p.unit) for each in (p.seed, p.learned, p.std, p.truth)),
+         f"{p.sigmas:+.1f}".replace("-", "−"))
+        for p in parameters
+    ]  # fmt: skip
     columns = ("parameter", "unit", "seed", "learned", "stated σ", "truth", "(learned − truth)/σ")
     inside = sum(abs(p.sigmas) <= 2.0 for p in parameters)
     note = (

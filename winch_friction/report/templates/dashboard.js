@@ -38,7 +38,7 @@
       const data = traces(panel, c), place = document.getElementById(panel.id);
       place.parentElement.hidden = !data.length;
       if (data.length) Plotly.react(place, data, {paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: {color: c.ink, family: "system-ui"},
-        margin: {l: 60, r: 10, t: 8, b: 42}, legend: {orientation: "h", y: 1, yanchor: "bottom", font: {color: c.ink}}, uirevision: "kept", showlegend: true,
+        margin: {l: 60, r: 10, t: 8, b: 42}, legend: {orientation: "h", y: 1, yanchor: "bottom", font: {color: c.ink}, itemsizing: "constant"}, uirevision: "kept", showlegend: true,
         xaxis: {...axis, title: {text: panel.x || "time before now [s]", font: {color: c.ink}}}, yaxis: {...axis, title: {text: panel.y, font: {color: c.ink}}}},
         {responsive: true, displaylogo: false, displayModeBar: "hover"});
     }
@@ -46,12 +46,20 @@
   const fill = (id, rows) => {
     const body = document.getElementById(id), made = rows.map((cells) => {
       const row = document.createElement("tr");
-      for (const cell of cells) row.append(Object.assign(document.createElement("td"), {textContent: cell}));
+      for (const cell of cells) {
+        const place = document.createElement("td");
+        String(cell).split(/(?<=[_/])(?=\w)/).forEach((part, k) => place.append(...(k ? [document.createElement("wbr"), part] : [part])));
+        row.append(place);
+      }
       return row;
     });
     body.replaceChildren(...made);
   };
-  const short = (v) => (Number.isFinite(v) ? +v.toPrecision(4) : "–");
+  const short = (v) => {
+    if (!Number.isFinite(v)) return "–";
+    const size = Math.abs(v), powers = size && (size < 1e-3 || size >= 1e6);  // as the pages' tables
+    return powers ? v.toExponential(3).replace(/\.?0+e/, "e") : String(+v.toPrecision(4));
+  };
   const show = (frame) => {
     keep(frame.points);
     fill("state", frame.state);

@@ -93,7 +93,7 @@
     const rows = Math.max(content.rows.length, 1), made = {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: {color: c.ink, size: narrow() ? 11 : 13, family: "system-ui, sans-serif"},
       margin: {l: narrow() ? 52 : 66, r: 12, t: 10, b: 48}, hovermode: "x unified", hoverlabel: {bgcolor: c.card, bordercolor: c.faint, font: {color: c.ink}},
-      legend: {orientation: "h", y: 1.0, yanchor: "bottom", x: 0, font: {color: c.ink}}, barmode: "group", dragmode: narrow() ? false : "zoom",
+      legend: {orientation: "h", y: 1.0, yanchor: "bottom", x: 0, font: {color: c.ink}, itemsizing: "constant", maxheight: 4000}, barmode: "group", dragmode: narrow() ? false : "zoom",
       modebar: {bgcolor: "rgba(0,0,0,0)", color: c.faint, activecolor: c.ink}};
     const gap = Math.min(0.05, 0.2 / rows), height = (1 - gap * (rows - 1)) / rows;
     for (let row = 0; row < rows; row++) {
@@ -125,7 +125,16 @@
   };
 
   const options = {responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"]};
+  // a legend takes its rows from the picture's height: where it has many, the picture grows
+  const grow = (each) => {
+    const labels = [...new Set(each.content.lines.map(([label]) => label))], room = Math.max(each.canvas.clientWidth - 80, 150);
+    const wide = Math.max(...labels.map((label) => label.length), 1) * 6.6 + 46;
+    const rows = labels.length ? Math.ceil(labels.length / Math.max(1, Math.floor(room / wide))) : 0;
+    each.tall = each.tall || each.canvas.clientHeight;
+    each.canvas.style.height = each.tall + 21 * Math.max(0, rows - 2) + "px";
+  };
   const draw = (each) => {
+    grow(each);
     const c = look(), heat = each.content.heats.length > 0;
     const [data, made] = heat ? drawHeats(each.content, c) : [traces(each.content, c), layout(each.content, c)];
     if (each.drawn && !heat) {  // a change of theme keeps the zoom

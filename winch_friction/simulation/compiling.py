@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 import winch_friction.physics.friction.symbols as symbols
 import winch_friction.physics.units as units
 from winch_friction.physics.compiling import cache_root, compiled_in, source_digest
+
+tuple_of: Any = to_fixed_tuple  # the first so many values of an array as a tuple, in compiled code
 
 
 def compiled(function: Callable[..., Any]) -> Any:
@@ -19,6 +22,11 @@ def compiled(function: Callable[..., Any]) -> Any:
         return compiled_in(_directory(), function)
     except RuntimeError:  # no place to write: compile anew in every process
         return numba.njit(error_model="numpy")(function)
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """`numba.njit` of a function that becomes part of its callers' code; these are what is kept in the cache."""
+    return numba.njit(error_model="numpy", forceinline=True)(function)
 
 
 def in_order(function: Any, *given: str, **named: Any) -> tuple[Any, ...]:

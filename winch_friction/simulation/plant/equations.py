@@ -6,37 +6,14 @@ One function per part; each reads the plant's record, none knows the controller.
 import math
 
 from winch_friction.physics.units import GRAVITY
-from winch_friction.simulation.compiling import compiled
+from winch_friction.simulation.compiling import inlined
 from winch_friction.simulation.hidden.torque import fixed_torque, group_loss, shaft_loss
 from winch_friction.simulation.plant.friction_kernel import friction_torque
-from winch_friction.simulation.plant.point import (
-    GROUPS,
-    STRIDE,
-    X_ANGLE,
-    X_COUNT,
-    X_DIRECTION,
-    X_DISPLACEMENT,
-    X_DRUM,
-    X_LAYER,
-    X_MAGNITUDE,
-    X_MOTORS,
-    X_OIL,
-    X_PRESSURE,
-    X_PRESSURE_SUM,
-    X_SPEED,
-    X_TIME,
-    X_WIRE,
-)
+from winch_friction.simulation.plant.point import Point
 from winch_friction.simulation.plant.state import (
     ANGLE,
-    DIRECTION,
     DRIVE,
     DRIVE_RATE,
-    DWELL,
-    E_FRICTION,
-    E_HEAVE,
-    E_IN,
-    E_LOST,
     GAS_T,
     GAS_V,
     LOAD,
@@ -45,13 +22,14 @@ from winch_friction.simulation.plant.state import (
     P_B,
     SPEED,
     TIP,
+    State,
 )
 
 _ATMOSPHERE = 1.0e5  # Pa
 _AIR_EXPONENT = 1.4
 
 
-@compiled
+@inlined
 def compressibility(p, pressure):
     """dV/dp of one line, m^3/Pa: oil of constant bulk modulus and free air, compressed adiabatically."""
     oil = 1.0 / p.bulk_modulus
@@ -61,7 +39,7 @@ def compressibility(p, pressure):
     return p.line_volume * (oil + p.air / _AIR_EXPONENT * (_ATMOSPHERE / q) ** (1.0 / _AIR_EXPONENT) / q)
 
 
-@compiled
+@inlined
 def compression_energy(p, pressure):
     """Energy in one line, J: the integral of p dV."""
     energy = 0.5 * pressure * pressure / p.bulk_modulus
@@ -71,7 +49,7 @@ def compression_energy(p, pressure):
     return p.line_volume * energy
 
 
-@compiled
+@inlined
 def submerged_share(p, load, surface):
     """Share of the body under the water, 0 ... 1."""
     if p.buoyancy == 0.0:
@@ -79,13 +57,13 @@ def submerged_share(p, load, surface):
     return min(max((p.surface + surface - load) / p.body_height, 0.0), 1.0)
 
 
-@compiled
+@inlined
 def gas_pressure(p, state):
     """Pressure of the passive side's accumulator, Pa."""
     return p.gas_pressure * p.gas_volume / state[GAS_V] * state[GAS_T]
 
 
-@compiled
+@inlined
 def reported_gas_pressure(p, state):
     """What the PLC holds for the accumulator's pressure: measured, or calculated from the wire's motion, Pa."""
     if p.calculated_exponent == 0.0:
@@ -94,13 +72,13 @@ def reported_gas_pressure(p, state):
     return p.gas_pressure * (p.gas_volume / volume) ** p.calculated_exponent
 
 
-@compiled
+@inlined
 def line_drop(p, flow):
     """Pressure lost between transducers and motors at a flow, Pa."""
     return p.line_resistance * flow * abs(flow)
 
 
-@compiled
+@inlined
 def wire_tension(p, state, heave_rate):
     """Tension of the elastic wire, N; none when it is slack."""
     stretch = p.mass * GRAVITY / p.wire_stiffness + state[TIP] + p.metres_per_radian * state[ANGLE] - state[LOAD]
@@ -111,71 +89,76 @@ def wire_tension(p, state, heave_rate):
     return elastic + p.wire_damping * rate, elastic, rate
 
 
-@compiled
+@inlined
 def drum_torque(p, state, share):
     """Static torque at the drum, m g R less buoyancy, N m; the wire that hangs out counts where it has a mass."""
     paid_out = -p.metres_per_radian * state[ANGLE]
     return ((p.mass + p.wire_mass * paid_out) * GRAVITY - share * p.buoyancy) * p.radius
 
 
-@compiled
-def fill_operating_point(p, state, x, direction, time, drum, layer, oil_temperature, dp, dp_passive, passive_sum):
+@inlined
+def operating_point(p, state, direction, acceleration, time, drum, oil_temperature, dp, dp_passive, passive_sum):
     """The operating point of the friction functions (the order of `physics.friction.symbols.layout`)."""
     speed = state[SPEED]
-    x[X_DIRECTION] = direction
-    x[X_MAGNITUDE] = abs(speed)
-    x[X_SPEED] = speed
-    x[X_DRUM] = drum
-    x[X_OIL] = oil_temperature
-    x[X_TIME] = p.start_time + time
-    x[X_ANGLE] = state[ANGLE]
-    x[X_LAYER] = layer
-    x[X_WIRE] = p.wire_out - p.metres_per_radian * state[ANGLE]
-    x[X_MOTORS] = p.count + p.passive_count
-    x[X_COUNT] = p.count
-    x[X_PRESSURE] = abs(dp)
-    x[X_PRESSURE_SUM] = state[P_A] + state[P_B] if p.secondary == 0.0 else 2.0 * p.boost_pressure + abs(dp)
-    x[X_DISPLACEMENT] = p.displacement
-    x[X_COUNT + STRIDE] = p.passive_count
-    x[X_PRESSURE + STRIDE] = abs(dp_passive)
-    x[X_PRESSURE_SUM + STRIDE] = passive_sum
-    x[X_DISPLACEMENT + STRIDE] = p.passive_displacement
+    pressure_sum = state[P_A] + state[P_B] if p.secondary == 0.0 else 2.0 * p.boost_pressure + abs(dp)
+    return Point(
+        direction=direction,
+        speed_magnitude=abs(speed),
+        speed=speed,
+        drum_torque=drum,
+        acceleration=acceleration,
+        oil_temperature=oil_temperature,
+        time=p.start_time + time,
+        shaft_angle=state[ANGLE],
+        wire_layer=p.layer,
+        wire_out=p.wire_out - p.metres_per_radian * state[ANGLE],
+        motor_total=p.count + p.passive_count,
+        count_driven=p.count,
+        pressure_driven=abs(dp),
+        pressure_sum_driven=pressure_sum,
+        displacement_driven=p.displacement,
+        count_passive=p.passive_count,
+        pressure_passive=abs(dp_passive),
+        pressure_sum_passive=passive_sum,
+        displacement_passive=p.passive_displacement,
+    )
 
 
-@compiled
-def hidden_torque(p, hidden, state, x, memory, direction, model_torque, tension):
+@inlined
+def hidden_torque(p, hidden, x, bond, model_torque, tension):
     """Friction of the hidden effects at the shaft, N m against hoisting."""
     gear_ratio = p.radius / p.metres_per_radian
-    w = x[X_MAGNITUDE]
-    level = shaft_loss(hidden, x[X_MOTORS], w, x[X_DRUM], gear_ratio, tension * p.metres_per_radian, x[X_TIME])
-    for group in range(GROUPS):
-        at = group * STRIDE
-        level += group_loss(
-            hidden, x[X_COUNT + at], x[X_PRESSURE + at], x[X_PRESSURE_SUM + at], x[X_DISPLACEMENT + at],
-            p.max_displacement, w,
-        )  # fmt: skip
-    dwell = model_torque * hidden.dwell_share * memory[DWELL]
-    return direction * level + dwell + fixed_torque(hidden, direction, state[ANGLE], x[X_DRUM], gear_ratio)
+    w = x.speed_magnitude
+    level = shaft_loss(hidden, x.motor_total, w, x.drum_torque, gear_ratio, tension * p.metres_per_radian, x.time)
+    level += group_loss(
+        hidden, x.count_driven, x.pressure_driven, x.pressure_sum_driven, x.displacement_driven, p.max_displacement, w
+    )
+    level += group_loss(
+        hidden, x.count_passive, x.pressure_passive, x.pressure_sum_passive, x.displacement_passive,
+        p.max_displacement, w,
+    )  # fmt: skip
+    dwell = model_torque * hidden.dwell_share * bond
+    return x.direction * level + dwell + fixed_torque(hidden, x.direction, x.shaft_angle, x.drum_torque, gear_ratio)
 
 
-@compiled
-def total_friction(p, hidden, address, x, theta, z, memory, state, tension):
+@inlined
+def total_friction(p, hidden, terms, x, bond, tension):
     """Friction torque of model and hidden effects, N m against hoisting."""
-    torque = friction_torque(address, x, theta, z)
+    torque = friction_torque(terms.torque, x, terms.theta, terms.z)
     if hidden.present > 0.0:
-        torque += hidden_torque(p, hidden, state, x, memory, x[X_DIRECTION], torque, tension)
+        torque += hidden_torque(p, hidden, x, bond, torque, tension)
     return torque
 
 
-@compiled
-def motion_direction(p, memory, speed):
+@inlined
+def motion_direction(p, bristle, speed):
     """What multiplies an opposing term: the bristle's deflection, or a smooth sign."""
     if p.direction_width > 0.0:
         return math.tanh(speed / p.direction_width)
-    return memory[DIRECTION]
+    return bristle
 
 
-@compiled
+@inlined
 def valve_flow(p, pressure):
     """Boost inflow and relief outflow of one line, m^3/s."""
     boost = p.valve_gain * max(p.boost_pressure - pressure, 0.0)
@@ -183,9 +166,12 @@ def valve_flow(p, pressure):
     return boost, relief
 
 
-@compiled
-def closed_loop(p, state, rate, command):
-    """Pump-controlled active loop: pump, line pressures, leakage, boost and relief. Returns the motors' pressure."""
+@inlined
+def closed_loop(p, state, command):
+    """Pump-controlled active loop: pump, line pressures, leakage, boost and relief.
+
+    Returns the motors' pressure, the rates of both pressures, the drive and its rate, power put in and lost.
+    """
     motor_flow = p.count * p.displacement * state[SPEED]
     across = p.count * p.leakage * (state[P_A] - state[P_B])
     boost_a, relief_a = valve_flow(p, state[P_A])
@@ -193,41 +179,36 @@ def closed_loop(p, state, rate, command):
     case_a, case_b = p.count * p.case_leakage * state[P_A], p.count * p.case_leakage * state[P_B]
     inflow_a = state[DRIVE] - motor_flow - across - case_a + boost_a - relief_a
     inflow_b = -state[DRIVE] + motor_flow + across - case_b + boost_b - relief_b
-    rate[P_A] = inflow_a / compressibility(p, state[P_A])
-    rate[P_B] = inflow_b / compressibility(p, state[P_B])
     drop = line_drop(p, motor_flow)
-    rate[E_IN] += state[DRIVE] * (state[P_A] - state[P_B]) + (boost_a + boost_b) * p.boost_pressure
-    rate[E_LOST] += across * (state[P_A] - state[P_B]) + drop * motor_flow
-    rate[E_LOST] += (case_a + relief_a) * state[P_A] + (case_b + relief_b) * state[P_B]
-    rate[E_LOST] += boost_a * (p.boost_pressure - state[P_A]) + boost_b * (p.boost_pressure - state[P_B])
+    power_in = state[DRIVE] * (state[P_A] - state[P_B]) + (boost_a + boost_b) * p.boost_pressure
+    lost = across * (state[P_A] - state[P_B]) + drop * motor_flow
+    lost += (case_a + relief_a) * state[P_A] + (case_b + relief_b) * state[P_B]
+    lost += boost_a * (p.boost_pressure - state[P_A]) + boost_b * (p.boost_pressure - state[P_B])
+    drive, pull = (command - state[DRIVE]) / p.pump_lag, 0.0
     if p.pump_bandwidth > 0.0:
-        rate[DRIVE] = state[DRIVE_RATE]
+        drive = state[DRIVE_RATE]
         pull = p.pump_bandwidth * (command - state[DRIVE]) - 2.0 * p.pump_damping * state[DRIVE_RATE]
-        rate[DRIVE_RATE] = p.pump_bandwidth * pull
-    else:
-        rate[DRIVE] = (command - state[DRIVE]) / p.pump_lag
-        rate[DRIVE_RATE] = 0.0
-    return state[P_A] - state[P_B] - drop
+        pull *= p.pump_bandwidth
+    rate_a, rate_b = inflow_a / compressibility(p, state[P_A]), inflow_b / compressibility(p, state[P_B])
+    return state[P_A] - state[P_B] - drop, rate_a, rate_b, drive, pull, power_in, lost
 
 
-@compiled
-def torque_drive(p, state, rate, command):
-    """Torque-commanded drive: the pressure follows the command with a lag. Returns the motors' pressure."""
-    rate[P_A] = 0.0
-    rate[P_B] = 0.0
-    rate[DRIVE] = (command - state[DRIVE]) / p.torque_lag
-    rate[DRIVE_RATE] = 0.0
-    rate[E_IN] += state[DRIVE] * state[SPEED]
-    return state[DRIVE] / (p.count * p.displacement)
+@inlined
+def torque_drive(p, state, command):
+    """Torque-commanded drive: the pressure follows the command with a lag. Returns what `closed_loop` does."""
+    drive = (command - state[DRIVE]) / p.torque_lag
+    return state[DRIVE] / (p.count * p.displacement), 0.0, 0.0, drive, 0.0, state[DRIVE] * state[SPEED], 0.0
 
 
-@compiled
-def passive_side(p, state, rate):
-    """Passive motors on the accumulator. Returns their torque at the shaft, pressure and pressure sum."""
+@inlined
+def passive_side(p, state):
+    """Passive motors on the accumulator.
+
+    Returns their torque at the shaft, pressure and pressure sum, the rates of the gas's volume and temperature, power
+    put in and lost.
+    """
     if p.passive_count == 0.0:
-        rate[GAS_V] = 0.0
-        rate[GAS_T] = 0.0
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     pressure = gas_pressure(p, state)
     motor_flow = p.passive_count * p.passive_displacement * state[SPEED]
     drop = line_drop(p, motor_flow)
@@ -235,16 +216,15 @@ def passive_side(p, state, rate):
     leak = p.passive_count * p.leakage * net
     volume_rate = motor_flow + leak - p.make_up
     heat = (1.0 - state[GAS_T]) / p.gas_time if p.gas_time > 0.0 else 0.0
-    rate[GAS_V] = volume_rate
-    rate[GAS_T] = -(p.gas_exponent - 1.0) * state[GAS_T] * volume_rate / state[GAS_V] + heat
-    rate[E_IN] += p.make_up * net - p.passive_low * volume_rate
-    rate[E_LOST] += leak * net + drop * motor_flow
-    rate[E_LOST] -= p.gas_pressure * p.gas_volume / (p.gas_exponent - 1.0) * heat
+    warming = -(p.gas_exponent - 1.0) * state[GAS_T] * volume_rate / state[GAS_V] + heat
+    power_in = p.make_up * net - p.passive_low * volume_rate
+    lost = leak * net + drop * motor_flow - p.gas_pressure * p.gas_volume / (p.gas_exponent - 1.0) * heat
     at_motors = net - drop
-    return p.passive_count * p.passive_displacement * at_motors, at_motors, pressure + p.passive_low
+    torque = p.passive_count * p.passive_displacement * at_motors
+    return torque, at_motors, pressure + p.passive_low, volume_rate, warming, power_in, lost
 
 
-@compiled
+@inlined
 def water_force(p, state, share):
     """Buoyancy and drag on the body, N upwards."""
     if p.buoyancy == 0.0:
@@ -252,34 +232,49 @@ def water_force(p, state, share):
     return share * (p.buoyancy - p.water_drag * state[LOAD_SPEED] * abs(state[LOAD_SPEED]))
 
 
-@compiled
-def rates(p, hidden, address, theta, z, memory, x, state, rate, time, command, heave_rate, surface, oil_temperature):
-    """Time derivatives of all states into `rate`. Returns friction torque, tension, drum torque."""
-    rate[E_IN] = rate[E_LOST] = 0.0  # the only ones that are summed
-    dp = torque_drive(p, state, rate, command) if p.secondary > 0.0 else closed_loop(p, state, rate, command)
-    passive_torque, dp_passive, passive_sum = passive_side(p, state, rate)
+@inlined
+def rates(p, hidden, terms, direction, bond, acceleration, state, time, command, heave_rate, surface, oil_temperature):
+    """Time derivatives of all states, the operating point, friction torque, tension and drum torque.
+
+    The state and what is made of it are tuples: a compiled function counts references to every array that it is given,
+    at more than the equations cost.
+    """
+    dp, rate_a, rate_b, drive, drive_pull, power_in, lost = (
+        torque_drive(p, state, command) if p.secondary > 0.0 else closed_loop(p, state, command)
+    )
+    passive_torque, dp_passive, passive_sum, volume_rate, warming, passive_in, passive_lost = passive_side(p, state)
     tension, elastic, stretch_rate = wire_tension(p, state, heave_rate)
     share = submerged_share(p, state[LOAD], surface)
     drum = drum_torque(p, state, share)
-    direction = motion_direction(p, memory, state[SPEED])
-    fill_operating_point(p, state, x, direction, time, drum, p.layer, oil_temperature, dp, dp_passive, passive_sum)
-    friction = total_friction(p, hidden, address, x, theta, z, memory, state, tension)
+    direction = motion_direction(p, direction, state[SPEED])
+    x = operating_point(p, state, direction, acceleration, time, drum, oil_temperature, dp, dp_passive, passive_sum)
+    friction = total_friction(p, hidden, terms, x, bond, tension)
     wire_weight = -p.wire_mass * p.metres_per_radian * state[ANGLE] * GRAVITY
     torque = p.count * p.displacement * dp + passive_torque - (tension + wire_weight) * p.metres_per_radian - friction
     water = water_force(p, state, share)
-    rate[ANGLE] = state[SPEED]
-    rate[SPEED] = torque / p.inertia
-    rate[TIP] = heave_rate
-    rate[LOAD] = state[LOAD_SPEED]
-    rate[LOAD_SPEED] = (tension + water) / p.mass - GRAVITY
-    rate[E_HEAVE] = tension * heave_rate
-    rate[E_FRICTION] = friction * state[SPEED]
-    rate[E_LOST] += (tension - elastic) * stretch_rate - water * state[LOAD_SPEED]
-    rate[E_LOST] += wire_weight * p.metres_per_radian * state[SPEED]
-    return friction, tension, drum
+    lost += passive_lost + (tension - elastic) * stretch_rate - water * state[LOAD_SPEED]
+    lost += wire_weight * p.metres_per_radian * state[SPEED]
+    slope = State(
+        shaft_angle=state[SPEED],
+        shaft_speed=torque / p.inertia,
+        tip=heave_rate,
+        load=state[LOAD_SPEED],
+        load_speed=(tension + water) / p.mass - GRAVITY,
+        pressure_a=rate_a,
+        pressure_b=rate_b,
+        drive=drive,
+        drive_rate=drive_pull,
+        gas_volume=volume_rate,
+        gas_temperature=warming,
+        energy_in=power_in + passive_in,
+        energy_heave=tension * heave_rate,
+        energy_friction=friction * state[SPEED],
+        energy_lost=lost,
+    )
+    return slope, x, friction, tension, drum
 
 
-@compiled
+@inlined
 def stored_energy(p, state):
     """Kinetic, potential, elastic, hydraulic and gas energy, J."""
     stretch = p.mass * GRAVITY / p.wire_stiffness + state[TIP] + p.metres_per_radian * state[ANGLE] - state[LOAD]

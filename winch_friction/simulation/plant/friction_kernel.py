@@ -5,16 +5,27 @@ The plant's own compiled code then does not depend on the model and stays in num
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.simulation.generated import c_function, python_source
 from winch_friction.simulation.plant.point import GROUPS, POINT_LENGTH
+
+
+class Terms(NamedTuple):
+    """Addresses of what the model's friction is computed with; `rates` is 0 for a model without states."""
+
+    torque: int
+    rates: int
+    theta: int
+    z: int
+    gains: int
 
 
 @dataclass(frozen=True)
@@ -68,37 +79,29 @@ def _tuples(sizes: tuple[int, int, int]) -> str:
     return ", ".join(parts)
 
 
-def _call_by_address(count: int) -> Any:
-    array = types.Array(types.float64, 1, "C")
-
-    def typed(typing_context: Any, address: Any, *arrays: Any) -> Any:
-        signature = types.float64(types.int64, *([array] * count))
-
-        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            pointers = [
-                context.make_array(kind)(context, builder, value).data
-                for kind, value in zip(sig.args[1:], args[1:], strict=True)
-            ]
-            function_type = ir.FunctionType(ir.DoubleType(), [pointer.type for pointer in pointers])
-            return builder.call(builder.inttoptr(args[0], function_type.as_pointer()), pointers)
-
-        return signature, generate
-
-    return typed
+_POINTER = ir.DoubleType().as_pointer()
 
 
-_three = _call_by_address(3)
-_four = _call_by_address(4)
+def _call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Call the C function at the first argument; a tuple is put on the stack, an address is a pointer to doubles."""
+    pointers = [
+        builder.inttoptr(value, _POINTER)
+        if isinstance(kind, types.Integer)
+        else builder.bitcast(cgutils.alloca_once_value(builder, value), _POINTER)
+        for kind, value in zip(signature.args[1:], arguments[1:], strict=True)
+    ]
+    function_type = ir.FunctionType(ir.DoubleType(), [_POINTER] * len(pointers))
+    return builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), pointers)
 
 
 def _torque(typing_context: Any, address: Any, x: Any, theta: Any, z: Any) -> Any:
-    """Call the torque function at `address` with (x, theta, z)."""
-    return _three(typing_context, address, x, theta, z)
+    """Call the torque function at `address` with the tuple x and what lies at the addresses theta and z."""
+    return types.float64(address, x, theta, z), _call
 
 
 def _rates(typing_context: Any, address: Any, x: Any, theta: Any, z: Any, out: Any) -> Any:
-    """Call the state rate function at `address`; fills `out` with gain and decay of each state."""
-    return _four(typing_context, address, x, theta, z, out)
+    """Call the state rate function at `address`; fills what lies at `out` with gain and decay of each state."""
+    return types.float64(address, x, theta, z, out), _call
 
 
 friction_torque: Any = intrinsic(_torque)

@@ -6,6 +6,7 @@ from winch_friction.physics.units import GRAVITY
 from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.control.controller import control
 from winch_friction.simulation.plant.equations import gas_pressure, reported_gas_pressure, stored_energy
+from winch_friction.simulation.plant.friction_kernel import Terms
 from winch_friction.simulation.plant.integrator import integrate_period
 from winch_friction.simulation.plant.state import (
     ANGLE,
@@ -95,6 +96,7 @@ def run_periods(
     """
     p, hidden, c = plant[0], effects[0], controller[0]
     period = c.period
+    terms = Terms(addresses[0], addresses[1], theta.ctypes.data, z.ctypes.data, gains.ctypes.data)
     for k in range(first, first + count):
         time = k * period
         p.displacement, p.boost_pressure = schedule[k, SET_DISPLACEMENT], schedule[k, SET_BOOST]
@@ -103,7 +105,7 @@ def run_periods(
         sense(p, sensing, state, measured, noise[k])
         command = control(c, control_memory, reference[k], measured, feedforward[k])
         friction, tension, drum, acceleration = integrate_period(
-            p, hidden, addresses, theta, z, gains, memory, x, state, stages, time, command,
+            p, hidden, terms, z, gains, memory, x, state, stages, time, command,
             motion[k : k + 2, TIP_SPEED:], substeps, period, oil[k],
         )  # fmt: skip
         row = history[k + 1]

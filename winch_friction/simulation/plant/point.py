@@ -1,28 +1,42 @@
-"""Where each signal stands in the operating point, read from the one table that defines it."""
+"""The operating point as the plant fills it; its order is that of the one table of signals."""
+
+from typing import NamedTuple
 
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 
 GROUPS = 2  # the driven group and the passive one; a winch without a passive group has it with no motors
 
-_WINCH = {signal.name: k for k, signal in enumerate(WINCH_SIGNALS)}
-_GROUP = {signal.name: len(WINCH_SIGNALS) + k for k, signal in enumerate(GROUP_SIGNALS)}
 
-POINT_LENGTH = len(WINCH_SIGNALS) + GROUPS * len(GROUP_SIGNALS)
-STRIDE = len(GROUP_SIGNALS)
+class Point(NamedTuple):
+    """Winch signals, then those of the driven and of the passive motors; units as in the table."""
 
-X_DIRECTION = _WINCH["direction"]
-X_MAGNITUDE = _WINCH["speed_magnitude"]
-X_SPEED = _WINCH["speed"]
-X_DRUM = _WINCH["drum_torque"]
-X_ACCELERATION = _WINCH["acceleration"]
-X_OIL = _WINCH["oil_temperature"]
-X_TIME = _WINCH["time"]
-X_ANGLE = _WINCH["shaft_angle"]
-X_LAYER = _WINCH["wire_layer"]
-X_WIRE = _WINCH["wire_out"]
-X_MOTORS = _WINCH["motor_total"]
-# of the driven group; the passive one's stand STRIDE further
-X_COUNT = _GROUP["count"]
-X_PRESSURE = _GROUP["pressure"]
-X_PRESSURE_SUM = _GROUP["pressure_sum"]
-X_DISPLACEMENT = _GROUP["displacement"]
+    direction: float
+    speed_magnitude: float
+    speed: float
+    drum_torque: float
+    acceleration: float
+    oil_temperature: float
+    time: float
+    shaft_angle: float
+    wire_layer: float
+    wire_out: float
+    motor_total: float
+    count_driven: float
+    pressure_driven: float
+    pressure_sum_driven: float
+    displacement_driven: float
+    count_passive: float
+    pressure_passive: float
+    pressure_sum_passive: float
+    displacement_passive: float
+
+
+POINT_LENGTH = len(Point._fields)
+X_ACCELERATION = Point._fields.index("acceleration")
+
+_TABLE = (
+    *(signal.name for signal in WINCH_SIGNALS),
+    *(f"{signal.name}_{group}" for group in ("driven", "passive") for signal in GROUP_SIGNALS),
+)
+if Point._fields != _TABLE:
+    raise TypeError(f"the plant's operating point is not in the order of physics.friction.symbols: {_TABLE}")

@@ -1,27 +1,35 @@
 """What the plant carries: the places of its states, of what drives it, and the record of each control period."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-STATES = (
-    "shaft_angle",  # rad
-    "shaft_speed",  # rad/s
-    "tip",  # m, crane tip above its mean, up positive
-    "load",  # m, load above where it started
-    "load_speed",  # m/s
-    "pressure_a",  # Pa, driven group
-    "pressure_b",  # Pa
-    "drive",  # m^3/s of the pump (primary) or N m of the driven group (secondary)
-    "drive_rate",  # its derivative, second-order pump
-    "gas_volume",  # m^3
-    "gas_temperature",  # relative to the wall
-    "energy_in",  # J, from pumps, boost and make-up
-    "energy_heave",  # J, from the crane tip
-    "energy_friction",  # J, taken by friction
-    "energy_lost",  # J, taken by leakage, valves, lines, wire damping, heat and water
-)
+
+class State(NamedTuple):
+    """The plant's state, or its time derivative; its energies are integrals that drive nothing."""
+
+    shaft_angle: float  # rad
+    shaft_speed: float  # rad/s
+    tip: float  # m, crane tip above its mean, up positive
+    load: float  # m, load above where it started
+    load_speed: float  # m/s
+    pressure_a: float  # Pa, driven group
+    pressure_b: float  # Pa
+    drive: float  # m^3/s of the pump (primary) or N m of the driven group (secondary)
+    drive_rate: float  # its derivative, second-order pump
+    gas_volume: float  # m^3
+    gas_temperature: float  # relative to the wall
+    energy_in: float  # J, from pumps, boost and make-up
+    energy_heave: float  # J, from the crane tip
+    energy_friction: float  # J, taken by friction
+    energy_lost: float  # J, taken by leakage, valves, lines, wire damping, heat and water
+
+
+STATES = State._fields
 ANGLE, SPEED, TIP, LOAD, LOAD_SPEED, P_A, P_B, DRIVE, DRIVE_RATE, GAS_V, GAS_T, E_IN, E_HEAVE, E_FRICTION, E_LOST = (
     range(len(STATES))
 )
+
 
 # memory that is updated exactly between the steps of the integrator
 DIRECTION, DWELL = range(2)

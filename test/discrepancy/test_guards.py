@@ -127,6 +127,16 @@ def test_the_noise_of_a_record_does_not_see_its_waves():
     )
 
 
+def test_signals_out_of_step_in_a_quick_sea_are_no_noise():
+    """What turns within the windows passes for noise unless the column of a skew says what it is."""
+    at = np.arange(600)
+    skew = np.cos(at / 1.1)
+    values = 5.0 * skew + noise()[:600]
+    assert noise_of_run(values, at) > 2.5
+    assert noise_of_run(values, at, skew=skew) == pytest.approx(1.0, rel=0.2)
+    assert noise_of_run(noise()[:600], at, skew=np.zeros(600)) == pytest.approx(1.0, rel=0.2)
+
+
 def test_correlated_blocks_count_for_a_tenth():
     """The covariance is thinned: one deviation is sqrt(10) times that of independent blocks."""
     cross = crossfit(2.0 * WAVE + noise())

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, 
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.regressors import block_size, least_noise_of
+from winch_friction.discrepancy.regressors import block_size, least_noise_of, timing_column
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.records.model_file import model_from_text, model_to_text
@@ -126,7 +126,8 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     tables = [_blocks(old, new, length) for old, new in pairs]
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
     y_before, y_after = blocks.y, blocks.x[:, 0]
-    noise = np.array([_noise(y_after, blocks, k, least_noise_of(old)) for k, (old, _) in enumerate(pairs)])
+    skew = blocks.x[:, 1]
+    noise = np.array([_noise(y_after, skew, blocks, k, least_noise_of(old)) for k, (old, _) in enumerate(pairs)])
     floor = np.sqrt(np.mean(noise[blocks.run] ** 2)) if len(blocks.run) else 0.0
     runs = tuple(old for old, _ in pairs)
     torque = np.array([drive_of(run) for run in runs])[blocks.run]
@@ -155,7 +156,7 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
     return run_blocks(
         old.time,
         old.gap / old.unit_torque,
-        (gap[:, None],),
+        (np.column_stack([gap, timing_column(old) / old.unit_torque]),),
         used,
         old.direction,
         old.channels,
@@ -164,10 +165,10 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
     )
 
 
-def _noise(values: FloatArray, blocks: Blocks, k: int, least: float) -> float:
+def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float) -> float:
     """Independent noise of one run, in the gap's unit."""
     own = blocks.run == k
-    return noise_of_run(values[own], blocks.position[own], least) if own.any() else 0.0
+    return noise_of_run(values[own], blocks.position[own], least, skew[own]) if own.any() else 0.0
 
 
 def drive_of(run: PreparedRun) -> float:

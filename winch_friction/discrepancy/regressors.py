@@ -55,6 +55,7 @@ def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, f
         shift=np.concatenate([shift, np.zeros(len(own))]),
         lower=np.concatenate([np.minimum(lower, 0.0), own[:, 1]]),
         upper=np.concatenate([np.maximum(upper, 0.0), own[:, 2]]),
+        skew=len(seed) + [name for name, *_ in TOLERANCES].index("timing"),
     )
 
 
@@ -122,8 +123,12 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSE else 1.0)
-    timing = delay_columns(run, SMALL_DELAY)[:, 0] * max(run.dt, SHORTEST_PERIOD)
-    return np.column_stack([weight, inertia, timing, run.corrections])
+    return np.column_stack([weight, inertia, timing_column(run), run.corrections])
+
+
+def timing_column(run: PreparedRun) -> FloatArray:
+    """Torque in N m per sample that the speed comes late."""
+    return delay_columns(run, SMALL_DELAY)[:, 0] * max(run.dt, SHORTEST_PERIOD)
 
 
 def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:

@@ -10,11 +10,16 @@ from scipy.special import gammaincinv
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
 
+TINY = 1e-300  # against a division by nothing, where nothing moves
 
-def noise_of_run(values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise) -> float:
+
+def noise_of_run(
+    values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise, skew: FloatArray | None = None
+) -> float:
     """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
 
-    A hundredth of what no balance closes better than, `least`, is as good as noise-free.
+    A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew` is what signals that
+    are out of step leave in the values: in a quick sea it turns within the windows, and is no noise.
     """
     floor = LIMITS.noise_floor * least
     window, order = LIMITS.noise_window, LIMITS.noise_order
@@ -25,7 +30,11 @@ def noise_of_run(values: FloatArray, position: np.ndarray, least: float = LIMITS
     grid = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
     projector = np.eye(window) - grid @ np.linalg.pinv(grid)
     freedom = window - order - 1
-    variances = ((windows @ projector) ** 2).sum(axis=1) / freedom
+    quick = windows @ projector
+    if skew is not None:
+        along = _windows(skew, position, window) @ projector
+        quick = quick - along * (along * quick).sum() / max(float((along**2).sum()), TINY)
+    variances = (quick**2).sum(axis=1) / freedom
     # that quantile of chi-squared, per degree of freedom
     expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
     return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), floor)

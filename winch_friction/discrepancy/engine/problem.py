@@ -25,6 +25,7 @@ class Base:
     shift: FloatArray  # expansion point minus seed, sigma
     lower: FloatArray
     upper: FloatArray
+    skew: int | None = None  # column of what signals out of step leave, which is never taken for noise
 
 
 @dataclass(frozen=True)
@@ -129,16 +130,18 @@ def problem_of(
     tables: Sequence[RunBlocks], layout: Layout, least_noise: FloatArray, known: Sequence[Slot] = ()
 ) -> Problem:
     """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise."""
-    noise = {
-        k: noise_of_run(t.y, t.position, least) for k, (t, least) in enumerate(zip(tables, least_noise, strict=True))
-    }
+    skews = [None if layout.base.skew is None else t.x[:, layout.base.skew] for t in tables]
+    noise = {k: noise_of_run(t.y, t.position, float(least_noise[k]), skews[k]) for k, t in enumerate(tables)}
     blocks = joined(tables, noise)
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.columns(known))
     beta = first.fit(first.grams.g.sum(axis=0), first.grams.b.sum(axis=0), first.columns(known))
     left = [t.y - t.x[:, columns] @ beta for t in tables]
-    again = {k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]))) for k, t in enumerate(tables)}
+    again = {
+        k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k]))
+        for k, t in enumerate(tables)
+    }
     return replace(_reweighted(first, again), least_noise=least_noise)
 
 

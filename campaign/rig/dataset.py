@@ -21,6 +21,7 @@ from campaign.rig.world import SHIPPED, World, draw_world
 
 Columns = dict[str, np.ndarray]
 EPOCH = 1_700_000_000.0  # Unix time of the first run
+FILLS_IN = 30.0  # s, of a buffer between PLC and logger
 DRAWN = "drawn"  # the flavour of a crane, seed model, test plan and instruments that are drawn from the data set's seed
 
 
@@ -207,15 +208,17 @@ def _log(
     reference, tip, celsius = wanted
     index, stamp = instruments.sampling(out.shape[1], 1.0 / style.rate, style.jitter, rng)
     delay = hidden.delay if hidden.delay_every == 1.0 else hidden.delay * plant.brake_hangs
-    late, early = (delay, 0.0) if style.pressure_is_late else (0.0, delay)
+    delay = delay + hidden.delay_swing * np.mod(stamp / FILLS_IN, 1.0)
+    late, early = (delay, 0.0 * delay) if style.pressure_is_late else (0.0 * delay, delay)
     at = np.clip(np.round(index - late / STEP).astype(int), 0, None)
     group = "active" if plan.ahc else "main"
     there = plant.date > hidden.pressure_after
-    offset = hidden.pressure_offset * there + hidden.pressure_warm * (celsius[index] - 40.0) / 15.0
+    warm = (celsius[index] - 40.0) / 15.0
+    offset = hidden.pressure_offset * there + hidden.pressure_drift * plant.date + hidden.pressure_warm * warm
     gain = hidden.pressure_scale + hidden.pressure_curve * p_a[at] / (200 * BAR)
     gain += hidden.pressure_bend * np.maximum(1.0 - 150 * BAR / np.maximum(p_a[at], BAR), 0.0)
     shown = instruments.filtered(angle, hidden.speed_filter) if hidden.speed_filter > 0.0 else angle
-    play = hidden.swivel_play * (1.0 if (plan.start // 60) % 2 else -1.0)
+    play = hidden.swivel_play * (1.0 if (plan.start // 60) % 2 else -1.0) + hidden.swivel_warm * warm
     columns: Columns = {
         "time": plan.start + stamp,
         "motor_speed": instruments.encoder_speed(shown, index, early, style, rng),
@@ -235,7 +238,9 @@ def _log(
     return columns | _optional(style, world, plan, plant, angle, (reference, celsius), index, rng)
 
 
-def _swash(true: float, hidden: Hidden, play: float, world: World, size: int, rng: np.random.Generator) -> np.ndarray:
+def _swash(
+    true: float, hidden: Hidden, play: np.ndarray, world: World, size: int, rng: np.random.Generator
+) -> np.ndarray:
     noise = rng.normal(0, 0.15, size) * CM3_PER_REV * world.motor_size
     return true * (1.0 + hidden.swivel_gain) + hidden.swivel + play + noise
 

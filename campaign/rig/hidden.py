@@ -83,6 +83,7 @@ class Hidden(NamedTuple):
     tare_beyond: float = 0.0  # m of wire from which on it counts
     pressure_offset: float = 0.0  # Pa, port A of the driving motors
     pressure_after: float = -1.0  # share of the dates from which on that offset is there
+    pressure_drift: float = 0.0  # Pa over all dates, that the same zero creeps
     pressure_offset_b: float = 0.0  # Pa, port B of the driving motors
     pressure_offset_passive: float = 0.0  # Pa, port A of the passive motors
     pressure_warm: float = 0.0  # Pa per 15 K above 40 degC, port A of the driving motors
@@ -92,9 +93,11 @@ class Hidden(NamedTuple):
     pressure_bend: float = 0.0  # relative of what is above 150 bar, port A of the driving motors
     delay: float = 0.0  # s, of the speed signal
     delay_every: float = 1.0  # share of the runs that it is in
+    delay_swing: float = 0.0  # s, to which a buffer fills every half minute before it is emptied
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative
+    swivel_warm: float = 0.0  # m^3/rad per 15 K above 40 degC
     swivel_play: float = 0.0  # m^3/rad, to the side on which the run's adjustment ended
     # outside any catalogue
     wire_drag: float = 0.0  # N m per 100 m of wire

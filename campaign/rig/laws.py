@@ -166,7 +166,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("port_b", _set(pressure_offset_b=1.5 * BAR)), Law("passive_side", _set(pressure_offset_passive=2.5 * BAR)),
         Law("warm_electronics", _set(pressure_warm=2.5 * BAR)),
         Law("since_a_date", lambda s, rng, f: {
-            "pressure_offset": 2.5 * BAR * s, "pressure_after": rng.uniform(0.3, 0.7)}, held_out=True),
+            "pressure_offset": 2.5 * BAR * s, "pressure_after": rng.uniform(0.3, 0.7)}),
+        Law("creeps", _set(pressure_drift=4.0 * BAR), held_out=True),
     ),
     "pressure_scale": (
         Law("passive_side", _set(pressure_scale_passive=0.012)),
@@ -175,10 +176,12 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "signal_delay": (
         Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06)),
-        Law("some_runs", lambda s, rng, f: {"delay": 0.08 * s, "delay_every": 0.5}, held_out=True),
+        Law("some_runs", lambda s, rng, f: {"delay": 0.08 * s, "delay_every": 0.5}),
+        Law("fills_up", _set(delay_swing=0.15), held_out=True),
     ),
     "swivel_offset": (
-        Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV), held_out=True),
+        Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV)),
+        Law("warm_electronics", _set(swivel_warm=1.5 * CM3_PER_REV), held_out=True),
     ),
     "entrained_air": (
         Law("more", _set(air=0.02)), Law("little", _set(air=0.005), held_out=True),

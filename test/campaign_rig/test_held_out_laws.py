@@ -17,6 +17,7 @@ from winch_friction.discrepancy.candidates.candidate import MOVING
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.catalogue import testable as usable_of
 from winch_friction.discrepancy.expansion import meet
+from winch_friction.discrepancy.run_states import run_states
 from winch_friction.physics.signals import Run
 
 LEAST = 0.05  # of the effect's own rms that the package's best law must leave
@@ -54,7 +55,11 @@ def share_left(effect: str, crane, model) -> float:
     )
     prepared = [replace(run, used=run.used & null.used) for run, null in zip(with_it, without, strict=True)]
     y = _stacked(prepared, [run.gap - null.gap for run, null in zip(with_it, without, strict=True)])
-    usable, _ = usable_of([c for c in all_candidates() if c.name == cause and c.regime == MOVING], prepared, model)
+    states = run_states(
+        [replace(run, gap=run.gap - null.gap) for run, null in zip(prepared, without, strict=True)], model
+    )
+    known = [c for c in (*all_candidates(), *states) if c.name == cause and c.regime == MOVING]
+    usable, _ = usable_of(known, prepared, model)
     assert usable, cause
     left = []
     for candidate in usable:

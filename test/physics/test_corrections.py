@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 
 from winch_friction.physics.corrections import (
     DECLARED,
@@ -19,6 +20,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.viscosity import relative_viscosity
 from winch_friction.physics.winch import Drum
+from winch_friction.records.model_file import model_from_text, model_to_text
 
 GROUPS = ("active", "passive")
 
@@ -264,3 +266,35 @@ def test_a_correction_that_the_crane_cannot_have_is_refused(corrections, message
 
 def test_a_drum_of_one_layer_keeps_its_type(crane_150t):
     assert isinstance(corrected_crane(crane_150t, (Correction("layer_radius", 0.1),)).drum, Drum)
+
+
+def test_an_error_for_a_time_is_taken_out_then_and_only_then(truth, crane_150t, crane2_model):
+    """A transducer that was replaced, a hook that was exchanged: the runs and samples of the time alone change."""
+    begin = float(truth.time[0])
+    for windows, there in (
+        (((begin - 9.0, begin + 90.0),), True),
+        (((begin - 90.0, begin - 9.0),), False),
+        (((begin - 90.0, begin - 80.0), (begin - 9.0, float("inf"))), True),
+    ):
+        offset = Correction("pressure_offset", 2.0 * BAR, during=windows)
+        tare = Correction("tare_load", 1500.0, during=windows)
+        model = replace(crane2_model, corrections=(offset, tare))
+        right, _ = corrected(truth, crane_150t, model)
+        assert np.allclose(truth["active.pressure_a"] - right["active.pressure_a"], 2.0 * BAR * there)
+        assert np.allclose(right["hook_load"] - truth["hook_load"], 1500.0 * there)
+        sample = next(iter(truth.samples()))
+        live = SampleCorrector(crane_150t, model)(sample)
+        assert live.hook_load - sample.hook_load == pytest.approx(1500.0 * there)
+        assert model_from_text(model_to_text(model), "m").corrections == model.corrections
+    with pytest.raises(InputError, match="cannot be tied to a time"):
+        Correction("inertia", 0.1, during=((0.0, 1.0),))
+    with pytest.raises(InputError, match="from before to"):
+        Correction("pressure_offset", 0.1, during=((1.0, 0.0),))
+
+
+def test_a_file_with_a_window_that_is_none_says_so(crane2_model):
+    text = model_to_text(replace(crane2_model, corrections=(Correction("pressure_offset", 1e5, during=((1.0, 2.0),)),)))
+    content = yaml.safe_load(text)
+    content["corrections"]["pressure_offset"]["during"] = [1.0, 2.0]
+    with pytest.raises(InputError, match="during must be a list of windows"):
+        model_from_text(yaml.safe_dump(content), "m")

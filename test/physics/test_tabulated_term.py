@@ -152,3 +152,16 @@ def test_latex_and_limits():
     assert "vartheta" in tabulated(WARM).latex
     with pytest.raises(InputError, match="one or 2 different signals"):
         Table("t", ())
+
+
+def test_windows_are_one_level_there_and_nothing_elsewhere():
+    hangs = Table("hangs", (("time", (10.0, 20.0, 40.0, 50.0)),), scope=Scope.SYSTEM, shape="windows")
+    model = _model(hangs, values=[0.0, 4.0])
+    again = model_from_text(model_to_text(model), "m")
+    at = layout(1).index(next(each for each in layout(1) if each.name == "t"))
+    for functions in (model.compile(1), again.compile(1)):
+        for time, expected in ((9.0, 0.0), (10.5, 4.0), (20.5, 0.0), (45.0, 4.0), (60.0, 0.0)):
+            point = tuple(time if k == at else value for k, value in enumerate(_point()))
+            assert functions.scalar_torque(point, (0.0, 4.0), ()) == pytest.approx(11.0 * expected), time
+    with pytest.raises(InputError, match="a knot at either end"):
+        Table("hangs", (("time", (10.0, 20.0, 40.0)),), shape="windows")

@@ -61,7 +61,7 @@ def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, f
 
 def key_of(correction: Correction) -> str:
     """A correction's name with what it is restricted to, unique in a model."""
-    return " ".join([correction.name, *correction.groups, *map(str, correction.layers)])
+    return " ".join(map(str, [correction.name, *correction.groups, *correction.layers, *correction.during]))
 
 
 def correction_std(correction: Correction) -> float:

@@ -24,6 +24,7 @@ from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.regressors import base_of, layout_of
+from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 
@@ -63,7 +64,9 @@ def search_runs(
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
     ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    known = options.candidates or candidates_for(prepared, model, options.effects_file)
+    known = options.candidates or [
+        *candidates_for(prepared, model, options.effects_file), *run_states(prepared, model)
+    ]  # fmt: skip
     if surfaces:
         known = [*known, *free_members(prepared, model, SURFACES)]
     usable, blind = testable(known, prepared, model)

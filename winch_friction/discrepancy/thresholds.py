@@ -78,6 +78,11 @@ class Thresholds:
     # of the excess just after reversals that an effect must explain: over drawn cranes true ones did 0.35 to 0.97,
     # air in the oil, which none of them is, 0.24
     reversal_share: float = 0.33
+    # deviations between two levels of runs: of twelve that are spread somehow (normal, evenly, exponentially) fewer
+    # than 3 in a thousand seem to make two levels so far apart, of six 2 in a hundred
+    levels_apart: float = 10.0
+    other_level: float = 0.2  # of what lies between two levels, above which the one nearer to zero counts as well
+    fewest_levels: int = 6  # runs, for two levels to be told
     # -- remainder
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves

@@ -42,18 +42,20 @@ SIGNAL_ORDER = (
 def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]:
     """A run and a crane without the errors that the model knows of.
 
-    A delay shortens the run by what it shifts. Raises `InputError`, one line for all of it, where the run lacks a
+    What a signal had for a time is taken out of the runs that began then. A delay shortens the run by what it shifts.
+    Raises `InputError`, one line for all of it, where the run lacks a
     channel that a correction needs or the crane a group or layer that one names.
     """
     if not model.corrections:
         return run, crane
-    problems = [each for one in model.corrections for each in _missing(one, run)]
+    there = [each for each in model.corrections if each.holds(float(run.time[0]))]
+    problems = [each for one in there for each in _missing(one, run)]
     if problems:
         raise InputError(f"{run.name}: {'; '.join(problems)} (model '{model.name}')")
     right = corrected_crane(crane, model.corrections)
     columns: Columns = dict(run.columns)
     for action in SIGNAL_ORDER:
-        for each in model.corrections:
+        for each in there:
             if each.declared.action is action:
                 columns = _ON_RUNS[action](columns, run, each)
     names = tuple(dict.fromkeys(each.name for each in model.corrections))
@@ -213,7 +215,7 @@ class SampleCorrector:
             return sample
         groups = {name: replace(member) for name, member in sample.groups.items()}
         out = replace(sample, groups=groups)
-        self._lacking = tuple(c.name for c in self._signals if not _correct(out, c))
+        self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
         return out
 
 

@@ -1,7 +1,7 @@
 """The section `corrections` of a model file: what is wrong with signals, geometry, load and inertia.
 
 `{pressure_offset: {value: 1.5, unit: bar, std: 0.1, source: zero check, groups: [active]}}`; the same correction for
-several groups or layers is a list under its name.
+several groups, layers or times is a list under its name.
 """
 
 from collections.abc import Sequence
@@ -53,12 +53,14 @@ def _correction(name: str, section: Section) -> Correction:
     value, tau = section.number("value") * factor, section.get("time_constant")
     fields = {key: number(key) for key in ("std", "lower", "upper")}
     groups, layers, source = _names(section, "groups", str), _names(section, "layers", int), section.text("source", "")
+    during = _windows(section)
     section.close()
     time_constant = None if tau is None else as_quantity(tau, "s", f"{section.where}: time_constant")
     try:
         return Correction(
-            name, value, source=source, groups=groups, layers=layers, time_constant=time_constant, **fields
-        )
+            name, value, source=source, groups=groups, layers=layers, time_constant=time_constant, during=during,
+            **fields,
+        )  # fmt: skip
     except InputError as error:
         raise InputError(f"{section.where}: {error}") from None
 
@@ -83,6 +85,16 @@ def _names(section: Section, key: str, kind: type) -> tuple[Any, ...]:
     return tuple(given)
 
 
+def _windows(section: Section) -> tuple[tuple[float, float], ...]:
+    """Windows of absolute time in s, `[[from, to], ...]`; the last may be open, `.inf`."""
+    if "during" not in section:
+        return ()
+    given, where = section.get("during"), f"{section.where}: during"
+    if not isinstance(given, list) or not given or not all(isinstance(w, list) and len(w) == 2 for w in given):
+        raise InputError(f"{where} must be a list of windows [from, to] in s, found {given!r}")
+    return tuple((finite(w[0], where), w[1] if w[1] == float("inf") else finite(w[1], where)) for w in given)
+
+
 def _entry(c: Correction) -> dict[str, Any]:
     entry: dict[str, Any] = {"value": float(c.value), "unit": c.declared.parameter.unit}
     if c.std is not None:
@@ -96,4 +108,6 @@ def _entry(c: Correction) -> dict[str, Any]:
         entry["layers"] = list(c.layers)
     if c.time_constant is not None:
         entry["time_constant"] = {"value": float(c.time_constant), "unit": "s"}
+    if c.during:
+        entry["during"] = [list(window) for window in c.during]
     return entry

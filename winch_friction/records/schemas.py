@@ -50,7 +50,16 @@ _DRIVE = _object(
 _VALUE = _object({"value": NUMBER, "unit": TEXT}, {"std": NUMBER, "lower": NUMBER, "upper": NUMBER})
 _CORRECTION = _object(
     {"value": NUMBER, "unit": TEXT},
-    {"std": NUMBER, "lower": NUMBER, "upper": NUMBER, "source": TEXT, "groups": {"type": "array", "items": TEXT}},
+    {
+        "std": NUMBER,
+        "lower": NUMBER,
+        "upper": NUMBER,
+        "source": TEXT,
+        "groups": {"type": "array", "items": TEXT},
+        "layers": {"type": "array", "items": {"type": "integer", "minimum": 1}},
+        "time_constant": quantity("s"),
+        "during": {"type": "array", "items": {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}},
+    },
 )
 _NAMES: Schema = {"type": "array", "items": TEXT}
 _CONSTANTS = {

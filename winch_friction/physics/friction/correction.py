@@ -159,8 +159,10 @@ def declared_correction(name: str) -> DeclaredCorrection:
 class Correction:
     """One correction of a model, SI: the error's value, its standard deviation (None: unknown), bounds and source.
 
-    `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade. Bounds that are not given are
-    the declared ones. Raises `InputError` for a value, bounds or ties that the declaration does not allow.
+    `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade; `during` the windows of
+    absolute time, s from and to, in which it was there (empty: always; `inf`: since then). Bounds that are
+    not given are the declared ones. Raises `InputError` for a value, bounds or ties that the declaration does not
+    allow.
     """
 
     name: str
@@ -172,6 +174,7 @@ class Correction:
     groups: tuple[str, ...] = ()
     layers: tuple[int, ...] = ()
     time_constant: float | None = None
+    during: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         own = self.declared
@@ -190,6 +193,10 @@ class Correction:
             raise InputError(f"correction '{self.name}' {needs}")
         if self.time_constant is not None and not 0.0 < self.time_constant < float("inf"):
             raise InputError(f"correction '{self.name}': time_constant must be above 0 s, found {self.time_constant:g}")
+        if self.during and own.kind not in ("signal", "load"):
+            raise InputError(f"correction '{self.name}' cannot be tied to a time: the {own.kind} does not change")
+        if not all(begin < end for begin, end in self.during):
+            raise InputError(f"correction '{self.name}': during must be windows [from, to] with from before to, in s")
 
     @property
     def declared(self) -> DeclaredCorrection:
@@ -202,9 +209,13 @@ class Correction:
         return self.lower, self.upper  # type: ignore[return-value]
 
     @property
-    def ties(self) -> tuple[tuple[str, ...], tuple[int, ...]]:
-        """What it is restricted to: motor groups, wire layers."""
-        return self.groups, self.layers
+    def ties(self) -> tuple[tuple[str, ...], tuple[int, ...], tuple[tuple[float, float], ...]]:
+        """What it is restricted to: motor groups, wire layers, windows of time."""
+        return self.groups, self.layers, self.during
+
+    def holds(self, time: float) -> bool:
+        """Whether the error is there at that time, s."""
+        return not self.during or any(begin <= time <= end for begin, end in self.during)
 
     def _check_bounds(self) -> None:
         own, (lower, upper) = self.declared.parameter, self.bounds
@@ -220,7 +231,7 @@ class Correction:
 
 
 def check_corrections(corrections: tuple[Correction, ...]) -> None:
-    """Raise `InputError` where one correction stands twice for the same groups and layers."""
+    """Raise `InputError` where one correction stands twice for the same groups, layers and times."""
     seen = [(each.name, each.ties) for each in corrections]
     for name, ties in seen:
         if seen.count((name, ties)) > 1:

@@ -15,7 +15,7 @@ from winch_friction.physics.friction import symbols
 from winch_friction.physics.friction.term import Parameter, Scope, Term
 
 MOST_SIGNALS = 2
-SHAPES = ("free", "rising", "falling", "convex_rising")
+SHAPES = ("free", "rising", "falling", "convex_rising", "windows")
 ANCHORS = ("none", "low", "high")
 SIDES = {"both": 0, "hoisting": 1, "lowering": -1}
 _SIGNALS = {each.name: each for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)}
@@ -33,7 +33,8 @@ class Table:
     may only rise or fall with every signal, or rise ever more steeply, on beyond the last knot. `anchor`: where it is
     zero ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its own. `unit` of the
     curve's values; times `times` they must be N m. Over two signals `shape` and `anchor` may be two words, one per
-    signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone.
+    signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone. `windows`: one
+    level from each odd knot to the next, nothing elsewhere.
     """
 
     name: str
@@ -66,6 +67,8 @@ class Table:
             found += [f"{kind} '{word}' is none of {', '.join(known)}" for word in words if word not in known]
             if len(words) not in (1, len(self.knots)):
                 found.append(f"{kind} '{text}' must be one word, or one for each of {', '.join(self.signals)}")
+        if "windows" in self.shape.split() and (len(self.knots) != 1 or len(self.knots[0][1]) % 2):
+            found.append("windows are over one signal, and have a knot at either end")
         found += [f"side '{self.side}' is none of {', '.join(SIDES)}"] if self.side not in SIDES else []
         return found
 
@@ -119,6 +122,8 @@ def _words(*texts: str) -> list[list[str]]:
 
 def tabulated(table: Table) -> Term:
     """The term of a table; one parameter per interval (or pair of intervals), named `<table>_<k>[_<l>]`."""
+    if table.shape == "windows":
+        return _in_windows(table)
     bases = [_basis(axis) for axis in table.axes]
     parameters, equation = [], sp.Integer(0)
     for index in itertools.product(*(range(len(basis)) for basis in bases)):
@@ -127,14 +132,27 @@ def tabulated(table: Table) -> Term:
         parameter = _parameter(table, index)
         parameters.append(parameter)
         equation += parameter.symbol * sp.Mul(*(basis[k] for basis, k in zip(bases, index, strict=True)))
+    return _term(table, equation, parameters, f"piecewise linear over {' and '.join(table.signals)}, {table.shape}")
+
+
+def _term(table: Table, equation: sp.Expr, parameters: list[Parameter], doc: str) -> Term:
     factor = sp.Mul(*(FACTORS[name][0] for name in table.times))
     way = SIDES[table.side]
     side = (1 + way * symbols.s) / 2 if way else sp.Integer(1)
-    over = " and ".join(table.signals)
     return Term(
         table.name, equation * factor * side, tuple(parameters), table.scope, table.source, table.place, table.opposing,
-        doc=f"piecewise linear over {over}, {table.shape}", table=table,
+        doc=doc, table=table,
     )  # fmt: skip
+
+
+def _in_windows(table: Table) -> Term:
+    """One level, there or not: a step up at every odd knot and down at the next."""
+    ((name, knots),) = table.knots
+    signal = _SIGNALS[name].symbol
+    steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
+    inside = sp.Add(*(step if k % 2 == 0 else -step for k, step in enumerate(steps)))
+    level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
+    return _term(table, level.symbol * inside, [level], f"in {len(knots) // 2} windows of {name}")
 
 
 def _basis(axis: _Axis) -> list[sp.Expr]:

@@ -1,0 +1,90 @@
+"""What some runs have and others have not: the cause is named, the file says when, and nothing is made of chance."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from gap_rig import names_of, runs_with
+
+from campaign.gap import diagnose
+from campaign.gap_cases import Case
+from campaign.rig import DRAWN
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.run_states import told_by_a_signal, two_levels
+from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.units import BAR
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model, save_model
+
+SEED = 4407
+FULL = 12
+
+
+def gap(runs, model=None):
+    crane = load_crane("crane_150t")
+    return find_gap(runs, crane, model or load_model("a6vm215_crane2"), GapOptions(plan=False, proposals=False))
+
+
+def with_offset(runs, there):
+    """The runs with 2.5 bar too much at port A of every group where it is there."""
+    found = []
+    for run, on in zip(runs, there, strict=True):
+        own = {n: run[n] + 2.5 * BAR * on for n in run.columns if n.endswith("pressure_a")}
+        found.append(replace(run, columns={**run.columns, **own}))
+    return found
+
+
+@pytest.mark.parametrize("pattern", ["since a date", "in some runs"])
+def test_a_zero_that_is_off_in_some_runs_is_named_and_the_file_says_when(pattern, tmp_path):
+    runs = runs_with(SEED, "quiet")
+    order = np.argsort([run.time[0] for run in runs])
+    place = np.argsort(order)
+    there = place >= 7 if pattern == "since a date" else np.isin(place, [1, 4, 5, 9, 10])
+    result = gap(with_offset(runs, there))
+    assert len(result.effects) == 1
+    assert "pressure_offset" in names_of(result)[0]
+    model = load_model(save_model(result.model, tmp_path / "model.yaml"))
+    offset = next(each for each in model.corrections if each.name == "pressure_offset")
+    assert offset.value == pytest.approx(2.5 * BAR, rel=0.1)
+    assert [offset.holds(float(run.time[0])) for run in runs] == list(there)
+    assert offset.holds(max(run.time[-1] for run in runs) + 1e7) == (pattern == "since a date")
+    again = gap(with_offset(runs, there), model)
+    assert again.verdict == "nothing_missing"
+
+
+def test_a_brake_that_hangs_in_some_runs_is_named():
+    """The rig's own, on a crane that it draws: which runs the brake hangs in is drawn there as well."""
+    said = diagnose(Case("law", (("brake_drag:some_runs", 1.0),), DRAWN, SEED, (0.0, 1.5)))
+    assert said["right"]
+    assert said["detected"]
+    assert not said["wrong_single"]
+
+
+# -- levels
+def test_two_clear_levels_are_told_and_one_is_not():
+    rng = np.random.default_rng(0)
+    small = np.full(FULL, 0.1)
+    levels = np.where(np.arange(FULL) % 3 == 0, 6.0, 0.0) + 0.1 * rng.standard_normal(FULL)
+    assert list(two_levels(levels, small)) == [k % 3 == 0 for k in range(FULL)]
+    assert list(two_levels(-levels, small)) == [k % 3 == 0 for k in range(FULL)]
+    draws = [np.random.default_rng(seed) for seed in range(500)]
+    for spread in ("standard_normal", "random", "exponential"):
+        seeming = [two_levels(getattr(each, spread)(size=FULL), np.zeros(FULL)) is not None for each in draws]
+        assert np.mean(seeming) < 0.01, spread
+    assert two_levels(levels, np.full(FULL, 2.0)) is None  # nobody knows them well enough
+    alone = np.where(np.arange(FULL) == 3, 6.0, 0.0)
+    assert two_levels(alone, small) is None  # one run is no state
+
+
+def test_what_a_logged_signal_tells_is_no_state():
+    def run(load, mode=("main",)):
+        channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
+        return SimpleNamespace(channels=channels, used=np.ones(5, bool), mode=mode)
+
+    there = np.array([True, True, False, False, False])
+    assert told_by_a_signal([run(60e3), run(55e3), run(20e3), run(25e3), run(30e3)], there)
+    assert not told_by_a_signal([run(60e3), run(20e3), run(20e3), run(25e3), run(70e3)], there)
+    two, one = ("active", "passive"), ("main",)
+    same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
+    assert told_by_a_signal(same, there)

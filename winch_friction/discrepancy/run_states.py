@@ -1,0 +1,207 @@
+"""States of a run: what some runs have and others have not, such as a brake that hangs or a transducer replaced.
+
+No run tells of another which state it was in; the first half of its own samples does. The second half, and with locked
+runs everything that their names are proven on, is judged by one size for all runs and one yes or no for each.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values
+from winch_friction.discrepancy.candidates.friction import COULOMB, shipped_friction, term_columns
+from winch_friction.discrepancy.candidates.geometry import geometry_candidates
+from winch_friction.discrepancy.candidates.signals import signal_candidates
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.problem import Problem
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel, Scope
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.table import Table, tabulated
+
+BRAKE, SOME_RUNS, SINCE = "brake_drag", "in some runs", "since a date"
+SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
+NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
+THEN = "_then"  # behind the name of a parameter that is there for a time
+MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
+
+Windows = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class State:
+    """In which runs, in the order of their dates, and since then or for these alone."""
+
+    windows: Windows
+    count: int
+    runs: int
+    both: bool  # the other runs have some of it as well
+
+    @property
+    def law(self) -> str:
+        """Its name among the laws of a cause."""
+        return SINCE if self.windows[-1][1] == float("inf") else SOME_RUNS
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        return f"{self.law}, {self.count} of {self.runs}" + (", and another size else" if self.both else "")
+
+
+def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """Candidates for what these runs show in two levels and nothing that was logged tells apart."""
+    if len(runs) < LIMITS.fewest_levels:
+        return []
+    every = [*shipped_friction(), *signal_candidates(), *geometry_candidates()]
+    known = [each for each in every if each.name in (BRAKE, *SIGNALS) and not each.law_name]
+    known = [each for each in known if each.untestable(runs) is None]
+    known = [each for each in known if not each.presumes or set(each.presumes) & set(model.term_names)]
+    layout = layout_of(base_of(model, model), known, runs, model)
+    problem = build_problem(runs, layout)
+    found = []
+    for slot in problem.slots:
+        state = _state(runs, problem, slot)
+        if state is not None:
+            found += _candidates(slot, state)
+    return found
+
+
+def _candidates(slot: Slot, state: State) -> list[Candidate]:
+    candidate, shape = slot.origin
+    if candidate.name == BRAKE:
+        return [_brake(state.windows)] if state.law == SOME_RUNS else []  # since a date it is a sudden wear
+    own = replace(shape, label=f"{shape.label}, {state.label}")
+    linear = candidate.linear + tuple(replace(p, name=p.name + THEN) for p in candidate.linear if state.both)
+    return [
+        replace(
+            candidate, law_name=state.law, linear=linear, columns=partial(_within, candidate, state),
+            shapes=partial(_only, own), corrects=partial(_then, candidate, state), continuous=(),
+        )
+    ]  # fmt: skip
+
+
+def _brake(windows: Windows) -> Candidate:
+    knots = tuple(itertools.chain.from_iterable(windows))
+    table = Table(
+        f"{BRAKE}_in_some_runs", (("time", knots),), scope=Scope.SYSTEM, shape="windows", typical=3.0,
+        source="a brake that hangs in some runs",
+    )  # fmt: skip
+    term = tabulated(table)
+    return Candidate(
+        BRAKE, "", term.parameters, partial(term_columns, term), term=term, presumes=COULOMB, law_name=SOME_RUNS,
+    )  # fmt: skip
+
+
+def _only(shape: Shape, _: Sequence[PreparedRun]) -> list[Shape]:
+    return [shape]
+
+
+def _within(candidate: Candidate, state: State, run: PreparedRun, values: Values) -> FloatArray:
+    own = candidate.columns(run, values)
+    then = own * float(any(begin <= run.start <= end for begin, end in state.windows))
+    return np.column_stack([own, then]) if state.both else then
+
+
+def _then(candidate: Candidate, state: State, found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    """Corrections for these times, and for always what the other runs have as well."""
+    assert candidate.corrects is not None
+    always = candidate.corrects(found, shape, sides) if state.both else []
+    of_then = {name.removesuffix(THEN): each for name, each in found.items() if not state.both or name.endswith(THEN)}
+    return always + [replace(each, during=state.windows) for each in candidate.corrects(of_then, shape, sides)]
+
+
+def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State | None:
+    """In which runs it is, told by the first half of each; None where that is not one of two clear levels, or where
+    a logged signal says as much."""
+    levels, deviations = _levels(problem, slot, len(runs))
+    there = two_levels(levels, deviations)
+    if there is None or told_by_a_signal(runs, there):
+        return None
+    other = float(np.nanmean(levels[~there]))
+    both = abs(other) > LIMITS.other_level * abs(float(np.nanmean(levels[there])) - other)
+    order = sorted(range(len(runs)), key=lambda k: runs[k].start)
+    inside = [bool(there[k]) for k in order]
+    begins, ends = [runs[k].start for k in order], [runs[k].start + float(runs[k].time[-1]) for k in order]
+    switches = sum(a != b for a, b in itertools.pairwise(inside))
+    if switches == 1 and inside[-1]:
+        at = inside.index(True)
+        windows: Windows = ((0.5 * (ends[at - 1] + begins[at]), float("inf")),)
+    else:
+        windows = tuple(_window(begins, ends, list(group)) for on, group in _spells(inside) if on)
+    return State(windows, sum(inside), len(inside), both)
+
+
+def _spells(inside: Sequence[bool]) -> list[tuple[bool, list[int]]]:
+    return [(on, list(group)) for on, group in itertools.groupby(range(len(inside)), key=lambda k: inside[k])]
+
+
+def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]) -> tuple[float, float]:
+    first, last = group[0], group[-1]
+    before = 0.5 * (begins[first] - ends[first - 1]) if first > 0 else MARGIN
+    after = 0.5 * (begins[last + 1] - ends[last]) if last + 1 < len(begins) else MARGIN
+    return begins[first] - min(before, MARGIN), ends[last] + min(after, MARGIN)
+
+
+def _levels(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, FloatArray]:
+    """Size of a candidate in the first half of each run and its deviation, in its units, the base fitted to all of
+    them; NaN where a run has none of it."""
+    blocks, base = problem.blocks, list(problem.base_columns)
+    half = np.array(
+        [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
+    )
+    first = blocks.position <= half[blocks.run]
+    weight, run = blocks.weight[first], blocks.run[first]
+    own = blocks.x[first, slot.columns[0]] * weight
+    columns = np.column_stack(
+        [blocks.x[first][:, base] * weight[:, None], own[:, None] * (run[:, None] == range(runs))]
+    )
+    size = np.sqrt((columns**2).sum(axis=0))
+    h = columns.T @ columns
+    h[np.arange(len(base)), np.arange(len(base))] += LIMITS.prior_weight
+    at = np.arange(len(base), len(h))
+    has = size[at] > 1e-6 * max(float(size[at].max()), 1e-300)
+    h[at, at] += np.where(has, 0.0, 1.0)
+    inverse = np.linalg.pinv(h)
+    beta = inverse @ (columns.T @ (blocks.y[first] * weight))
+    left = blocks.y[first] * weight - columns @ beta
+    deviations = np.sqrt(np.diag(inverse)[at] * LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
+    return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
+
+
+def two_levels(levels: FloatArray, deviations: FloatArray) -> np.ndarray | None:
+    """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
+    two runs each; None where they do not. What is NaN belongs to neither and is not there."""
+    known = np.flatnonzero(np.isfinite(levels))
+    if len(known) < LIMITS.fewest_levels:
+        return None
+    order = known[np.argsort(levels[known])]
+    parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
+    low, high = min(parts, key=lambda pair: sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in pair))
+    within = sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in (low, high)) / (len(order) - 2)
+    spread = max(float(np.sqrt(within)), float(np.median(deviations[known])))
+    centres = levels[low].mean(), levels[high].mean()
+    if centres[1] - centres[0] < LIMITS.levels_apart * spread:
+        return None
+    there = np.zeros(len(levels), bool)
+    there[high if abs(centres[1]) >= abs(centres[0]) else low] = True
+    return there
+
+
+def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
+    """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
+    may hang on it."""
+    names = set.intersection(*(set(run.channels) for run in runs)) - set(NO_SIGNAL)
+    if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
+        return len({run.mode for run in runs}) > 1
+    for name in names:
+        medians = np.array([np.median(run.channels[name][run.used]) if run.used.any() else np.nan for run in runs])
+        yes, no = medians[there], medians[~there]
+        if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
+            return True
+    return False

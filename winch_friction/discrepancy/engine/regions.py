@@ -5,11 +5,19 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks
 from winch_friction.discrepancy.thresholds import LIMITS
 
+# a condition whose blocks are so far of one direction says the direction first: at reversals pressures run ahead
+ONE_WAY = 0.9
+# and one that holds nearly all blocks of that direction says nothing but the direction
+SAME_AS_DIRECTION = 0.9
+
+Mask = NDArray[np.bool_]
+Condition = tuple[str, Mask, tuple[str, ...]]  # its words, its blocks, the signals in it
 ReadAs = Mapping[str, tuple[float, str]]  # how people read a signal: factor and unit, by the last part of its name
 
 
@@ -40,8 +48,11 @@ def find_regions(blocks: Blocks, residual: FloatArray, read_as: ReadAs) -> list[
     return sorted(regions, key=lambda each: -each.share_of_gap)
 
 
-def _conditions(blocks: Blocks, read_as: ReadAs) -> list[tuple[str, np.ndarray, str]]:
-    found = [("hoisting", blocks.direction > 0, "direction"), ("lowering", blocks.direction < 0, "direction")]
+def _conditions(blocks: Blocks, read_as: ReadAs) -> list[Condition]:
+    found: list[Condition] = [
+        ("hoisting", blocks.direction > 0, ("direction",)),
+        ("lowering", blocks.direction < 0, ("direction",)),
+    ]
     for name, values in blocks.features.items():
         good = np.isfinite(values)
         if good.sum() < 20 or np.ptp(values[good]) <= 1e-6 * (np.abs(values[good]).max() + 1e-12):
@@ -49,10 +60,21 @@ def _conditions(blocks: Blocks, read_as: ReadAs) -> list[tuple[str, np.ndarray, 
         factor, unit = read_as.get(name.rpartition(".")[2], (1.0, ""))
         for threshold in np.unique(np.quantile(values[good], (0.15, 0.33, 0.5, 0.67, 0.85))):
             text = f"{threshold * factor:.3g} {unit}".strip()
-            found.append((f"{name} < {text}", good & (values < threshold), name))
-            found.append((f"{name} > {text}", good & (values > threshold), name))
+            found += _directed(blocks.direction, f"{name} < {text}", good & (values < threshold), name)
+            found += _directed(blocks.direction, f"{name} > {text}", good & (values > threshold), name)
     least = LIMITS.smallest_region * len(blocks.y)
-    return [each for each in found if each[1].sum() >= least]
+    return [(words, mask, signals) for words, mask, signals in found if mask.sum() >= least]
+
+
+def _directed(direction: FloatArray, words: str, mask: Mask, name: str) -> list[Condition]:
+    """The condition with the direction said where its blocks have one; none where it is nothing but the direction."""
+    for way, sign in (("hoisting", 1), ("lowering", -1)):
+        own = direction == sign
+        if own.all() or not mask.any() or own[mask].mean() < ONE_WAY:
+            continue
+        same = mask[own].mean() >= SAME_AS_DIRECTION
+        return [] if same else [(f"{words} and {way}", mask & own, (name, "direction"))]
+    return [(words, mask, (name,))]
 
 
 def _best(conditions, left):  # type: ignore[no-untyped-def]
@@ -67,14 +89,14 @@ def _best(conditions, left):  # type: ignore[no-untyped-def]
     pairs = np.where(both_counts >= LIMITS.smallest_region * size, both_sums**2 / np.maximum(both_counts, 1.0), 0.0)
     names = [name for _, _, name in conditions]
     for first, second in combinations(range(len(names)), 2):
-        if names[first] == names[second]:
+        if set(names[first]) & set(names[second]):
             pairs[first, second] = pairs[second, first] = 0.0
     k = int(np.argmax(single))
     i, j = (int(each) for each in np.unravel_index(int(np.argmax(pairs)), pairs.shape))
     if max(single[k], pairs[i, j]) <= 0.0:
         return None
     if single[k] >= LIMITS.single_condition * pairs[i, j]:
-        return conditions[k][0], conditions[k][1], (names[k],)
-    first, second = sorted((i, j), key=lambda c: names[c] == "direction")
+        return conditions[k]
+    first, second = sorted((i, j), key=lambda c: "direction" in names[c])
     words = f"{conditions[first][0]} and {conditions[second][0]}"
-    return words, conditions[first][1] & conditions[second][1], (names[first], names[second])
+    return words, conditions[first][1] & conditions[second][1], (*names[first], *names[second])

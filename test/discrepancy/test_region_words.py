@@ -1,0 +1,51 @@
+"""Regions say hoisting or lowering where the blocks differ in that, not the pressure that goes up and down with it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from winch_friction.discrepancy.engine.regions import find_regions
+
+RNG = np.random.default_rng(3)
+DIRECTION = np.where(np.arange(600) % 2, 1.0, -1.0)
+READ_AS = {"pressure": (1.0, "bar")}
+
+
+def regions(gap, **features):
+    blocks = SimpleNamespace(y=gap, direction=DIRECTION, features=features)
+    return find_regions(blocks, gap, READ_AS)
+
+
+def test_a_pressure_that_only_says_which_way_the_winch_turns_is_not_the_region():
+    """Friction parts the pressure of hoisting from that of lowering; at a few reversals it is ahead of the motion."""
+    ahead = np.where(RNG.random(600) < 0.03, -DIRECTION, DIRECTION)
+    pressure = 100.0 + 20.0 * ahead + RNG.normal(0.0, 3.0, 600)
+    gap = 2.0 * ahead + RNG.normal(0.0, 0.3, 600)
+    found = regions(gap, **{"active.pressure": pressure})
+    assert sorted(each.where for each in found)[:2] == ["hoisting", "lowering"]
+    assert not any("pressure" in each.where for each in found[:2])
+
+
+def test_a_part_of_one_direction_says_which_direction():
+    """The gap is where lowering has the lowest pressures: both are said."""
+    pressure = 100.0 + 20.0 * DIRECTION + RNG.normal(0.0, 3.0, 600)
+    gap = np.where(pressure < np.quantile(pressure, 0.15), -5.0, 0.0) + RNG.normal(0.0, 0.1, 600)
+    first = regions(gap, **{"active.pressure": pressure})[0]
+    assert first.where.startswith("active.pressure < ")
+    assert first.where.endswith("bar and lowering")
+    assert set(first.signals) == {"active.pressure", "direction"}
+
+
+def test_runs_of_one_direction_only_do_not_say_it_with_every_signal():
+    pressure = RNG.uniform(50.0, 150.0, 600)
+    gap = np.where(pressure > 120.0, 3.0, 0.0)
+    blocks = SimpleNamespace(y=gap, direction=np.ones(600), features={"active.pressure": pressure})
+    assert find_regions(blocks, gap, READ_AS)[0].where.startswith("active.pressure > ")
+
+
+def test_a_signal_that_has_nothing_to_do_with_the_direction_keeps_its_words():
+    pressure = RNG.uniform(50.0, 150.0, 600)
+    gap = np.where(pressure > 120.0, 3.0, 0.0) + RNG.normal(0.0, 0.1, 600)
+    first = regions(gap, **{"active.pressure": pressure})[0]
+    assert first.where.startswith("active.pressure > ")
+    assert "ing" not in first.where

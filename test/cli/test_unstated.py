@@ -22,6 +22,32 @@ def test_a_model_without_std_is_said(verb, bare, tmp_path, capsys):
     assert "assumed" not in capsys.readouterr().err
 
 
+@pytest.fixture
+def short(tmp_path):
+    """A run that every crane could have, too short for an answer."""
+    run_file = tmp_path / "run.csv"
+    run_file.write_text("time [s],motor_speed [rpm]\n0,1\n")
+    return str(run_file)
+
+
+@pytest.mark.parametrize("crane", ["emps", "winch_100kw"])
+def test_gap_asks_which_model_of_a_crane_that_has_no_usual_one(crane, short, tmp_path, capsys):
+    """The 150 t crane's model is nobody else's."""
+    assert run(["gap", short, "--crane", crane, "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert f"which model of crane '{crane}'? Give --model" in said
+    assert {"emps": "emps_symmetric, emps_viscous", "winch_100kw": "rope_force_alone"}[crane] in said
+    assert "a6vm215" not in said
+
+
+def test_gap_says_that_it_takes_the_150_t_crane_and_its_model(short, capsys):
+    assert run(["gap", short]) == 2
+    said = capsys.readouterr().err
+    assert "no --crane and no --model: taken as crane 'crane_150t' and model 'a6vm215_crane2'" in said
+    assert run(["gap", short, "--crane", "crane_150t"]) == 2
+    assert "no --model: taken as 'a6vm215_crane2', of crane 'crane_150t'" in capsys.readouterr().err
+
+
 def test_a_motor_of_another_size_is_refused(tmp_path, capsys):
     run_file = tmp_path / "run.csv"
     run_file.write_text("time [s],motor_speed [rpm]\n0,1\n")

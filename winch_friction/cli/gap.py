@@ -39,7 +39,7 @@ def command(
     model: Annotated[
         str,
         typer.Option(
-            help="Model file or shipped name; none: a6vm215_crane2, of the 150 t crane.", autocompletion=complete_model
+            help="Model file or shipped name; none, for the 150 t crane: a6vm215_crane2.", autocompletion=complete_model
         ),
     ] = "",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
@@ -93,6 +93,7 @@ def run_gap(
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import refuse_other_crane, unstated
     from winch_friction.records.atomic import write_text
+    from winch_friction.records.crane_file import load_crane
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
 
@@ -103,9 +104,9 @@ def run_gap(
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
     assumed = not (model or crane)
-    model = model or MODEL
+    model = model or _usual_model(crane, paths)
     seed_model = load_model(model)
-    loaded_crane = crane_of(crane, seed_model, paths)
+    loaded_crane = load_crane(seed_model.crane) if assumed else crane_of(crane, seed_model, paths)
     refuse_other_crane(seed_model, loaded_crane)
     show_warnings(unstated(seed_model))
     mapping = bag_options_of(params_file)
@@ -143,6 +144,24 @@ def run_gap(
     else:
         (out / "report.html").unlink(missing_ok=True)  # an old page beside new results would be read as theirs
     return content
+
+
+def _usual_model(crane: str, paths: list[Path]) -> str:
+    """The model that is taken where none is named, said on stderr; for a crane that has none, raises `InputError`."""
+    from winch_friction.cli.inputs import recorded_crane
+    from winch_friction.cli.names import models_of
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
+
+    usual = load_model(MODEL)
+    named = load_crane(crane).name if crane else recorded_crane(paths)
+    if named not in ("", usual.crane):
+        shipped = ", ".join(models_of(named))
+        has = f"shipped for it: {shipped}" if shipped else "`winch-friction init model` writes one to begin with"
+        raise InputError(f"which model of crane '{named}'? Give --model with a model file or a name; {has}")
+    taken = f"no --crane and no --model: taken as crane '{usual.crane}' and model '{MODEL}'; name your own if not"
+    show_warnings([f"no --model: taken as '{MODEL}', of crane '{usual.crane}'" if named else taken])
+    return MODEL
 
 
 def _write_proposals(out: Path, result: Any) -> None:

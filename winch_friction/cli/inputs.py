@@ -72,6 +72,11 @@ def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:
     return loaded
 
 
+def recorded_crane(paths: Sequence[Path]) -> str:
+    """The crane that the first run says it is of; '' where it says nothing."""
+    return _crane_of_runs(paths)[0]
+
+
 def _crane_of_runs(paths: Sequence[Path]) -> tuple[str, str]:
     from winch_friction.records.runs import read_run
 

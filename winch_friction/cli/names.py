@@ -40,6 +40,11 @@ def _models() -> Rows:
     ]
 
 
+def models_of(crane: str) -> list[str]:
+    """The shipped models that say they are of this crane."""
+    return [row["name"] for row in _models() if row["crane"] == crane]
+
+
 def _cranes() -> Rows:
     from winch_friction.records.crane_file import load_crane
 

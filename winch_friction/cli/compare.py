@@ -8,6 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
+from winch_friction.cli.outputs import PAGE, refuse_other_kind
 from winch_friction.physics.errors import InputError
 
 CERTAIN = 2.0  # standard deviations from which a difference is more than what the models do not know of themselves
@@ -33,7 +34,9 @@ def command(
     from winch_friction.cli.show import curve_crane
     from winch_friction.records.model_file import load_model
 
+    refuse_other_kind(out, PAGE, "a page")
     one, two = load_model(first), load_model(second)
+    _refuse_two_cranes(one, two)
     machine = curve_crane(one, crane)
     if runs:
         content = _on_runs(one, two, machine, list(runs))
@@ -49,6 +52,19 @@ def command(
     show_table(f"{two.name} minus {one.name}, {machine.name}", list(content["rows"][0]), rows)
     if content.get("page"):
         print(f"wrote {content['page']}")
+
+
+def _refuse_two_cranes(one: Any, two: Any) -> None:
+    """A difference between two machines says nothing of their models; a motor is not a winch, which is told."""
+    if one.crane and two.crane and one.crane != two.crane:
+        raise InputError(
+            f"compare: '{one.name}' is of crane '{one.crane}', '{two.name}' of crane '{two.crane}': "
+            "give two models of one crane"
+        )
+    scopes = [{term.scope.value for term in model.terms} for model in (one, two)]
+    for model, own, others in ((one, *scopes), (two, *reversed(scopes))):
+        if own == {"motor"} and others - own:
+            show_warnings([f"model '{model.name}' has no losses of gear and drum: part of the difference is those"])
 
 
 def _loads(text: str) -> list[float]:

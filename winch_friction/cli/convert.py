@@ -8,6 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.outputs import refuse_input_as_output
 from winch_friction.physics.signals import Run
 
 app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
@@ -34,6 +35,8 @@ def run(
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.runs import read_run
 
+    for each in out:
+        refuse_input_as_output(each, [source])
     content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
     show_warnings(content.warnings)
     _write(content, out, as_json)

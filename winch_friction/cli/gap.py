@@ -87,7 +87,8 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.cli.inputs import crane_of, read_all, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import crane_of, read_all, refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.discrepancy.options import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
@@ -100,6 +101,8 @@ def run_gap(
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
     paths = run_paths(paths)
+    for name in ("model.yaml", "gap.json", "addition.csv"):
+        refuse_input_as_output(out / name, [model, *paths])
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
@@ -113,6 +116,7 @@ def run_gap(
     read = read_all(paths, loaded_crane, **mapping)
     for run in read:
         show_warnings(run.warnings)
+    refuse_copies(read)
     read = _simulated(read, fmu, fmu_map)
     try:
         forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)

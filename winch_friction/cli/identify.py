@@ -59,6 +59,7 @@ def motor(
     """
     from winch_friction.cli.console import progress
     from winch_friction.cli.identify_output import show_motor
+    from winch_friction.cli.outputs import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
     from winch_friction.identification.supplier_file import read_supplier_table
@@ -68,6 +69,8 @@ def motor(
     from winch_friction.records.paths import shipped
 
     path = shipped("suppliers", table, ".csv")
+    refuse_other_kind(out, MODEL, "a model")
+    refuse_input_as_output(out, [path])
     data = read_supplier_table(path, max_displacement * CM3_PER_REV or None)
     names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
     found = identify_motor(
@@ -112,7 +115,8 @@ def system(
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
     from winch_friction.cli.identify_output import show_system
-    from winch_friction.cli.inputs import crane_of, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import crane_of, refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.outputs import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
@@ -123,6 +127,8 @@ def system(
     from winch_friction.records.runs import read_runs
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
+    refuse_other_kind(out, MODEL, "a model")
+    refuse_input_as_output(out, [motor, crane])
     supplied = load_model(motor).only("motor")
     known = crane_of(crane, supplied, runs)
     if not known.drive.hydraulic:
@@ -133,6 +139,7 @@ def system(
     refuse_other_motor(supplied, known)
     mapping = bag_options_of(params_file)
     tests, others = read_runs(runs, known, **mapping), read_runs(held_out, known, **mapping)
+    refuse_copies([*tests, *others])
     forced = refuse_implausible([*tests, *others], known, force=force, near=runs)
     found = identify_system(
         tests,

@@ -1,8 +1,11 @@
 """What the verbs ask of their inputs before they work: which runs, of which crane, and can that be."""
 
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from winch_friction.cli.console import progress, show_warnings
 from winch_friction.physics.errors import InputError
@@ -48,6 +51,16 @@ def read_all(paths: Sequence[Path], crane: Any, **options: Any) -> list[Any]:
     if problems:
         raise InputError(" | ".join(problems))
     return runs
+
+
+def refuse_copies(runs: Sequence[Any]) -> None:
+    """Raise `InputError` where two runs hold the same samples: what a fit has seen would prove it."""
+    seen: dict[bytes, str] = {}
+    for run in runs:
+        content = b"".join(np.ascontiguousarray(run[name], float).tobytes() for name in ("time", "motor_speed"))
+        other = seen.setdefault(sha256(content).digest(), run.name)
+        if other is not run.name:
+            raise InputError(f"{other} and {run.name} hold the same samples: a copy proves nothing; give each run once")
 
 
 def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:

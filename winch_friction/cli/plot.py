@@ -29,6 +29,7 @@ def command(
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
     from winch_friction.cli.inputs import read_all
+    from winch_friction.cli.outputs import PAGE, refuse_other_kind
     from winch_friction.physics.errors import InputError
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
@@ -36,6 +37,7 @@ def command(
 
     if model and not crane:
         raise InputError("plot: --model needs --crane")
+    refuse_other_kind(out, PAGE, "a page")
     machine = load_crane(crane) if crane else None
     read = read_all(runs, machine)
     for run in read:

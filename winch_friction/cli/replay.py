@@ -46,6 +46,7 @@ def command(
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
     from winch_friction.cli.inputs import crane_of, refuse_implausible
+    from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import ASSUMED_STD, refuse_other_crane, unstated
@@ -55,6 +56,8 @@ def command(
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
 
+    refuse_input_as_output(out, [recording, model, crane])
+    refuse_input_as_output(picture, [recording, model, crane])
     options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
     if terms_file is not None:
         load_file(terms_file)

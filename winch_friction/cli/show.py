@@ -8,6 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.outputs import PAGE, refuse_other_kind
 from winch_friction.physics.errors import InputError
 from winch_friction.records.paths import meant
 
@@ -35,6 +36,7 @@ def command(
 
       winch-friction show churning
     """
+    refuse_other_kind(out, PAGE, "a page")
     what = kind or kind_of(name) or _of_file(name)
     if what not in SHOWN:
         raise InputError(f"show: --kind '{what}' is none of {', '.join(SHOWN)}")

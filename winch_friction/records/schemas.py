@@ -158,6 +158,8 @@ def _said(error: Any) -> str:
 
 def with_all_problems(first: str, content: Any, name: str, where: str) -> str:
     """A reader's complaint, followed by whatever else the schema finds wrong; one line."""
+    if not isinstance(content, Mapping):
+        return f"{first}: is this a {name} file?"  # a log, say: its keys are no subject
     others = [each for each in problems(content, DECLARED[name]) if not _same(each, first)]
     if not others:
         return first

@@ -17,7 +17,7 @@ class Section:
 
     def __init__(self, content: Any, where: str) -> None:
         if not isinstance(content, Mapping):
-            raise InputError(f"{where}: expected a mapping of keys, found {_said(content)}")
+            raise InputError(f"{where}: expected a mapping of keys (YAML), found {_said(content)}")
         self.content = content
         self.where = where
         self._asked: set[str] = set()
@@ -112,4 +112,8 @@ def parse_yaml(text: str, where: str) -> Any:
 
 
 def _said(value: Any) -> str:
-    return f"{value!r} ({type(value).__name__})" if value is not None else "nothing"
+    if value is None:
+        return "nothing"
+    shown = repr(value)
+    shown = shown if len(shown) <= 60 else f"{shown[:60]}..."  # a log taken for YAML is one long text
+    return f"{shown} ({type(value).__name__})"

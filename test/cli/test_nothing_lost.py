@@ -1,0 +1,96 @@
+"""A slip in a command line costs a line on stderr, never a file that was there."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import winch_friction as wf
+from winch_friction.cli.main import run
+from winch_friction.physics.signals import Run
+from winch_friction.records.paths import config_directory
+from winch_friction.records.runs import write_run
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A run, a model, a supplier's table, as a stranger has them."""
+    monkeypatch.chdir(tmp_path)
+    crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
+    write_run(wf.simulate("normal_joystick", crane, model, duration=40.0).run, tmp_path / "run.csv")
+    shutil.copy(config_directory() / "models" / "a6vm215_crane2.yaml", tmp_path / "model.yaml")
+    shutil.copy(config_directory() / "suppliers" / "a6vm215_generated.csv", tmp_path / "table.csv")
+    return tmp_path
+
+
+MODEL = ("--crane", "crane_150t", "--model", "model.yaml")
+SLIPS = {
+    "replay onto its recording": (["replay", "run.csv", *MODEL, "--out", "run.csv"], "run.csv"),
+    "plot onto its run": (["plot", "run.csv", "--out", "run.csv"], "run.csv"),
+    "a page onto its model": (["show", "model.yaml", "--out", "model.yaml"], "model.yaml"),
+    "a page onto a model": (["compare", "a6vm215_crane1", "model.yaml", "--out", "model.yaml"], "model.yaml"),
+    "a model onto its table": (["identify", "motor", "table.csv", "--out", "table.csv"], "table.csv"),
+    "a model onto a run": (["identify", "motor", "table.csv", "--out", "run.csv"], "run.csv"),
+    "a model onto its motor": (
+        ["identify", "system", "run.csv", "--motor", "model.yaml", "--crane", "crane_150t", "--out", "model.yaml"],
+        "model.yaml",
+    ),
+    "a repaired model onto its seed": (["gap", "run.csv", *MODEL, "--out", "."], "model.yaml"),
+    "a converted run onto itself": (["convert", "run", "run.csv", "run.csv"], "run.csv"),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_nothing_that_was_there_is_overwritten(slip, here, capsys):
+    arguments, lost = SLIPS[slip]
+    before = {path.name: path.read_bytes() for path in here.iterdir()}
+    assert run(arguments) == 2
+    said = capsys.readouterr().err.strip().splitlines()[-1]
+    assert lost in said
+    assert "--out" in said
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == before
+
+
+def test_copies_of_a_run_prove_nothing(here, capsys):
+    """A copy among the locked runs would prove the model on what it was fitted to."""
+    for name in ("a", "b", "c"):
+        shutil.copy("run.csv", f"{name}.csv")
+    assert run(["gap", "run.csv", "a.csv", "b.csv", "c.csv", *MODEL, "--out", "out"]) == 2
+    said = capsys.readouterr().err
+    assert "run.csv and a.csv hold the same samples" in said
+    assert not (here / "out").exists()
+
+
+def test_a_test_that_is_kept_out_must_not_be_among_those_that_are_fitted(here, capsys):
+    shutil.copy("run.csv", "again.csv")
+    arguments = ["identify", "system", "run.csv", "--motor", "a6vm215", "--crane", "crane_150t", "--out", "m.yaml"]
+    assert run([*arguments, "--held-out", "again.csv"]) == 2
+    assert "run.csv and again.csv hold the same samples" in capsys.readouterr().err
+
+
+def test_models_of_two_cranes_are_not_compared_without_a_word(capsys):
+    assert run(["compare", "emps_viscous", "a6vm215_crane2"]) == 2
+    said = capsys.readouterr().err
+    assert "'emps_viscous' is of crane 'emps', 'a6vm215_crane2' of crane 'crane_150t'" in said
+
+
+def test_a_motor_compared_with_a_winch_is_said(capsys):
+    assert run(["compare", "a6vm215_crane2", "a6vm215"]) == 0
+    assert "model 'a6vm215' has no losses of gear and drum" in capsys.readouterr().err
+
+
+def test_a_log_taken_for_a_crane_is_answered_in_a_short_line(here, capsys):
+    assert run(["check", "run.csv", "--crane", "run.csv"]) == 2
+    said = capsys.readouterr().err.strip()
+    assert len(said) < 300
+    assert "run.csv" in said
+    assert "crane" in said
+
+
+def test_every_sample_is_looked_at_before_runs_count_as_copies():
+    from winch_friction.cli.inputs import refuse_copies
+
+    time = np.arange(50.0)
+    one = Run("one", {"time": time, "motor_speed": np.sin(time)})
+    two = Run("two", {"time": time, "motor_speed": np.sin(time) + 1e-9 * (time == 30)})
+    refuse_copies([one, two])

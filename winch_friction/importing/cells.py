@@ -134,13 +134,21 @@ def without_unit(cell: str, unit: str) -> str:
 
 def _all_numbers(cells: Sequence[Any], decimal: str, thousands: str) -> FloatArray | None:
     """The cells as numbers when each one is a plain number or empty: a hundred times faster than one by one."""
-    if thousands or not all(isinstance(cell, str) for cell in cells):
+    if not all(isinstance(cell, str) for cell in cells):
+        return None
+    values = plain_numbers(cells, decimal, thousands)
+    return values if values is not None and np.isfinite(values).any() else None
+
+
+def plain_numbers(cells: Sequence[str], decimal: str, thousands: str) -> FloatArray | None:
+    """Texts as numbers, NaN where one is empty; None when one of them is none, or infinite."""
+    if thousands:
         return None
     try:
         values = np.array([cell.replace(decimal, ".") or "nan" for cell in cells], dtype=float)
     except ValueError:
         return None
-    return values if np.isfinite(values).any() and not np.isinf(values).any() else None
+    return None if np.isinf(values).any() else values
 
 
 def _number(cell: str, decimal: str, thousands: str) -> float:

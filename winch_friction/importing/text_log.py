@@ -2,17 +2,17 @@
 
 import csv
 import gzip
-import io
 import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from winch_friction.importing.cells import as_column, decimal_mark, is_missing, is_number, units_in_cells, without_unit
+from winch_friction.importing.cells import decimal_mark, is_missing, is_number
 from winch_friction.importing.layout import Layout, find_layout
-from winch_friction.importing.log import Log, LogColumn, Place, listed, unique_names
-from winch_friction.importing.units import looks_like_unit
+from winch_friction.importing.log import Log, Place, listed
+from winch_friction.importing.text_columns import read_columns
+from winch_friction.importing.text_rows import SEEN, TextRows
 from winch_friction.physics.errors import InputError
 
 LARGEST = 1 << 30  # bytes of text: ten hours of ten channels at 100 Hz; more is split first
@@ -20,32 +20,34 @@ _PACKED = 64 << 20  # bytes from which a packed file is looked at more closely
 _RATIO = 100  # times smaller packed than unpacked: numbers of a log pack to a third or a tenth
 _WIDEST = 1 << 16  # characters of one line: a header of a thousand columns has a quarter of it
 _DELIMITERS = (";", ",", "\t", "|")
-_SAMPLE = 300  # lines looked at for delimiter, decimal mark and layout
 
 
 def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     """A text log; `settings` of an earlier look (encoding, delimiter, decimal, thousands, rows) or found anew."""
-    given = dict(settings or {})
-    raw = _unpacked(path)
-    encoding = given.get("encoding") or _encoding(path, raw)
-    lines, notes = _lines(path, raw, encoding)
+    given, notes = dict(settings or {}), list[str]()
+    encoding, lines = _decoded(path, given.get("encoding"))
     delimiter = given.get("delimiter") or _delimiter(lines)
-    lines = _without_empty_tail(lines, delimiter, notes)
-    rows, numbers = _split(path, lines, delimiter)
-    _take_units_out(rows, notes)
+    rows = TextRows(path, _without_empty_tail(lines, delimiter, notes), delimiter)
+    del lines
+    rows.take_units_out(notes)
     if "decimal" in given:
-        decimal, thousands = given["decimal"], given.get("thousands", "")
+        marks = given["decimal"], given.get("thousands", "")
     else:
-        decimal, thousands = decimal_mark((cell for row in rows[-_SAMPLE:] for cell in row), delimiter)
-    layout = _layout(path, given, rows, numbers, decimal, thousands)
-    rows, numbers = _without_repeated_heads(rows, numbers, layout, notes)
-    columns = _columns(path, rows, numbers, layout, decimal, thousands, notes, delimiter)
-    found = {"kind": "text", "encoding": encoding, "delimiter": delimiter, "decimal": decimal, "thousands": thousands}
+        marks = decimal_mark((cell for row in rows.tail for cell in row), delimiter)
+    layout = _layout(given, rows, *marks)
+    columns, body = read_columns(rows, layout, marks, delimiter, notes)
+    found = {"kind": "text", "encoding": encoding, "delimiter": delimiter, "decimal": marks[0], "thousands": marks[1]}
     row_numbers = {"names_row": layout.names, "unit_row": layout.units, "first_row": layout.first}
-    found |= {key: numbers[row] if row >= 0 else 0 for key, row in row_numbers.items()}
-    body = numbers[layout.first :]
+    found |= {key: rows.numbers[row] if row >= 0 else 0 for key, row in row_numbers.items()}
     place: Place = lambda row: f"line {body[row]}"
     return Log(path, tuple(columns), found, place, tuple(notes))
+
+
+def _decoded(path: Path, encoding: str | None) -> tuple[str, list[str]]:
+    """Encoding and lines; the bytes are not kept."""
+    raw = _unpacked(path)
+    encoding = encoding or _encoding(path, raw)
+    return encoding, _lines(path, raw, encoding)
 
 
 def _unpacked(path: Path) -> bytes:
@@ -104,7 +106,7 @@ def _encoding(path: Path, raw: bytes) -> str:
     return "latin-1"
 
 
-def _lines(path: Path, raw: bytes, encoding: str) -> tuple[list[str], list[str]]:
+def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     try:
         text = raw.decode(encoding)
     except (UnicodeDecodeError, LookupError) as error:
@@ -117,14 +119,14 @@ def _lines(path: Path, raw: bytes, encoding: str) -> tuple[list[str], list[str]]
     longest = max(range(len(lines)), key=lambda k: len(lines[k]))
     if len(lines[longest]) > _WIDEST:
         raise InputError(f"{path}: line {longest + 1} has {len(lines[longest])} characters; that is no table")
-    return lines, []
+    return lines
 
 
 def _delimiter(lines: Sequence[str]) -> str:
     """What a `sep=` line says, else the mark that cuts most lines into the same number of mostly numeric cells."""
     if lines[0].strip().strip('"').lower().startswith("sep="):
         return lines[0].strip().strip('"')[4:5] or ";"
-    sample = [line for line in lines[: 2 * _SAMPLE] if line.strip()][-_SAMPLE:]
+    sample = [line for line in lines[: 2 * SEEN] if line.strip()][-SEEN:]
     best, delimiter = 0.0, " "
     for each in (*_DELIMITERS, " "):
         score = _delimiter_score(sample, each)
@@ -165,94 +167,12 @@ def _without_empty_tail(lines: list[str], delimiter: str, notes: list[str]) -> l
     return lines
 
 
-def _split(path: Path, lines: Sequence[str], delimiter: str) -> tuple[list[list[str]], list[int]]:
-    """Rows of cells and the number of each row's line; a `sep=` line and blank lines are no rows."""
-    rows, numbers = [], []
-    if delimiter == " ":
-        kept = [(k + 1, line.split()) for k, line in enumerate(lines) if line.strip()]
-        return [row for _, row in kept], [k for k, _ in kept]
-    reader = csv.reader(io.StringIO("\n".join(lines) + "\n"), delimiter=delimiter)
-    try:
-        for row in reader:
-            if any(cell.strip() for cell in row) and not (reader.line_num == 1 and row[0].lower().startswith("sep=")):
-                rows.append(row)
-                numbers.append(reader.line_num)
-    except csv.Error as error:
-        raise InputError(f"{path}: line {reader.line_num}: {error}") from error
-    return rows, numbers
-
-
-def _take_units_out(rows: list[list[str]], notes: list[str]) -> None:
-    """Cells that bear their unit become numbers; the unit stands above them, in the row before the first of them."""
-    found = {k: unit for k, unit in units_in_cells(rows[-_SAMPLE:]).items() if looks_like_unit(unit)}
-    if not found:
-        return
-    bears = lambda row: any(k < len(row) and without_unit(row[k], unit) != row[k] for k, unit in found.items())
-    first = next(n for n, row in enumerate(rows) if bears(row) and any(c.isdigit() for cell in row for c in cell))
-    for row in rows[max(first, 1) :]:
-        for k, unit in found.items():
-            if k < len(row):
-                row[k] = without_unit(row[k], unit)
-    head = rows[first - 1] if first else []
-    for k, unit in found.items():
-        if k < len(head):
-            head[k] = f"{head[k]} [{unit}]"
-    notes.append(
-        f"cells of {len(found)} columns bear their unit: taken off ({', '.join(dict.fromkeys(found.values()))})"
-    )
-
-
-def _without_repeated_heads(
-    rows: list[list[str]], numbers: list[int], layout: Layout, notes: list[str]
-) -> tuple[list[list[str]], list[int]]:
-    """Rows without the names and units that a logger writes again whenever it starts a page."""
-    heads = [rows[k] for k in (layout.names, layout.units) if k >= 0]
-    again = {k for k in range(layout.first, len(rows)) if rows[k] in heads}
-    if not again:
-        return rows, numbers
-    notes.append(f"the header stands {len(again)} times more (line {numbers[min(again)]}): left out")
-    kept = [k for k in range(len(rows)) if k not in again]
-    return [rows[k] for k in kept], [numbers[k] for k in kept]
-
-
-def _layout(path: Path, given: Mapping[str, Any], rows: Sequence[Sequence[str]], numbers: Sequence[int], decimal: str,
-            thousands: str) -> Layout:  # fmt: skip
-    found = find_layout(rows, decimal, thousands)
+def _layout(given: Mapping[str, Any], rows: TextRows, decimal: str, thousands: str) -> Layout:
+    found = find_layout(rows.head, decimal, thousands)
     if found is None:
-        first = "; ".join(" | ".join(row)[:60] for row in rows[:2])
-        raise InputError(f"{path}: no rows of numbers found in {len(rows)} lines; it begins with: {first}")
+        first = "; ".join(" | ".join(row)[:60] for row in rows.head[:2])
+        raise InputError(f"{rows.path}: no rows of numbers found in {len(rows)} lines; it begins with: {first}")
     if not given:
         return found
-    index = {number: k for k, number in enumerate(numbers)}
-    rows_of = [index.get(int(given.get(key, 0) or 0), -1) for key in ("names_row", "unit_row", "first_row")]
-    return Layout(rows_of[0], rows_of[1], rows_of[2] if rows_of[2] >= 0 else found.first, found.width, found.notes_row)
-
-
-def _columns(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], layout: Layout, decimal: str,
-             thousands: str, notes: list[str], delimiter: str) -> list[LogColumn]:  # fmt: skip
-    body = rows[layout.first :]
-    heads = {k: list(rows[k]) if k >= 0 else [] for k in (layout.names, layout.units, layout.notes_row)}
-    width = max(layout.width, len([c for c in heads[layout.names] if c.strip()]))
-    ragged = [numbers[layout.first + k] for k, row in enumerate(body) if len(row) < width - 1]
-    if ragged:
-        shown = ", ".join(map(str, ragged[:3]))
-        notes.append(
-            f"{len(ragged)} lines are shorter than the {width} columns (line {shown}): their cells are missing"
-        )
-    if layout.names >= 0 and layout.width > len(heads[layout.names]) > 1:
-        raise InputError(
-            f"{path}: line {numbers[layout.first]} has {layout.width} cells under {len(heads[layout.names])} names; "
-            f"does '{delimiter}' also stand inside cells (a decimal comma)? Quote such cells, or separate by ';'"
-        )
-    names = unique_names(_padded(heads[layout.names], width))
-    units, remarks = _padded(heads[layout.units], width), _padded(heads[layout.notes_row], width)
-    cut = [_padded(row, width) for row in body]
-    cells = list(zip(*cut, strict=True))
-    return [
-        as_column(name, cells[k], decimal, thousands, units[k].strip().strip("[]()"), remarks[k].strip())
-        for k, name in enumerate(names)
-    ]
-
-
-def _padded(row: Sequence[str], width: int) -> list[str]:
-    return [*row[:width], *([""] * (width - len(row)))]
+    places = [rows.index_of_line(int(given.get(key, 0) or 0)) for key in ("names_row", "unit_row", "first_row")]
+    return Layout(places[0], places[1], places[2] if places[2] >= 0 else found.first, found.width, found.notes_row)

@@ -1,0 +1,107 @@
+"""The columns of a text log, from its rows a block at a time."""
+
+from array import array
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
+import numpy as np
+
+from winch_friction.importing.cells import as_column, plain_numbers
+from winch_friction.importing.layout import Layout
+from winch_friction.importing.log import LogColumn, unique_names
+from winch_friction.importing.text_rows import TextRows
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import FloatArray
+
+_BLOCK = 4096  # rows cut at once: a few MB of cells
+_TOGETHER = 4  # columns of other cells than plain numbers that are kept whole at a time
+
+
+class Body:
+    """The rows of values below a layout's head; `numbers`: the line of each.
+
+    The names and units that a logger writes again whenever it starts a page are left out (`repeated`: their lines);
+    `short`: lines with fewer cells than columns.
+    """
+
+    def __init__(self, rows: TextRows, layout: Layout) -> None:
+        self._rows, self._layout = rows, layout
+        self._heads = [rows.row(k) for k in (layout.names, layout.units) if k >= 0]
+        names = rows.row(layout.names)
+        self.width = max(layout.width, len([c for c in names if c.strip()]))
+        self.numbers, self.repeated, self.short = array("l"), array("l"), array("l")
+        for n, row in enumerate(rows):
+            if n >= layout.first:
+                number = rows.numbers[n]
+                (self.repeated if row in self._heads else self.numbers).append(number)
+                if row not in self._heads and len(row) < self.width - 1:
+                    self.short.append(number)
+
+    def blocks(self) -> Iterator[list[list[str]]]:
+        """The rows, all of one width, a block at a time."""
+        body = (row for row in islice(self._rows, self._layout.first, None) if row not in self._heads)
+        while block := [padded(row, self.width) for row in islice(body, _BLOCK)]:
+            yield block
+
+
+def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimiter: str,
+                 notes: list[str]) -> tuple[list[LogColumn], Sequence[int]]:  # fmt: skip
+    """The columns and the line of each of their cells; `marks`: of decimals and thousands.
+
+    Raises `InputError` for more cells than names.
+    """
+    body = Body(rows, layout)
+    width = body.width
+    if body.repeated:
+        notes.append(f"the header stands {len(body.repeated)} times more (line {body.repeated[0]}): left out")
+    if body.short:
+        shown = ", ".join(map(str, body.short[:3]))
+        notes.append(
+            f"{len(body.short)} lines are shorter than the {width} columns (line {shown}): their cells are missing"
+        )
+    names = rows.row(layout.names)
+    if layout.names >= 0 and layout.width > len(names) > 1:
+        raise InputError(
+            f"{rows.path}: line {body.numbers[0]} has {layout.width} cells under {len(names)} names; "
+            f"does '{delimiter}' also stand inside cells (a decimal comma)? Quote such cells, or separate by ';'"
+        )
+    units, remarks = padded(rows.row(layout.units), width), padded(rows.row(layout.notes_row), width)
+    heads = [
+        (name, units[k].strip().strip("[]()"), remarks[k].strip())
+        for k, name in enumerate(unique_names(padded(names, width)))
+    ]
+    found = {k: LogColumn(heads[k][0], values, heads[k][1], note=heads[k][2])
+             for k, values in _numbers(body, marks).items()}  # fmt: skip
+    others = [k for k in range(width) if k not in found]
+    for at in range(0, len(others), _TOGETHER):
+        for k, cells in _cells(body, others[at : at + _TOGETHER]).items():
+            found[k] = as_column(heads[k][0], cells, *marks, heads[k][1], heads[k][2])
+    return [found[k] for k in range(width)], body.numbers
+
+
+def _numbers(body: Body, marks: tuple[str, str]) -> dict[int, FloatArray]:
+    """The columns of which every cell is a plain number or empty, by their place."""
+    parts: dict[int, list[FloatArray]] = {k: [] for k in range(body.width)}
+    for block in body.blocks():
+        for k in list(parts):
+            values = plain_numbers([row[k] for row in block], *marks)
+            if values is None:
+                del parts[k]
+            else:
+                parts[k].append(values)
+    whole = {k: np.concatenate(each) for k, each in parts.items() if each}
+    return {k: values for k, values in whole.items() if np.isfinite(values).any()}
+
+
+def _cells(body: Body, wanted: Sequence[int]) -> dict[int, list[str]]:
+    """All cells of some columns."""
+    cells: dict[int, list[str]] = {k: [] for k in wanted}
+    for block in body.blocks():
+        for k in wanted:
+            cells[k] += [row[k] for row in block]
+    return cells
+
+
+def padded(row: Sequence[str], width: int) -> list[str]:
+    """A row of so many cells, empty ones put behind it."""
+    return [*row[:width], *([""] * (width - len(row)))]

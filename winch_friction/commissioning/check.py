@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from winch_friction.commissioning.channels import cell_findings, clock_findings, frozen_findings
+from winch_friction.commissioning.dead import dead_findings
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
 from winch_friction.commissioning.finding import Finding, first_contradiction, run_words
 from winch_friction.commissioning.view import views_of
@@ -45,6 +46,7 @@ def diagnosed(
     diagnosis = diagnose(views, crane, model, known)
     findings = [
         *_named_crane(runs, crane, others),
+        *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *_trusted(_mistake(diagnosis, crane), crane),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),

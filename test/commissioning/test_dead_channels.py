@@ -1,0 +1,47 @@
+"""A channel that nobody measured is named as that, not explained away by a unit, and proves nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import winch_friction as wf
+from winch_friction.commissioning.check import quick_check
+from winch_friction.commissioning.finding import first_contradiction
+
+CRANE = wf.load_crane("crane_150t")
+MODEL = wf.load_model("a6vm215_crane2")
+
+
+@pytest.fixture(scope="module")
+def run():
+    return wf.simulate("normal_joystick", CRANE, MODEL, duration=60.0).run
+
+
+def with_constant(run, **values):
+    columns = {name: np.full(len(run), values[name]) if name in values else run[name] for name in run.columns}
+    return replace(run, columns=columns)
+
+
+def test_a_speed_of_zero_while_the_wire_runs_is_a_dead_sensor(run):
+    found = first_contradiction(quick_check([with_constant(run, motor_speed=0.0)], CRANE))
+    assert found is not None
+    assert (found.cause, found.channel) == ("stuck", "motor_speed")
+    assert "motor_speed never changes" in found.sentence
+    assert "wire_out" in found.sentence
+
+
+def test_a_winch_that_really_rests_is_no_contradiction(run):
+    rest = {name: float(run[name][0]) for name in ("motor_speed", "wire_out", "shaft_angle", "speed_reference")
+            if name in run}  # fmt: skip
+    assert first_contradiction(quick_check([with_constant(run, **rest)], CRANE)) is None
+
+
+@pytest.mark.parametrize("load", [0.0, 1.0])
+def test_a_hook_load_of_zero_while_the_motors_hold_tonnes_is_a_dead_cell(run, load):
+    found = first_contradiction(quick_check([with_constant(run, hook_load=load)], CRANE))
+    assert found is not None
+    assert (found.cause, found.channel) == ("cell", "hook_load")
+    assert "load cell" in found.sentence
+    held = float(found.sentence.partition("about ")[2].split()[0])
+    assert held == pytest.approx(run["hook_load"].mean() / 1e3, rel=0.1)

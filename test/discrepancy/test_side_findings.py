@@ -8,7 +8,7 @@ import pytest
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.detectors.ripple import angle_ripple
+from winch_friction.discrepancy.detectors.ripple import angle_ripple, one_of_a_comb
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
@@ -64,3 +64,23 @@ def test_warm_gas_leaves_the_trace_that_its_candidate_expects():
         beta, *_ = np.linalg.lstsq(columns, trace, rcond=None)
         left.append(np.var(trace - columns @ beta) / np.mean(trace**2))
     assert min(left) < 0.05
+
+
+def test_a_line_among_many_is_the_sampling_s_comb_and_no_ripple():
+    """Encoder steps at 166 Hz beat with the sampling at many orders alike; a ripple has an order, and harmonics."""
+    orders = np.linspace(0.1, 20.0, 4000)
+
+    def power(*lines):
+        found = np.full(len(orders), 9.0)
+        for order, height in lines:
+            found[np.argmin(abs(orders - order))] = height
+        return found
+
+    comb = power((17.26, 57.6), (12.41, 54.9), (18.63, 54.9), (5.35, 54.2), (19.98, 51.5))
+    assert one_of_a_comb(orders, comb, int(np.argmax(comb)), 9)
+    alone = power((2.0, 57.6), (4.0, 57.0), (6.0, 56.0), (8.0, 55.0), (6.78, 24.0), (11.98, 23.7), (8.64, 20.4))
+    assert not one_of_a_comb(orders, alone, int(np.argmax(alone)), 9)
+    two = power((2.0, 57.6), (7.3, 57.0), (11.9, 24.0))  # a shaft may have two
+    assert not one_of_a_comb(orders, two, int(np.argmax(two)), 9)
+    strong = power(*((order, 108.0) for order in (0.17, 0.39, 1.31, 7.4, 11.9)))
+    assert not one_of_a_comb(orders, strong, int(np.argmax(strong)), 9)

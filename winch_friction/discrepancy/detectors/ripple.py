@@ -34,6 +34,9 @@ IN_RUNS, IN_PARTS = 1e-10, 1e-3
 SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
+# lines of as much power, of other orders, that make a comb of the sampling and not a ripple; far stronger ones than
+# chance has (0.78 of the weakest that is significant) must be about
+COMB_SHARE, COMB_LINES = 0.85, 3
 SAME_ORDER = 0.05  # relative; a spectrum over short runs has no finer lines
 LEFT_OF_KNOWN = 0.4  # share of the known amplitude that its estimate may leave
 SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
@@ -197,11 +200,26 @@ def _strongest(
     orders: FloatArray, power: FloatArray, parts: int, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]
 ) -> Ripple:
     best = int(np.argmax(power))
-    alone = gamma.sf(power[best], parts)
     order = float(orders[best])
+    alone = 1.0 if one_of_a_comb(orders, power, best, parts) else gamma.sf(power[best], parts)
     amplitude, std = _amplitude(order, tables)
     prominence = float(power[best] / parts)
     return Ripple(order, amplitude, std, float(min(1.0, 2 * alone * len(orders))), prominence)
+
+
+def one_of_a_comb(orders: FloatArray, power: FloatArray, best: int, parts: int) -> bool:
+    """Whether lines of other orders, harmonics apart, stand out nearly as far: an encoder's steps at a high rate beat
+    with the sampling in many places, and a shaft's ripple has an order of its own. Nothing is said of a line that is as
+    strong as counts, for then the others may be."""
+    if power[best] >= COMB_SHARE * MOST_OF_ONE_RUN * parts:
+        return False
+    strong = np.flatnonzero(power >= COMB_SHARE * power[best])
+    seen = [float(orders[best])]
+    for order in orders[strong[np.argsort(-power[strong])]]:
+        ratios = [max(order, each) / min(order, each) for each in seen]
+        if all(abs(ratio - round(ratio)) > SAME_ORDER for ratio in ratios):
+            seen.append(float(order))
+    return len(seen) > COMB_LINES
 
 
 def _amplitude(order: float, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[float, float]:

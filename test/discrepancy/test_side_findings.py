@@ -7,8 +7,9 @@ import pytest
 
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.detectors.angle_spectrum import one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.detectors.ripple import angle_ripple, one_of_a_comb
+from winch_friction.discrepancy.detectors.ripple import angle_ripple
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

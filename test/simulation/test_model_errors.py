@@ -62,6 +62,17 @@ def test_only_the_named_group_errs(scenario, crane, model):
     np.testing.assert_array_equal(log["active.pressure_a"], plain["active.pressure_a"])
 
 
+def test_an_error_for_a_time_is_in_the_runs_of_that_time(scenario, crane, model):
+    for start, there in ((1.7e9, False), (1.8e9, True)):
+        own = scenario.override({"start_time": start})
+        plain = simulate(own, crane, model).run
+        erring = wrong(model, "pressure_offset", during=((1.75e9, float("inf")),))
+        log = simulate(own, crane, erring).run
+        np.testing.assert_allclose(log["active.pressure_a"] - plain["active.pressure_a"], 1.5 * BAR * there, rtol=1e-9)
+        right, _ = corrected(log, crane, erring)
+        np.testing.assert_allclose(right["active.pressure_a"], plain["active.pressure_a"], rtol=1e-9)
+
+
 @pytest.mark.parametrize(("name", "size"), [("tare_load", 1.0), ("tare_load", -1.0), ("wire_weight", 1.0)])
 def test_the_load_cell_misses_what_hangs(name, size, ahc, crane, model):
     erring = wrong(model, name, size)

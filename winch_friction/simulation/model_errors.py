@@ -22,9 +22,11 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
     """Change plant and channel settings, in place, so that the model's corrections give the truth back.
 
     The crane file is what the log is read with: its radius and inertia are wrong, the plant's are right. Raises
-    `InputError` by name for what the plant makes by itself.
+    `InputError` by name for what the plant makes by itself. What was wrong for a time is put into runs that start then.
     """
     for each in model.corrections:
+        if not each.holds(scenario.start_time):
+            continue
         action = each.declared.action
         if action in _OF_THE_PLANT:
             raise InputError(

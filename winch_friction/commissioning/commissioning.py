@@ -67,6 +67,11 @@ class CheckResult:
                 f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {open_} of them leave more of the "
                 "torque balance open than ordinary errors do, which may be this drive's own friction and inertia"
             )
+        if all(each.before != each.before for each in self.balance):
+            return (
+                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but the winch does not move long "
+                "enough in them to compare torques; log hoisting and lowering"
+            )
         return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance"
 
     def content(self) -> dict[str, Any]:

@@ -80,3 +80,19 @@ def test_help_imports_no_verb():
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert result.returncode == 0, result.stderr
+
+
+def test_a_reader_that_has_gone_is_no_defect():
+    """`| head`: rich ends with status 1 where a table finds nobody to read it."""
+    call = [sys.executable, "-c", "from winch_friction.cli.main import main; main()", "list", "effects"]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as started:
+        started.stdout.close()
+        said = started.stderr.read()
+        assert (started.wait(60), said) == (0, b"")
+
+
+def test_the_module_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "winch_friction.cli.main", "--version"], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout.strip()) == (0, f"winch-friction {__version__}")

@@ -94,3 +94,10 @@ def test_every_sample_is_looked_at_before_runs_count_as_copies():
     one = Run("one", {"time": time, "motor_speed": np.sin(time)})
     two = Run("two", {"time": time, "motor_speed": np.sin(time) + 1e-9 * (time == 30)})
     refuse_copies([one, two])
+
+
+def test_a_suppliers_table_taken_for_a_run_is_told_apart(here, capsys):
+    assert run(["check", "table.csv", "--crane", "crane_150t"]) == 2
+    said = capsys.readouterr().err
+    assert "line 1 is a remark" in said
+    assert "identify motor" in said

@@ -31,8 +31,16 @@ def _width() -> int | None:
     return None if sys.stdout.isatty() or os.environ.get("COLUMNS") else PIPED_WIDTH
 
 
-stdout = Console(width=_width())
-stderr = Console(stderr=True)
+class _Console(Console):
+    """A console whose reader may go, as `| head` does: what rich would end with status 1 is the caller's matter."""
+
+    def on_broken_pipe(self) -> None:
+        """Rich calls this while it handles the error."""
+        raise BrokenPipeError
+
+
+stdout = _Console(width=_width())
+stderr = _Console(stderr=True)
 
 
 def show_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:

@@ -61,7 +61,9 @@ def _text(path: Path) -> str:
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8); expected CSV") from error
+        raise InputError(
+            f"{path}: not a text file (byte {error.start} is not UTF-8); expected CSV (import reads others)"
+        ) from error
     if "\0" in text:
         raise InputError(f"{path}: not a text file (it holds zero bytes); expected CSV")
     if not text.strip():
@@ -85,6 +87,11 @@ def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
 
 def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]) -> None:
     width = len(rows[0])
+    if rows[0] and rows[0][0].startswith("#"):
+        raise InputError(
+            f"{path}: line 1 is a remark; a run's first line is its header (winch-friction import reads logs with "
+            "lines above it; a supplier's table is for winch-friction identify motor)"
+        )
     if not width:
         raise InputError(f"{path}: line 1 is blank; expected the header line there")
     for line, row in zip(lines, rows, strict=True):

@@ -105,16 +105,22 @@ def carried_through(study: Study, folder: Path) -> Outcome:
 
 
 def _step(out: Outcome, verb: str, arguments: list[str]) -> int:
-    said, printed = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stderr(said), contextlib.redirect_stdout(printed):
-        status = command(arguments)
-    lines = [line for line in said.getvalue().splitlines() if line and not line.startswith("warning:")]
+    status, printed, said = said_of(arguments)
+    lines = [line for line in said.splitlines() if line and not line.startswith("warning:")]
     if status and not lines:
-        lines = printed.getvalue().splitlines()[:1]
+        lines = printed.splitlines()[:1]
     sentence = lines[-1].replace(str(out.folder) + "/", "") if status and lines else ""
     out.steps.append((verb, status, sentence))
     print(f"{out.study.name}: {verb}: exit {status} {sentence[:160]}", flush=True)
     return status
+
+
+def said_of(arguments: list[str]) -> tuple[int, str, str]:
+    """A command's exit status, and what it wrote to stdout and stderr."""
+    said, printed = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stderr(said), contextlib.redirect_stdout(printed):
+        status = command(arguments)
+    return status, printed.getvalue(), said.getvalue()
 
 
 def power_of(path: Path, crane: Crane, model_file: str | Path) -> tuple[Run, FloatArray]:

@@ -1,12 +1,14 @@
 """The page of `make campaign-real`: what is expected of each real data set beside what came out."""
 
+import json
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from campaign.commit import commit
-from campaign.real import Outcome, loss_by_cycle, power_error, power_of
+from campaign.real import EXAMPLES, Outcome, loss_by_cycle, power_error, power_of, said_of
 from winch_friction.records.crane_file import load_crane
 
 EXPECTED = {
@@ -65,6 +67,10 @@ def page(outcomes: list[Outcome], images: Path) -> str:
         "scenario `ahc_measured_heave` (`sea: {kind: measured, file: ...}`), which `simulate`, `demo --scenario` and "
         "the closed-loop campaign sail. Simulated for 300 s (seed 0, 55 t, the crane tip follows 0.6 of the heave):",
         "", *_sailed(), "",
+        "## Check of every shipped example", "",
+        "`winch-friction check` on the examples of `config/examples`, imported by their own `map.yaml`, with nothing "
+        "but the crane named. 0: nothing contradicts the crane; 2: something does.", "",
+        *_checked(), "",
     ]  # fmt: skip
     return "\n".join(lines)
 
@@ -133,6 +139,32 @@ def _sailed() -> list[str]:
         f"heave speed of the crane tip {np.std(heave):.2f} m/s RMS, at most {np.abs(heave).max():.2f} m/s; left of the "
         f"heave at the load, without friction feedforward: {1e3 * float(np.sqrt(np.mean(left**2))):.1f} mm RMS."
     ]
+
+
+def _checked() -> list[str]:
+    """A row per shipped example: how many runs, what check answers, how much it found."""
+    lines = ["| example | runs | exit | said | warnings, notes |", "|---|---|---|---|---|"]
+    for name, crane in (("practice_150t", "crane_150t"), ("winch_100kw", "winch_100kw"),
+                        ("worm_drive", "worm_drive"), ("ship_heave", "crane_150t")):  # fmt: skip
+        runs, status, said, findings = _check_of(EXAMPLES / name, crane)
+        count = [sum(each["severity"] == kind for each in findings) for kind in ("warning", "note")]
+        lines.append(f"| {name} | {runs} | {status} | {said} | {count[0]}, {count[1]} |")
+    return lines
+
+
+def _check_of(example: Path, crane: str) -> tuple[int, int, str, list[dict[str, Any]]]:
+    with tempfile.TemporaryDirectory() as folder:
+        runs, mapped = sorted(example.glob("*.parquet")), example / "map.yaml"
+        if mapped.is_file():
+            logs = sorted(map(str, example.glob("*.csv")))
+            said_of(["import", *logs, "--map", str(mapped), "--out", f"{folder}/runs"])
+            runs = sorted(Path(folder, "runs").glob("*.csv"))
+        arguments = ["check", *map(str, runs), "--crane", crane, "--out", f"{folder}/check"]
+        status, printed, errors = said_of(arguments)
+        found = Path(folder, "check", "check.json")
+        findings = json.loads(found.read_text(encoding="utf-8"))["findings"] if found.is_file() else []
+        lines = printed.splitlines() or [each for each in errors.splitlines() if not each.startswith("warning:")]
+        return len(runs), status, lines[0].replace("|", "/"), findings
 
 
 def _draw(outcome: Outcome, path: Path, target: Path, drift: list[tuple[float, float]]) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import winch_friction as wf
+from winch_friction.commissioning.channels import channel_findings
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.finding import first_contradiction
@@ -48,3 +49,12 @@ def test_a_hook_load_of_zero_while_the_motors_hold_tonnes_is_a_dead_cell(run, lo
     assert "load cell" in found.sentence
     held = float(found.sentence.partition("about ")[2].split()[0])
     assert held == pytest.approx(run["hook_load"].mean() / 1e3, rel=0.1)
+
+
+@pytest.mark.parametrize(("stands_at", "said"), [(0.0, 0), (50.0, 1)])
+def test_a_speed_that_stands_at_zero_is_a_rest_and_at_another_value_is_stuck(run, stands_at, said):
+    speed = run["motor_speed"] + 1e-3 * np.random.default_rng(0).standard_normal(len(run))
+    rests = np.where((run.time > 20.0) & (run.time < 26.0), stands_at, speed)
+    columns = {name: rests if name == "motor_speed" else run[name] for name in run.columns}
+    found = [each for each in channel_findings(replace(run, columns=columns), CRANE) if each.cause == "stuck"]
+    assert len(found) == said

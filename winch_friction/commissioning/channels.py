@@ -152,7 +152,7 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
         return
     if kind in MAY_STAND or span <= 0.0:
         return
-    if each.longest_still > STUCK and _changes_always(values):
+    if each.longest_still > STUCK and _changes_always(values) and not _rests(run, each):
         said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
         yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
     if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
@@ -173,6 +173,15 @@ def _read(column: str, value: float, of_size: bool = False) -> str:
     display = display_unit(column) or unit
     scale, offset = conversion_to_si(display, unit, column) if display != unit else (1.0, 0.0)
     return f"{(value - (0.0 if of_size else offset)) / scale:.4g} {display}"
+
+
+def _rests(run: Run, each: ChannelSummary) -> bool:
+    """Whether it is a speed of zero that stands: a winch at rest, if nothing else moved meanwhile (`dead_findings`)."""
+    if each.channel != "motor_speed":
+        return False
+    values = run["motor_speed"]
+    places = np.concatenate(([0], np.flatnonzero(np.diff(values) != 0.0) + 1, [len(values) - 1]))
+    return bool(values[places[np.diff(run.time[places]).argmax()]] == 0.0)
 
 
 def _changes_always(values: FloatArray) -> bool:

@@ -5,6 +5,7 @@ Values are in the gap's unit and weighted by each record's own noise.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -62,13 +63,34 @@ class Blocks:
 
 @dataclass(frozen=True)
 class Grams:
-    """Per segment: G (s, c, c), b (s, c), y2 (s,), count (s,) in units of the noise; and each segment's record."""
+    """Per segment: Gram matrix, b (s, c), y2 (s,), count (s,) in units of the noise; and each segment's record.
 
-    g: FloatArray
+    Of the symmetric matrices, the largest thing there is, the upper half is kept, row by row (s, c (c + 1)/2).
+    """
+
+    upper: FloatArray
     b: FloatArray
     y2: FloatArray
     count: FloatArray
     run: np.ndarray
+
+    @cached_property
+    def _place(self) -> np.ndarray:
+        """Where each entry of a matrix stands in its upper half, (c, c)."""
+        size = self.b.shape[1]
+        rows, columns = np.triu_indices(size)
+        place = np.empty((size, size), np.int32)
+        place[rows, columns] = place[columns, rows] = np.arange(len(rows))
+        return place
+
+    def total(self, own: np.ndarray | None = None) -> FloatArray:
+        """The sum over all segments or these, (c, c)."""
+        upper = self.upper if own is None else self.upper[own]
+        return np.asarray(upper.sum(axis=0)[self._place])
+
+    def part(self, own: np.ndarray, index: np.ndarray) -> FloatArray:
+        """The matrices of these segments and columns, (own, index, index)."""
+        return np.asarray(self.upper[own[:, None, None], self._place[np.ix_(index, index)]])
 
 
 def segment_length(total: float) -> float:
@@ -115,7 +137,7 @@ def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float]) -> Blocks:
     }
     return Blocks(
         y=np.concatenate([t.y for t in tables]),
-        x=np.concatenate([t.x for t in tables]),
+        x=_stacked([t.x for t in tables]),
         run=np.concatenate([np.full(len(t.y), k) for k, t in enumerate(tables)]),
         segment=np.concatenate([t.segment + o for t, o in zip(tables, offsets[:-1], strict=True)]),
         weight=np.concatenate([np.full(len(t.y), 1.0 / noise[k]) for k, t in enumerate(tables)]),
@@ -127,17 +149,20 @@ def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float]) -> Blocks:
 
 def grams(blocks: Blocks) -> Grams:
     """Gram matrices of every segment."""
-    z = np.column_stack([blocks.x, blocks.y]) * blocks.weight[:, None]
     order = np.argsort(blocks.segment, kind="stable")
-    z, segment = z[order], blocks.segment[order]
-    if not len(segment):
-        size = blocks.x.shape[1]
-        return Grams(np.zeros((0, size, size)), np.zeros((0, size)), np.zeros(0), np.zeros(0), np.zeros(0, int))
+    segment, size = blocks.segment[order], blocks.x.shape[1]
     _, starts = np.unique(segment, return_index=True)
-    ends = np.append(starts[1:], len(segment))
-    count, size = len(starts), blocks.x.shape[1]
-    g, b, y2 = np.empty((count, size, size)), np.empty((count, size)), np.empty(count)
+    ends = np.append(starts[1:], len(segment))[: len(starts)]
+    half = np.triu_indices(size)
+    upper, b, y2 = np.empty((len(starts), len(half[0]))), np.empty((len(starts), size)), np.empty(len(starts))
     for k, (first, last) in enumerate(zip(starts, ends, strict=True)):
-        full = z[first:last].T @ z[first:last]
-        g[k], b[k], y2[k] = full[:-1, :-1], full[:-1, -1], full[-1, -1]
-    return Grams(g, b, y2, (ends - starts).astype(float), blocks.run[order][starts])
+        own = order[first:last]
+        z = np.column_stack([blocks.x[own], blocks.y[own]]) * blocks.weight[own, None]
+        full = z.T @ z
+        upper[k], b[k], y2[k] = full[half], full[:-1, -1], full[-1, -1]
+    return Grams(upper, b, y2, (ends - starts).astype(float), blocks.run[order][starts])
+
+
+def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
+    """Parts behind each other; one alone as it is."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -43,13 +43,13 @@ class CrossFit:
         self.problem = problem
         g = problem.grams
         self.fold = _folds(g.run)
-        self.total_g, self.total_b = g.g.sum(axis=0), g.b.sum(axis=0)
+        self.total_g, self.total_b = g.total(), g.b.sum(axis=0)
         self.total_y2 = float(g.y2.sum())
         self.unresolved = float(problem.unresolved.sum())
         self.sums = []
         for k in np.unique(self.fold):
             own = np.flatnonzero(self.fold == k)
-            self.sums.append((own, self.total_g - g.g[own].sum(axis=0), self.total_b - g.b[own].sum(axis=0)))
+            self.sums.append((own, self.total_g - g.total(own), self.total_b - g.b[own].sum(axis=0)))
 
     @property
     def floor(self) -> float:
@@ -73,7 +73,7 @@ class CrossFit:
         loss, beta = self.train_loss(slots)
         for k, (own, sum_g, sum_b) in enumerate(self.sums):
             left_out[k] = without = self.problem.fit(sum_g, sum_b, columns, beta)
-            part = g.g[np.ix_(own, index, index)]
+            part = g.part(own, index)
             losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ without + (part @ without) @ without
         return Explanation(tuple(slots), losses, beta, loss, left_out)
 

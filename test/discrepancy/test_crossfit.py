@@ -1,5 +1,7 @@
 """Evidence that an effect has the same size whichever run is left out, and curves where no run has been."""
 
+from dataclasses import fields, replace
+
 import numpy as np
 import pytest
 
@@ -92,3 +94,35 @@ def test_a_straight_curve_is_not_held_back():
     assert np.array([1.0, 0.0, 0.0]) @ convex @ np.array([1.0, 0.0, 0.0]) == 0.0
     assert np.array([1.0, 1.0, 0.0]) @ convex @ np.array([1.0, 1.0, 0.0]) > 0.1
     assert bending(Table("map", (("wire_out", knots), ("pressure", knots)))) is None
+
+
+def test_halves_of_gram_matrices_are_the_whole():
+    blocks = problem_with(np.ones(RUNS)).blocks
+    x = np.column_stack([blocks.x, blocks.x[:, 0] ** 2, blocks.y**3])
+    weight = 1.0 / (1.0 + blocks.run)
+    own, index = np.array([3, 17, 4]), np.array([2, 0])
+    kept = grams(replace(blocks, x=x, weight=weight))
+    z = x * weight[:, None]
+    whole = np.array([z[blocks.segment == k].T @ z[blocks.segment == k] for k in np.unique(blocks.segment)])
+    np.testing.assert_array_equal(kept.total(), whole.sum(axis=0))
+    np.testing.assert_array_equal(kept.total(own), whole[own].sum(axis=0))
+    np.testing.assert_array_equal(kept.part(own, index), whole[np.ix_(own, index, index)])
+
+
+def test_segments_need_not_stand_in_order():
+    blocks = problem_with(np.ones(RUNS)).blocks
+    mixed = np.random.default_rng(1).permutation(len(blocks.y))
+    shuffled = replace(
+        blocks, y=blocks.y[mixed], x=blocks.x[mixed], run=blocks.run[mixed], segment=blocks.segment[mixed],
+        weight=blocks.weight[mixed],
+    )  # fmt: skip
+    ours, theirs = grams(shuffled), grams(blocks)
+    np.testing.assert_allclose(ours.upper, theirs.upper, rtol=1e-12)
+    np.testing.assert_allclose(ours.b, theirs.b, rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(ours.run, theirs.run)
+
+
+def test_no_block_is_no_segment():
+    blocks = problem_with(np.ones(RUNS)).blocks
+    none = replace(blocks, **{f.name: getattr(blocks, f.name)[:0] for f in fields(blocks) if f.name != "features"})
+    assert grams(none).total().tolist() == [[0.0, 0.0], [0.0, 0.0]]

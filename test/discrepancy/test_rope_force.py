@@ -1,5 +1,6 @@
 """A winch of unknown drive, known by the rope's force and the mechanical power alone."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -143,3 +144,21 @@ def test_the_real_winch_has_the_inertia_that_hindsight_gives_it():
     assert sizes["e_R"] == pytest.approx(0.118, abs=0.02)
     assert len(found["effects"]) == 4, "nothing after that"
     assert any("undecided between temperature and wear" in note for note in found["notes"])
+
+
+def test_a_run_shares_the_arrays_that_no_model_changes():
+    """To the bit: a NaN is the same NaN, and a zero of the other sign is another."""
+    run = cycle(0, "one")
+    old = prepare(run, winch(), BARE)
+    zeros = old.gap.copy()
+    zeros[3] = -0.0
+    new = replace(prepare(run, winch(), BARE), gap=zeros)
+    old = replace(old, gap=np.where(np.arange(len(zeros)) == 3, 0.0, zeros))
+    shared = new.sharing(old)
+    assert new.speed is not old.speed
+    assert shared.speed is old.speed
+    assert shared.channels["motor_speed"] is old.channels["motor_speed"]
+    assert shared.gap is new.gap
+    for own, each in zip(new.point, shared.point, strict=True):
+        np.testing.assert_array_equal(each, own)
+    assert (shared.name, shared.wire_mode, shared.present) == (new.name, new.wire_mode, new.present)

@@ -139,7 +139,7 @@ def expand_around(
         spikes = np.zeros_like(old.spikes) if turning else old.spikes
         load = given.loads.get(run.name, NAN)
         new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes)
-        prepared.append(replace(new, corrections=old.corrections))
+        prepared.append(replace(new, corrections=old.corrections).sharing(old))
     return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
 
 

@@ -1,6 +1,8 @@
 """CSV and Parquet run files: units, round trips, and one clear line for whatever is wrong."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from run_strategies import make_run, runs, same
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
+from winch_friction.records.parquet_file import _doubles
 from winch_friction.records.runs import read_run, read_runs, write_run
 
 FEW = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -168,3 +171,23 @@ def test_a_failed_write_leaves_the_good_file(tmp_path):
         write_run(Run("x", make_run().columns, aside={"odd": np.arange(3)}), path)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["x.parquet"]
+
+
+def test_doubles_of_a_sliced_column_in_chunks_are_its_values():
+    pyarrow = pytest.importorskip("pyarrow")
+    values = [0.0, -0.0, float("nan"), float("inf"), *np.random.default_rng(0).normal(size=20).tolist()]
+    column = pyarrow.chunked_array([values[:7], [], values[7:]]).slice(2, 15)
+    ours = _doubles(column)
+    assert ours.tobytes() == np.array(values[2:17]).tobytes()
+    assert ours.flags.writeable
+    assert len(_doubles(pyarrow.chunked_array([], pyarrow.float64()))) == 0
+
+
+def test_a_parquet_run_is_read_without_pandas(tmp_path):
+    pytest.importorskip("pyarrow")
+    path = write_run(make_run(), tmp_path / "x.parquet")
+    program = (
+        "import sys; from pathlib import Path; from winch_friction.records.runs import read_run;"
+        f"read_run(Path({str(path)!r})); assert 'pandas' not in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

@@ -64,7 +64,18 @@ def _table(path: Path) -> Any:
 
 
 def _numbers(path: Path, header: Header, chunked: Any) -> FloatArray:
+    if str(chunked.type) == "double" and not chunked.null_count:
+        return _doubles(chunked)
     try:
         return np.asarray(chunked.to_numpy(), dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{path}: column '{header.text}': {chunked.type} values are not numbers") from error
+
+
+def _doubles(chunked: Any) -> FloatArray:
+    """A column without nulls from its buffers; pyarrow's own way imports pandas, at a quarter of a second and 30 MB."""
+    parts = [np.empty(0)]
+    for chunk in chunked.chunks:
+        if len(chunk):
+            parts.append(np.frombuffer(chunk.buffers()[1])[chunk.offset : chunk.offset + len(chunk)])
+    return np.concatenate(parts)

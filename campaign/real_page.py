@@ -41,8 +41,8 @@ NOTES = {
     "load-proportional loss that depends on the direction, as expected. Not told apart: Stribeck from the rest, for it "
     "shows hoisting only and the other way round lowering. Torque ripple is named "
     "from the shaft's angle; the paper does not speak of it.",
-    "emps": "Beside what is expected: Coulomb, offset and asymmetry are named and nothing else. The published offset is "
-    "that of a symmetric fit; with the asymmetry beside it (36.5 N s/m at the mean speed of 0.08 m/s is 3.0 N) the "
+    "emps": "Beside what is expected: Coulomb, offset and asymmetry are named and nothing else. The published offset "
+    "is that of a symmetric fit; with the asymmetry beside it (36.5 N s/m at the mean speed of 0.08 m/s is 3.0 N) the "
     "offset is not told from zero, and is an extra name.",
 }
 

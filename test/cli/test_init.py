@@ -137,3 +137,22 @@ def test_what_was_written_is_said_as_json(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out) == {"written": [str(out)]}
     assert run(["init", "schemas", "--out", str(tmp_path / "schemas"), "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["written"]) == len(list((tmp_path / "schemas").iterdir())) > 3
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--displacement", "0.0000255", "--displacement 2.55e-05 is outside 5 ... 5000 cm^3/rev"),
+        ("--radius", "600", "--radius 600 is outside 0.05 ... 5 m"),
+        ("--wire", "0.044", "--wire 0.044 is outside 2 ... 300 mm"),
+        ("--load", "50000", "times the rated load of 50000 t"),
+        ("--gear-ratio", "1.8", "times the rated load of 50 t"),
+    ],
+)
+def test_a_figure_in_another_unit_is_not_written_down(option, value, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    arguments = list(CRANE)
+    arguments[arguments.index(option) + 1] = value
+    assert run(["init", "crane", *arguments]) == 2
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -82,9 +82,10 @@ def test_help_imports_no_verb():
     assert result.returncode == 0, result.stderr
 
 
-def test_a_reader_that_has_gone_is_no_defect():
-    """`| head`: rich ends with status 1 where a table finds nobody to read it."""
-    call = [sys.executable, "-c", "from winch_friction.cli.main import main; main()", "list", "effects"]
+@pytest.mark.parametrize("arguments", [["list", "effects"], ["compare", "a6vm215_crane1", "a6vm215_crane2"]])
+def test_a_reader_that_has_gone_is_no_defect(arguments):
+    """`| head`: rich ends with status 1 where a table finds nobody to read it, Typer where a line does."""
+    call = [sys.executable, "-u", "-c", "from winch_friction.cli.main import main; main()", *arguments]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as started:
         started.stdout.close()
         said = started.stderr.read()

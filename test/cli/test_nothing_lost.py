@@ -101,3 +101,14 @@ def test_a_suppliers_table_taken_for_a_run_is_told_apart(here, capsys):
     said = capsys.readouterr().err
     assert "line 1 is a remark" in said
     assert "identify motor" in said
+
+
+def test_a_folder_of_runs_is_not_one_recording(here, capsys):
+    assert run(["replay", ".", "--crane", "crane_150t", "--model", "a6vm215_crane2"]) == 2
+    assert "replay takes one recording" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("verb", ["dashboard", "watch"])
+def test_a_bag_that_is_not_there_is_said_at_once(verb, here, capsys):
+    assert run([verb, "--bag", "nothere", *(["--port", "0"] if verb == "dashboard" else [])]) == 2
+    assert "nothere: no such bag" in capsys.readouterr().err

@@ -59,3 +59,17 @@ def test_a_motor_of_another_size_is_refused(tmp_path, capsys):
     assert "largest displacement" in error
     assert "\n" not in error
     assert not out.exists()
+
+
+def test_a_model_is_not_drawn_on_another_crane(short, capsys):
+    assert run(["show", "a6vm215_crane2", "--crane", "emps"]) == 2
+    assert run(["plot", short, "--model", "emps_viscous", "--crane", "crane_150t"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("does not belong to crane") == 2
+
+
+def test_the_crane_that_a_model_without_one_is_drawn_on_is_said(capsys):
+    assert run(["show", "a6vm215"]) == 0
+    assert "model 'a6vm215' names none: drawn on 'crane_150t'" in capsys.readouterr().err
+    assert run(["show", "a6vm215_crane2"]) == 0
+    assert "drawn on" not in capsys.readouterr().err

@@ -20,6 +20,10 @@ LEAKAGE, CASE, DAMPING = 5.0e-12, 5.0e-13, 1.5e5  # m^3/s/Pa, m^3/s/Pa, N s/m
 PASSIVE_PRESSURE = 275e5  # Pa, that carries the load in heave compensation
 MODEL_SPREAD = 0.3  # relative 1 sigma of a scaled model's parameters: cranes of one size differ by as much
 
+# what is built, generously: beyond it a figure was meant in another unit
+USUAL = {"displacement": (5.0, 5000.0, "cm^3/rev"), "radius": (0.05, 5.0, "m"), "wire": (2.0, 300.0, "mm")}
+HOLDS = (0.5, 10.0)  # of the rated load; the shipped crane's motors hold 1.7 times theirs
+
 
 @dataclass(frozen=True)
 class CraneFacts:
@@ -42,16 +46,42 @@ class CraneFacts:
                  if not getattr(self, name) > 0]  # fmt: skip
         if not 0 <= self.active < max(self.motors, 1):
             wrong.append(f"--active {self.active} must be 0 ... {self.motors - 1}: the others are passive")
+        wrong += [] if wrong else self._unlikely()
         if wrong:
             raise InputError(f"init crane: {'; '.join(wrong)}")
+
+    def _unlikely(self) -> list[str]:
+        """Figures that are another unit's: outside what is built, or motors that cannot hold the rated load."""
+        found = [
+            f"--{name} {getattr(self, name):g} is outside {low:g} ... {high:g} {unit}"
+            for name, (low, high, unit) in USUAL.items()
+            if not low <= getattr(self, name) <= high
+        ]
+        share = self.holds / self.load
+        if not found and not HOLDS[0] <= share <= HOLDS[1]:
+            found.append(
+                f"at 300 bar these motors hold {self.holds:.3g} t, {share:.2g} times the rated load of {self.load:g} "
+                "t: look at --displacement (per motor), --motors, --gear-ratio and --radius again"
+            )
+        return found
+
+    @property
+    def radii(self) -> list[float]:
+        """Rope radius of each layer, m."""
+        return [self.radius + 0.87 * 1e-3 * self.wire * k for k in range(self.layers)]
+
+    @property
+    def holds(self) -> float:
+        """What all motors hold at 300 bar on the outermost layer, t."""
+        displacement = self.motors * self.displacement * CM3_PER_REV
+        return displacement * 300e5 * self.gear_ratio / (GRAVITY * self.radii[-1]) / 1e3
 
 
 def crane_text(f: CraneFacts) -> str:
     """The crane file."""
     size = f.motors * f.displacement / (MOTORS * DISPLACEMENT)
     wire = (f.wire / WIRE) ** 2
-    radii = [f.radius + 0.87 * 1e-3 * f.wire * k for k in range(f.layers)]
-    holds = f.motors * f.displacement * CM3_PER_REV * 300e5 * f.gear_ratio / (GRAVITY * radii[-1]) / 1e3
+    radii, holds = f.radii, f.holds
     inertia = f.inertia or INERTIA * f.motors / MOTORS * (f.displacement / DISPLACEMENT) ** (5.0 / 3.0)
     source = "as given" if f.inertia else "ESTIMATE, scaled from crane_150t: motors, gear and drum, without the load"
     groups = f"  main: {f.motors}"

@@ -20,6 +20,8 @@ BAG_PERIOD = 0.2  # s of the bag per frame
 
 def frames(bag: Path | None, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
     """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes."""
+    if bag is not None and not bag.exists():
+        raise InputError(f"{bag}: no such bag")
     return bag_frames(bag, namespace, rate) if bag is not None else live_frames(namespace)
 
 

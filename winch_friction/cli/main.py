@@ -57,8 +57,11 @@ def run(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _said("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the pipe's reader has gone: nothing to say
-        return DONE
+        return _nobody_reads()
+    except SystemExit as end:  # Typer ends so where `print` finds nobody to read it
+        if not isinstance(end.__context__, BrokenPipeError):
+            raise
+        return _nobody_reads()
     except OSError as error:
         return _bad_input(f"{error.filename or 'input or output'}: {error.strerror or error}")
     except ModuleNotFoundError as error:
@@ -67,6 +70,12 @@ def run(arguments: Sequence[str]) -> int:
         if hasattr(error, "format_message"):  # a usage error of Typer's, from whichever click it carries
             return _bad_input(error.format_message() + _usage_hint(error))
         return _defect(error)
+
+
+def _nobody_reads() -> int:
+    """The pipe's reader has gone: nothing to say, not even what is still buffered."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return DONE
 
 
 def _missing_library(error: ModuleNotFoundError) -> int:

@@ -31,6 +31,7 @@ def command(
     from winch_friction.cli.inputs import read_all
     from winch_friction.cli.outputs import PAGE, refuse_other_kind
     from winch_friction.physics.errors import InputError
+    from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
     from winch_friction.report.run_page import channel_rows, write_run_page
@@ -38,11 +39,13 @@ def command(
     if model and not crane:
         raise InputError("plot: --model needs --crane")
     refuse_other_kind(out, PAGE, "a page")
-    machine = load_crane(crane) if crane else None
+    machine, drawn = load_crane(crane) if crane else None, load_model(model) if model else None
+    if drawn is not None and machine is not None:
+        refuse_other_crane(drawn, machine)
     read = read_all(runs, machine)
     for run in read:
         show_warnings(run.warnings)
-    page = write_run_page(out, read, machine, load_model(model) if model else None)
+    page = write_run_page(out, read, machine, drawn)
     rows = [row for run in read for row in channel_rows(run)]
     if as_json:
         show_json({"page": str(page), "channels": rows})

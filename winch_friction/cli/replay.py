@@ -48,6 +48,7 @@ def command(
     from winch_friction.cli.inputs import crane_of, refuse_implausible
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.cli.provenance import provenance_of
+    from winch_friction.physics.errors import InputError
     from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import ASSUMED_STD, refuse_other_crane, unstated
     from winch_friction.records.mapping import bag_options_of
@@ -56,6 +57,8 @@ def command(
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
 
+    if recording.is_dir() and any(each.suffix in (".csv", ".parquet", ".pq") for each in recording.iterdir()):
+        raise InputError(f"{recording}: a folder of runs; replay takes one recording: name one file of it, or a bag")
     refuse_input_as_output(out, [recording, model, crane])
     refuse_input_as_output(picture, [recording, model, crane])
     options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.cli.outputs import PAGE, refuse_other_kind
@@ -66,11 +66,18 @@ def _of_file(name: str) -> str:
 
 def curve_crane(model: Any, crane: str) -> Any:
     """The crane that a model is drawn on: the given one, the model's own, else what fits its drive."""
+    from winch_friction.physics.identity import refuse_other_crane
     from winch_friction.records.crane_file import load_crane
 
+    if crane:
+        refuse_other_crane(model, load_crane(crane))
     electric = not any({"pressure", "displacement"} & set(term.reads) for term in model.terms)
     own = getattr(model, "crane", "")
-    return load_crane(crane or own or ("emps" if electric and "emps" in model.name else "crane_150t"))
+    if not crane and not own:
+        taken = "emps" if electric and "emps" in model.name else "crane_150t"
+        show_warnings([f"no --crane, and model '{model.name}' names none: drawn on '{taken}'"])
+        return load_crane(taken)
+    return load_crane(crane or own)
 
 
 def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) -> None:

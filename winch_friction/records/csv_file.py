@@ -74,7 +74,9 @@ def _text(path: Path) -> str:
 def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
     """The number of each row's last line, and its cells."""
     header = text.partition("\n")[0]
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=header.count))
+    # a StringIO would hold four bytes a letter
+    stream = io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8", newline="")
+    reader = csv.reader(stream, delimiter=max(",;\t", key=header.count))
     lines, rows = [], []
     try:
         for row in reader:

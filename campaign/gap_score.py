@@ -7,11 +7,13 @@ from campaign.rig import OUTSIDE_SIGNAL, cause_of
 
 LARGEST_SET = 3
 ONE_CAUSE = ("single", "law", "held_out")
+# a law of a cause that the package has another name for: a gain of the displacement's feedback is no offset
+OWN_NAME = {"swivel_offset:gain": "displacement_scale"}
 
 
 def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
     """What the table needs of one answer: detected, right, wrong single names, gap reduction, signals."""
-    truth = {cause_of(name) for name, _ in case.effects}
+    truth = {name for effect, _ in case.effects for name in _names_of(effect)}
     sets = [{effect["name"], *effect.get("indistinguishable_from", [])} for effect in answer["effects"]]
     verdict = answer["verdict"]
     named = [each for each in sets if each & truth and len(each) <= LARGEST_SET]
@@ -21,7 +23,7 @@ def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
         "sets": [sorted(each) for each in sets],
         "detected": verdict != "nothing_missing",
         "right": bool(named) and case.kind in ONE_CAUSE,
-        "found": len({name for name in truth if any(name in each for each in sets)}),
+        "found": sum(any(_names_of(name) & each for each in sets) for name, _ in case.effects),
         "wrong_single": any(len(each) == 1 and not each & truth for each in sets),
         "wrong_entry": any(not each & truth for each in sets),
         "signals": signals,
@@ -31,6 +33,10 @@ def score(case: Case, answer: dict[str, Any]) -> dict[str, Any]:
         **_proposed(case, answer),
         **_reduction(answer["gap"]),
     }
+
+
+def _names_of(effect: str) -> set[str]:
+    return {cause_of(effect), OWN_NAME.get(effect, cause_of(effect))}
 
 
 def _proposed(case: Case, answer: dict[str, Any]) -> dict[str, Any]:

@@ -235,6 +235,8 @@ def test_one_run_that_gets_worse_refuses_a_name():
     before = np.where(RUN == 3, noise(), 3.0 * WAVE + noise())
     assert "run 3" in proven(before, before, worse).why
     assert worse_runs(side(before, worse), np.random.default_rng(0)) == ("run 3",)
+    still_noise = np.where(RUN == 3, 1.3 * noise(), noise())
+    assert worse_runs(side(0.9 * before, still_noise), np.random.default_rng(0)) == ()
 
 
 @pytest.mark.parametrize(("left", "floor"), [(0.0, True), (0.3, True), (2.0, False)])

@@ -84,14 +84,17 @@ def leaves_too_much(side: Side) -> str:
 
 
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
-    """Locked runs whose gap grows significantly, beyond what matters to anybody."""
+    """Locked runs whose gap grows significantly, beyond what matters to anybody and beyond what is nothing by itself: where
+    an effect and what the base lacks cancelled, a run at its noise may stay at the floor and grow nevertheless.
+    """
     found = []
     # no chance smaller than that can come out of so many draws
     least = max(LIMITS.worse_p / max(len(side.runs), 1), 2.0 / LIMITS.bootstrap_draws)
     for k, run in enumerate(side.runs):
         own = side.blocks.run == k
         before, after = side.before[own], side.after[own]
-        if not own.any() or rms(after) <= LIMITS.worse * np.hypot(rms(before), side.least_noise):
+        ordinary = max(LIMITS.worse * np.hypot(rms(before), side.least_noise), LIMITS.at_the_floor * side.floor)
+        if not own.any() or rms(after) <= ordinary:
             continue
         if chance_of_no_gain(after, before, side.blocks.segment[own], side.blocks.run[own], rng) <= least:
             found.append(run.name)

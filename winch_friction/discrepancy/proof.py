@@ -84,8 +84,8 @@ def leaves_too_much(side: Side) -> str:
 
 
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
-    """Locked runs whose gap grows significantly, beyond what matters to anybody and beyond what is nothing by itself: where
-    an effect and what the base lacks cancelled, a run at its noise may stay at the floor and grow nevertheless.
+    """Locked runs whose gap grows significantly, beyond what matters to anybody and what is nothing by itself: where an
+    effect and what the base lacks cancelled, a run at its noise may stay at the floor and grow nevertheless.
     """
     found = []
     # no chance smaller than that can come out of so many draws

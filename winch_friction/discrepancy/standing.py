@@ -76,8 +76,8 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
 def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
     """The trial without its names where one law that is none of theirs does by itself what they do.
 
-    Of hundreds of laws one that picks the right runs by a step always leaves a little less of those it was chosen on; it
-    is not asked where one name leaves the locked runs at their floor.
+    Of hundreds of laws one that picks runs by a step always leaves a little less of those it was chosen on: none is
+    asked where one name leaves the locked runs at their floor.
     """
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]

@@ -10,8 +10,10 @@ from gap_rig import names_of, runs_with
 from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.run_states import told_by_a_signal, two_levels
+from winch_friction.discrepancy.run_states import levels_of, told_by_a_signal, two_levels
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.units import BAR
 from winch_friction.records.crane_file import load_crane
@@ -88,3 +90,23 @@ def test_what_a_logged_signal_tells_is_no_state():
     two, one = ("active", "passive"), ("main",)
     same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
     assert told_by_a_signal(same, there)
+
+
+def test_the_second_half_of_a_run_has_no_say_in_its_state():
+    """What begins in the middle of a run is no state of it: the first half says that it is not there."""
+    rng = np.random.default_rng(5)
+    count, runs = 200, 8
+    run = np.repeat(np.arange(runs), count)
+    position = np.tile(np.arange(count), runs)
+    wave = np.sign(np.sin(position / 7.0))
+    base = Base(("K",), 1, np.ones(1), np.zeros(1), -np.ones(1), np.ones(1))
+    slot = Slot("brake", "", (1,))
+    late = (run >= 5) & (position > count // 2)
+    for there, told in ((run >= 5, True), (late, False)):
+        y = 3.0 * wave * there + rng.standard_normal(len(run))
+        x = np.column_stack([0.0 * wave, wave])
+        blocks = Blocks(y, x, run, run, np.ones(len(run)), {}, np.sign(wave), position)
+        problem = Problem(Layout(base, (slot,), np.ones(2), -np.ones(2), np.ones(2)), blocks, grams(blocks), {})
+        levels, deviations = levels_of(problem, slot, runs)
+        assert np.all(np.abs(levels - 3.0 * told * (np.arange(runs) >= 5)) < 5.0 * deviations)
+        assert np.all(deviations < 0.6)

@@ -119,7 +119,7 @@ def _then(candidate: Candidate, state: State, found: Estimates, shape: Shape, si
 def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State | None:
     """In which runs it is, told by the first half of each; None where that is not one of two clear levels, or where
     a logged signal says as much."""
-    levels, deviations = _levels(problem, slot, len(runs))
+    levels, deviations = levels_of(problem, slot, len(runs))
     there = two_levels(levels, deviations)
     if there is None or told_by_a_signal(runs, there):
         return None
@@ -148,7 +148,7 @@ def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]
     return begins[first] - min(before, MARGIN), ends[last] + min(after, MARGIN)
 
 
-def _levels(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, FloatArray]:
+def levels_of(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, FloatArray]:
     """Size of a candidate in the first half of each run and its deviation, in its units, the base fitted to all of
     them; NaN where a run has none of it."""
     blocks, base = problem.blocks, list(problem.base_columns)

@@ -38,3 +38,14 @@ def test_running_the_proposed_scenarios_resolves_the_ambiguity():
     assert len(at_first) > 1
     assert result.verdict == "missing_effect"
     assert [effect.name for effect in result.effects] == ["pressure_offset"]
+
+
+def test_a_single_run_without_an_effect_is_no_discovery():
+    """A refit to the first half of one voyage goes astray; the model that made it leaves nothing, and stays."""
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    for seed in (0, 1):
+        run = simulate(load_scenario("ahc_55t_215"), crane, model, seed=seed).run
+        result = find_gap([Run("voyage", run.columns)], crane, model)
+        assert result.verdict == "nothing_missing"
+        assert result.model.values == model.values
+        assert result.holdout.size_after.value == result.holdout.size_before.value

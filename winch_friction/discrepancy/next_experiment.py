@@ -1,8 +1,9 @@
 """The experiment that would separate rivals best: T-optimality (Atkinson and Fedorov 1975) over feasible scenarios.
 
 Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size
-is the truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together.
-What the rival cannot imitate, in standard deviations of the measurement, is the expected separation.
+is the truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together;
+then the other way round, for nobody knows which of them is there. What cannot be imitated, in standard deviations of
+the measurement, is the expected separation.
 """
 
 from collections.abc import Mapping, Sequence
@@ -67,13 +68,17 @@ def plan_experiment(
 ) -> NextExperiment | None:
     """The scenario in which the nearest rival of `own` stays farthest away; None where none of them can be run."""
     others = tuple(slot for slot in fitted.slots if slot is not own)
+    imitating = [cross.explain((*others, rival)) for rival in rivals]
     separation: dict[str, tuple[float, Slot]] = {}
     for name in EXPERIMENTS:
         try:
             new = _simulated(name, crane, expansion, seed)
         except InputError:
             continue
-        z = [(_separation(cross, new, fitted, (*others, rival)), rival) for rival in rivals]
+        z = [
+            (_apart(cross, new, fitted, own, other, rival), rival)
+            for rival, other in zip(rivals, imitating, strict=True)
+        ]
         separation[name] = min(z, key=lambda pair: pair[0])
     if not separation:
         return None
@@ -92,6 +97,17 @@ def _simulated(name: str, crane: Crane, expansion: Expansion, seed: int) -> Cros
     measured = simulate(load_scenario(name), crane, expansion.model, seed=seed).run
     prepared = prepare(measured, crane, expansion.model)
     return CrossFit(build_problem([prepared], expansion.layout))
+
+
+def _apart(cross: CrossFit, new: CrossFit, one: Explanation, own: Slot, other: Explanation, rival: Slot) -> float:
+    """Sigma between two causes whichever of them is there, each imitated by the best law that the other's cause has:
+    with new runs that may be another one."""
+    others = tuple(slot for slot in one.slots if slot is not own)
+    found = []
+    for truth, imitator in ((one, rival), (other, own)):
+        family = [slot for slot in cross.problem.slots if slot.name == imitator.name]
+        found += [_separation(cross, new, truth, (*others, slot)) for slot in family]
+    return min(found)
 
 
 def _separation(cross: CrossFit, new: CrossFit, truth: Explanation, rival: Sequence[Slot]) -> float:

@@ -98,14 +98,19 @@ def propose(
     return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
 
 
-def best_law(search: Search, train: Sequence[str], rng: np.random.Generator) -> Scored | None:
-    """The law of the grammar that answers for a search's gap best, for its length; None where none is worth it."""
+def best_law(
+    search: Search, train: Sequence[str], rng: np.random.Generator, without: Sequence[str] = ()
+) -> Scored | None:
+    """The law of the grammar, `without` these kinds of factors, that answers for a search's gap best, for its length;
+    None where none is worth it."""
     runs = [run for run in search.expansion.runs if run.name in train]
-    found = _laws(search, runs, rng)
+    found = _laws(search, runs, rng, without)
     return found[0][0] if found else None
 
 
-def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator) -> list[tuple[Scored, float]]:
+def _laws(
+    search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator, without: Sequence[str] = ()
+) -> list[tuple[Scored, float]]:
     """Laws that come near the best on held-out segments, significantly; the simplest first."""
     cross, base = search.cross, search.cross.explain(())
     blocks = cross.problem.blocks
@@ -116,7 +121,8 @@ def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator)
         for g, group in enumerate(run.groups):
             members[g, blocks.run == k] = group.count
     grammar = Grammar(cross, base, torque, blocks.direction, members)
-    values = _evaluated([f for word in WORDS for f in factors(word, _covered(word, runs))], runs, most)
+    words = [f for word in WORDS for f in factors(word, _covered(word, runs)) if f.kind not in without]
+    values = _evaluated(words, runs, most)
     ranked = grammar.search(values)
     excess = max(base.loss - cross.floor, 1e-9)
     if not ranked or base.loss - ranked[0].loss < LIMITS.proposal_gain * excess:

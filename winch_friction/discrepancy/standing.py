@@ -23,7 +23,7 @@ from winch_friction.discrepancy.proposals import best_law
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide, excess
-from winch_friction.discrepancy.vocabulary import UNLIKE_A_CURVE
+from winch_friction.discrepancy.vocabulary import PICKING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
 # signals of an equation by the proposals' word for them
@@ -49,6 +49,11 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
         if not worse_runs(trial.holdout, rng):
             refit = trial
     judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
+    if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
+        # little data may lead a refit astray where the model that was given leaves nothing
+        given = as_given(split, options, _nameless(search), rng)
+        if at_the_floor(given.holdout):
+            return replace(given, search=replace(given.search, verdict=Verdict(NOTHING)))
     # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
     harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)
     return as_given(split, options, judged.search, rng) if harmful else judged
@@ -76,15 +81,16 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
 def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
     """The trial without its names where one law that is none of theirs does by itself what they do.
 
-    Of hundreds of laws one that picks runs by a step always leaves a little less of those it was chosen on: none is
-    asked where one name leaves the locked runs at their floor.
+    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: such are
+    not asked where one name leaves the locked runs at their floor.
     """
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
     left = excess(search.cross, search.explanation)
-    one = len(slots) == 1 and not at_the_floor(trial.holdout)
-    asked = len(slots) > 1 or (one and (slots[0].free or left > LIMITS.least_excess))
-    why = outdone(best_law(search, split.train, rng), search.cross, search.selection) if asked else ""
+    asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
+    without = PICKING if len(slots) == 1 and at_the_floor(trial.holdout) else ()
+    law = best_law(search, split.train, rng, without) if asked else None
+    why = outdone(law, search.cross, search.selection)
     if not why:
         return trial
     refit = tried(split, crane, options, _nameless(search), rng)

@@ -35,6 +35,7 @@ class Word:
     kinds: tuple[str, ...] = ("linear", "root", "square", "about", "step", "above", "below")
 
 
+PICKING = ("about", "step", "above", "below")  # of a signal that a run has one value of, these pick some of the runs
 UNLIKE_A_CURVE = ("lag", "hump", "wave", "sector")  # what no monotone function of a signal's present value draws
 _SHAPES = ("linear", "root", "square", "about", "step", "above", "below", "hump", "fade", "lag")
 WORDS = (

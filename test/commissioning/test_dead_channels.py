@@ -58,3 +58,19 @@ def test_a_speed_that_stands_at_zero_is_a_rest_and_at_another_value_is_stuck(run
     columns = {name: rests if name == "motor_speed" else run[name] for name in run.columns}
     found = [each for each in channel_findings(replace(run, columns=columns), CRANE) if each.cause == "stuck"]
     assert len(found) == said
+
+
+def test_a_unit_in_one_port_of_one_run_is_told_by_the_others(run):
+    """A tenth of the boost pressure upsets no torque balance; three runs that agree tell of the fourth."""
+
+    def named(k, factor=1.0, channel="main.pressure_b"):
+        return replace(run, name=f"run_{k}", columns={**run.columns, channel: factor * run[channel]})
+
+    for factor, words in ((0.1, "MPa under [bar]"), (14.5038, "psi under [bar]")):
+        spoilt = [named(0), named(1), named(2, factor), named(3, 1.1)]
+        found = first_contradiction(quick_check(spoilt, CRANE, MODEL))
+        assert found is not None
+        assert (found.cause, found.channel, found.runs) == ("unit", "main.pressure_b", ("run_2",))
+        assert words in found.sentence
+    for fine in ([named(0), named(1), named(2, 0.5), named(3, 2.0)], [named(0), named(1, 0.1)], [named(0, 0.1)]):
+        assert first_contradiction(quick_check(fine, CRANE, MODEL)) is None

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from winch_friction.commissioning.against import lone_units
 from winch_friction.commissioning.channels import cell_findings, clock_findings, frozen_findings
 from winch_friction.commissioning.dead import dead_findings
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
@@ -47,6 +48,7 @@ def diagnosed(
     findings = [
         *_named_crane(runs, crane, others),
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
+        *(lone_units(usable) if crane.drive.hydraulic else ()),
         *_trusted(_mistake(diagnosis, crane), crane),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),

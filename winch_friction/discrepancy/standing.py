@@ -184,14 +184,18 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
 
 
 def _each_proven(full: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
-    """The trial without those names, the last found first, that the locked runs do not need beside the others."""
+    """The trial without those names, the last found first, that the locked runs do not need beside the others: which
+    take nothing off them surely, or, beside a name whose law is not the catalogue's own and may want mending, those
+    without which nothing would be missing.
+    """
     for slot in reversed(full.search.selection.final.slots):
         search, final = full.search, full.search.selection.final
         brought = any(slot.name in each.brings for each in final.slots)
         if len(final.slots) == 1 or brought or slot.plain:
             continue
         without = trial_of(_without(search, slot))
-        if not adds(without.holdout, full.holdout, rng):
+        mends = any(each.law for each in without.search.explanation.slots) and at_the_floor(without.holdout)
+        if mends or not adds(without.holdout, full.holdout, rng):
             full = without
     return full
 

@@ -266,11 +266,21 @@ class _Search:
     verdict: Verdict = Verdict(MISSING)
 
 
-@pytest.mark.parametrize(("more", "stay"), [(0.0, ["wave"]), (0.8, ["wave", "other"])])
-def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, stay):
+@pytest.mark.parametrize(
+    ("more", "law", "stay"),
+    [
+        (0.0, "", ["wave"]),
+        (0.8, "", ["wave", "other"]),
+        (0.8, "a power", ["wave"]),
+        (2.5, "a power", ["wave", "other"]),
+    ],
+)
+def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
+    """Nor one that mends the shape of another law where nothing would be missing without it."""
     cross = crossfit(2.0 * WAVE + OTHER + noise())
-    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
-    search = _Search(cross, Selection(cross.explain(()), cross.explain(SLOTS), found))
+    slots = (replace(SLOTS[0], law=law), *SLOTS[1:])
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(slots), found))
 
     def trial_of(own):
         """Without the first name the locked gap is large, without the second by `more`."""

@@ -194,7 +194,7 @@ def _each_proven(full: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> T
         if len(final.slots) == 1 or brought or slot.plain:
             continue
         without = trial_of(_without(search, slot))
-        mends = any(each.law for each in without.search.explanation.slots) and at_the_floor(without.holdout)
+        mends = any(each.law for each in without.search.selection.final.slots) and at_the_floor(without.holdout)
         if mends or not adds(without.holdout, full.holdout, rng):
             full = without
     return full

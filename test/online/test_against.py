@@ -196,3 +196,41 @@ def test_stamps_that_advance_slowly_do_not_stretch_the_patience():
         sample = Sample(time=0.004 * k, motor_speed=-50.0, speed_reference=50.0)
         by_clock = agreement.contradictions(sample, 0.02 * k)
     assert "speed_reference turns against motor_speed" in by_clock
+
+
+@pytest.mark.parametrize("channel", ["motor_speed", "speed_reference"])
+def test_a_sender_with_two_voices_is_not_believed(channel):
+    """Two messages of one instant with opposite values, now one first and now the other: a coin decided the sign."""
+    fed = sailing(REVERSAL - 0.8)
+    began = fed.now
+
+    def flipped(sample: Sample) -> None:
+        setattr(sample, channel, -getattr(sample, channel))
+
+    for k in range(75):
+        fed.now += PERIOD
+        first, second = swell(fed.now), swell(fed.now)
+        flipped(first if k % 3 == 0 else second)
+        fed.send(first)
+        fed.send(second)
+        fed.hear(fed.service.tick(fed.now))
+    assert fed.torque == 0.0
+    assert against(fed, began) <= LONGEST
+    topic = SPEED if channel == "motor_speed" else REFERENCE
+    assert fed.service.inputs.arrivals[topic].reason == "two values under one stamp"
+    fed.run(1.5)
+    assert abs(fed.torque) > 50.0
+    check_invariants(fed)
+
+
+def test_a_message_that_comes_twice_is_no_second_voice():
+    fed, alone = sailing(REVERSAL + 0.5), sailing(REVERSAL + 0.5)
+    for _ in range(50):
+        fed.now += PERIOD
+        copy = swell(fed.now)
+        copy.motor_speed += 0.5  # rad/s: what a coarse clock gives one stamp
+        fed.send(swell(fed.now))
+        fed.send(copy)
+        fed.hear(fed.service.tick(fed.now))
+    alone.run(50 * PERIOD)
+    assert fed.torque == pytest.approx(alone.torque)

@@ -9,6 +9,7 @@ from typing import Any
 from winch_friction.online.options import ServiceOptions
 from winch_friction.online.plausibility import Plausibility
 from winch_friction.online.stamps import Stamp, StampWatch
+from winch_friction.online.voices import Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import NAN, Sample
@@ -17,6 +18,7 @@ from winch_friction.physics.winch.ranges import ChannelRanges
 from winch_friction.records.sample_stream import SampleStream
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
+TWO_VOICES = "two values under one stamp"
 UNREADABLE = "late, or without the joint that it should show"
 
 
@@ -46,6 +48,7 @@ class InputGate:
         self.arrivals = {topic: Arrivals() for topic in topics.inputs}
         self.last_stamp, self.last_arrival = -math.inf, math.inf
         self._plausible = Plausibility(self.ranges)
+        self._voices = Voices(self.ranges)
         self._on_jump = on_jump
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit)
@@ -64,6 +67,9 @@ class InputGate:
         arrivals.arrived = now
         self._refusal = ""
         self._taking = source.channels, now
+        if source.stamped and self._voices.contradict(source, message, now):
+            self._refuse(arrivals, TWO_VOICES)
+            return None
         if source.topic == self.topics.speed_topic:
             return self._speed(source, message, receipt, now, sent)
         if not source.stamped:
@@ -176,6 +182,7 @@ class InputGate:
     def _start_over(self) -> None:
         self._stream.forget()
         self._plausible.forget()
+        self._voices.forget()
         self._came.clear()
         self.last_stamp = -math.inf
 

@@ -149,8 +149,8 @@ def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]
 
 
 def levels_of(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, FloatArray]:
-    """Size of a candidate in the first half of each run and its deviation, in its units, the base fitted to all of
-    them; NaN where a run has none of it."""
+    """Size of a candidate in the first half of each run and its deviation from the others', in its units, the base
+    fitted to all of them; NaN where a run has none of it."""
     blocks, base = problem.blocks, list(problem.base_columns)
     half = np.array(
         [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
@@ -170,7 +170,12 @@ def levels_of(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, Floa
     inverse = np.linalg.pinv(h)
     beta = inverse @ (columns.T @ (blocks.y[first] * weight))
     left = blocks.y[first] * weight - columns @ beta
-    deviations = np.sqrt(np.diag(inverse)[at] * LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
+    # what the base does not know moves the levels of all runs alike, and nothing between them
+    covariance = inverse[np.ix_(at, at)][np.ix_(has, has)]
+    alike = np.eye(len(covariance)) - 1.0 / max(len(covariance), 1)
+    deviations = np.ones(len(at))
+    deviations[has] = np.sqrt(np.maximum(np.diag(alike @ covariance @ alike), 0.0))
+    deviations *= np.sqrt(LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
     return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
 
 

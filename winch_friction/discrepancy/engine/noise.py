@@ -32,8 +32,10 @@ def noise_of_run(
     freedom = window - order - 1
     quick = windows @ projector
     if skew is not None:
-        along = _windows(skew, position, window) @ projector
-        quick = quick - along * (along * quick).sum() / max(float((along**2).sum()), TINY)
+        # what is late by more than a little also leaves the skew's own change
+        both = [_windows(each, position, window) @ projector for each in (skew, np.gradient(skew))]
+        along = np.column_stack([each.ravel() / max(float(np.abs(each).max()), TINY) for each in both])
+        quick = quick - (along @ np.linalg.lstsq(along, quick.ravel(), rcond=None)[0]).reshape(quick.shape)
     variances = (quick**2).sum(axis=1) / freedom
     # that quantile of chi-squared, per degree of freedom
     expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom

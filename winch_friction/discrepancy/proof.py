@@ -171,7 +171,11 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[
 def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float) -> float:
     """Independent noise of one run, in the gap's unit."""
     own = blocks.run == k
-    return noise_of_run(values[own], blocks.position[own], least, skew[own]) if own.any() else 0.0
+    if not own.any():
+        return 0.0
+    # what is late by more than a little leaves the skew's own change as well
+    late = np.column_stack([skew[own], np.gradient(skew[own])]) if own.sum() > 1 else skew[own]
+    return noise_of_run(values[own], blocks.position[own], least, late)
 
 
 def drive_of(run: PreparedRun) -> float:

@@ -18,8 +18,8 @@ def noise_of_run(
 ) -> float:
     """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
 
-    A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew` is what signals that
-    are out of step leave in the values: in a quick sea it turns within the windows, and is no noise.
+    A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew`, one column
+    or several, is what signals out of step leave in the values: in a quick sea it turns within the windows, no noise.
     """
     floor = LIMITS.noise_floor * least
     window, order = LIMITS.noise_window, LIMITS.noise_order
@@ -32,9 +32,8 @@ def noise_of_run(
     freedom = window - order - 1
     quick = windows @ projector
     if skew is not None:
-        # what is late by more than a little also leaves the skew's own change
-        both = [_windows(each, position, window) @ projector for each in (skew, np.gradient(skew))]
-        along = np.column_stack([each.ravel() / max(float(np.abs(each).max()), TINY) for each in both])
+        each = [_windows(column, position, window) @ projector for column in np.atleast_2d(skew.T)]
+        along = np.column_stack([own.ravel() / max(float(np.abs(own).max()), TINY) for own in each])
         quick = quick - (along @ np.linalg.lstsq(along, quick.ravel(), rcond=None)[0]).reshape(quick.shape)
     variances = (quick**2).sum(axis=1) / freedom
     # that quantile of chi-squared, per degree of freedom

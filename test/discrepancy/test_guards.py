@@ -17,7 +17,15 @@ from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.rivals import does_as_well, near
 from winch_friction.discrepancy.engine.selection import Finding, Selection, _significant, select
-from winch_friction.discrepancy.proof import adds, at_the_floor, leaves_too_much, nothing_compared, prove, worse_runs
+from winch_friction.discrepancy.proof import (
+    _noise,
+    adds,
+    at_the_floor,
+    leaves_too_much,
+    nothing_compared,
+    prove,
+    worse_runs,
+)
 from winch_friction.discrepancy.standing import _each_proven, _sets, outdone
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
@@ -135,6 +143,15 @@ def test_signals_out_of_step_in_a_quick_sea_are_no_noise():
     assert noise_of_run(values, at) > 2.5
     assert noise_of_run(values, at, skew=skew) == pytest.approx(1.0, rel=0.2)
     assert noise_of_run(noise()[:600], at, skew=np.zeros(600)) == pytest.approx(1.0, rel=0.2)
+
+
+def test_the_locked_runs_noise_has_no_delay_in_it_however_long():
+    """A delay of more than a little leaves its column's own change as well; neither passes for noise of the proof."""
+    at = np.arange(600)
+    skew = np.cos(at / 1.1)
+    values = 5.0 * skew + 8.0 * np.gradient(skew) + noise()[:600]
+    found = _noise(values, skew, replace(crossfit(noise()).problem.blocks, run=0 * at, position=at), 0, 0.1)
+    assert found == pytest.approx(1.0, rel=0.2)
 
 
 def test_correlated_blocks_count_for_a_tenth():

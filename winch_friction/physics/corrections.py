@@ -58,7 +58,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
         for each in there:
             if each.declared.action is action:
                 columns = _ON_RUNS[action](columns, run, each)
-    names = tuple(dict.fromkeys(each.name for each in model.corrections))
+    names = tuple(dict.fromkeys(each.name for each in there))
     return replace(run, columns=columns, metadata={**run.metadata, "corrections": names}), right
 
 

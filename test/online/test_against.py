@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 
 import pytest
-from sea import CRANE, PERIOD, Fed, check_invariants, swell
+from sea import CRANE, PERIOD, TOPICS, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.online.agreement import Agreement
@@ -187,6 +187,28 @@ def test_an_input_that_came_long_ago_is_lost_however_young_its_stamp_looks() -> 
         fed.now += PERIOD
         fed.send(sample, skip=(SWASH,))
         assert "active.displacement" in fed.service.law.status()["missing"]
+
+
+def test_a_held_value_gets_no_younger_by_messages_that_are_too_old_to_replace_it() -> None:
+    """One command stamped 0.3 s ahead, then live ones under a stamp that stands still: once the speed reaches
+    the first, it looked young, because the others had kept on arriving."""
+    fed = sailing(REVERSAL + 1.0)
+    began = fed.now
+    first = True
+    while fed.now < began + 1.0:
+        fed.now += PERIOD
+        fed.send(swell(fed.now), skip=(REFERENCE,))
+        command = swell(fed.now)
+        command.time = began + (0.3 if first else 0.02)
+        first = False
+        message = dict(fed.messages(command))[REFERENCE]
+        fed.hear(fed.service.take(TOPICS.inputs[REFERENCE], message, fed.now, fed.now))
+        fed.hear(fed.service.tick(fed.now))
+        if fed.now > began + fed.config.max_age + 3.0 * PERIOD:
+            assert "speed_reference" in fed.service.law.status()["missing"]
+    over = [now for now, said in fed.published if now > began and said.friction_torque == 0.0]
+    assert over[0] - began <= fed.config.max_age + fed.config.ramp_time + 3.0 * PERIOD
+    check_invariants(fed)
 
 
 def test_stamps_that_advance_slowly_do_not_stretch_the_patience():

@@ -51,9 +51,9 @@ class InputGate:
         self._voices = Voices(self.ranges)
         self._on_jump = on_jump
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
-        self._stream = SampleStream(topics, hold, admit=self._admit)
+        self._stream = SampleStream(topics, hold, admit=self._admit, on_held=self._note_arrival)
         self._refusal = ""
-        self._came: dict[str, float] = {}  # steady s at which a column's last believed value arrived
+        self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
         self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
 
     # -- messages
@@ -143,10 +143,13 @@ class InputGate:
             if value == value or not self._refusal:
                 self._refusal = f"{column}: {refusal}"
             return False
+        return True
+
+    def _note_arrival(self, column: str) -> None:
+        """What is admitted and not held, because its stamp is older, does not make what is held any younger."""
         columns, arrived = self._taking
         if column in columns:
             self._came[column] = arrived
-        return True
 
     def _refuse(self, arrivals: Arrivals, reason: str) -> None:
         arrivals.refused += 1

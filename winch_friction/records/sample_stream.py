@@ -21,7 +21,7 @@ class SampleStream:
     `on_jump` is called when the speed's stamps fall back by more than `BACKWARD_JUMP`, before the sample is made;
     what is held is dropped first. A message without a stamp counts as measured at the next speed sent after it:
     clocks of different processes would place it differently, the order of sending does not. `admit` says of a column,
-    its stamp and its value whether it may be held.
+    its stamp and its value whether it may be held; `on_held` hears of every column whose value was.
     """
 
     def __init__(
@@ -30,9 +30,10 @@ class SampleStream:
         hold: InputHold,
         on_jump: Callable[[], None] = lambda: None,
         admit: Callable[[str, float, float], bool] = _any,
+        on_held: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.topics, self.hold = topics, hold
-        self._on_jump, self._admit = on_jump, admit
+        self._on_jump, self._admit, self._on_held = on_jump, admit, on_held
         self.counts: Counter[str] = Counter()
         self.rejected: Counter[str] = Counter()
         self.last_stamp = float("-inf")
@@ -87,6 +88,8 @@ class SampleStream:
         taken, first = False, True
         for channel, value in source.decode(message).items():
             accepted = self._admit(channel, stamp, value) and self.hold.put(channel, stamp, value)
+            if accepted:
+                self._on_held(channel)
             if first:
                 taken, first = accepted, False
         self.counts[source.topic] += 1

@@ -298,3 +298,29 @@ def test_a_file_with_a_window_that_is_none_says_so(crane2_model):
     content["corrections"]["pressure_offset"]["during"] = [1.0, 2.0]
     with pytest.raises(InputError, match="during must be a list of windows"):
         model_from_text(yaml.safe_dump(content), "m")
+
+
+def test_what_a_running_node_cannot_take_out_is_accepted_once_it_is_over(truth, crane_150t, crane2_model):
+    """A delay that was mended: no sample from now on has it. One that is there, or will be, is refused."""
+    now = 1000.0
+    for windows, over in (
+        (((0.0, 999.0),), True),
+        (((0.0, 10.0), (500.0, 999.0)), True),
+        (((0.0, 10.0), (999.0, 1001.0)), False),
+        (((0.0, 1000.0),), False),
+        (((0.0, float("inf")),), False),
+        (((2000.0, 3000.0),), False),
+        ((), False),
+    ):
+        model = replace(crane2_model, corrections=(Correction("signal_delay", 0.05, during=windows),))
+        with pytest.raises(InputError, match="signal_delay"):
+            SampleCorrector(crane_150t, model)
+        if over:
+            corrector = SampleCorrector(crane_150t, model, since=now)
+            assert corrector.impossible == ()
+            assert corrector.past == {"signal_delay": 999.0}
+            assert corrector.standing(now) == ()
+            assert corrector.standing(5.0) == ("signal_delay",)
+        else:
+            with pytest.raises(InputError, match="signal_delay"):
+                SampleCorrector(crane_150t, model, since=now)

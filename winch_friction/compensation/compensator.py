@@ -10,7 +10,7 @@ from winch_friction.compensation.inputs import Needs, pressure_per_torque
 from winch_friction.compensation.load import DrumTorque
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.compensation.speed_predictor import PredictedSpeed, SpeedPredictor
-from winch_friction.physics.corrections import SampleCorrector
+from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.direction import smooth_sign
@@ -48,6 +48,7 @@ class FeedforwardCompensator:
     through the load estimate. The feedback gain of measured pressure to feedforward to pressure is K3 + 2 K5 p / D,
     below 0.02, so it cannot build up.
 
+    `since` s is the samples' clock now: what a model's corrections say of the time before needs no correcting.
     Raises `InputError` when built with gains for unknown terms.
 
     >>> import winch_friction as wf
@@ -68,13 +69,17 @@ class FeedforwardCompensator:
     >>> compensator.reset()
     """
 
-    def __init__(self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None) -> None:
+    def __init__(
+        self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None,
+        since: float = -math.inf,
+    ) -> None:  # fmt: skip
         config = config or CompensatorConfig()
         check_gains(config.gains)
         self.crane, self.seed, self.config = crane, seed_model, config
         self._seed_law = FrictionLaw(seed_model, config.gains)
         self._law = self._seed_law
-        self._correct = SampleCorrector(crane, seed_model)
+        self._since = since  # s, the latest sample's stamp
+        self._correct = SampleCorrector(crane, seed_model, since=since)
         self._ranges = ChannelRanges(crane)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
@@ -131,7 +136,7 @@ class FeedforwardCompensator:
         model reads a motor group's pressure on an electric drive, or a correction cannot be taken out while running.
         """
         try:
-            correct = SampleCorrector(self.crane, model)
+            correct = SampleCorrector(self.crane, model, since=self._since)
             law = FrictionLaw(model, self.config.gains)
             refuse_other_crane(model, self.crane)
             refuse_outside_seed(model, self.seed, self.config.seed_range)
@@ -160,8 +165,10 @@ class FeedforwardCompensator:
         dt = self.output.arrive(sample.time, now)
         if dt == 0.0:
             self._predictor.reset()
+        self._since = sample.time
         sample = self._correct(sample)
-        self._lost = (*self._needs.missing(sample), *distrusted)
+        standing = (f"{name} cannot be taken out" for name in self._correct.standing(sample.time))
+        self._lost = (*self._needs.missing(sample), *distrusted, *standing)
         usable = not self._lost and self._aim(sample, dt)
         if not usable:
             self._predictor.reset()
@@ -194,6 +201,7 @@ class FeedforwardCompensator:
             "state": last.state if last else "waiting",
             "enabled": self._enabled,
             "model": self.model.name,
+            "past_corrections": past_corrections(self._correct),
             "missing": ", ".join(self._lost),
             "fade": self.output.fade.value,
             "friction_torque": self.output.torque,

@@ -23,7 +23,7 @@ from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
-from winch_friction.physics.corrections import SampleCorrector
+from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.identity import with_stated_std
 from winch_friction.physics.signals import Sample
@@ -78,8 +78,11 @@ class FrictionEstimator:
     False
     """
 
-    def __init__(self, crane: Crane, seed_model: FrictionModel, config: EstimatorConfig | None = None) -> None:
-        self._correct = SampleCorrector(crane, seed_model)  # refuses by name what only a whole run can be rid of
+    def __init__(
+        self, crane: Crane, seed_model: FrictionModel, config: EstimatorConfig | None = None, since: float = -math.inf
+    ) -> None:
+        # refuses by name what only a whole run can be rid of, unless it was over at `since` s
+        self._correct = SampleCorrector(crane, seed_model, since=since)
         self.config = config or EstimatorConfig()
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
@@ -113,7 +116,7 @@ class FrictionEstimator:
     def step(self, sample: Sample) -> Estimate:
         """Take one sample as it was measured; what the seed knows to be wrong with it is taken out first."""
         sample = self._correct(sample)
-        if not usable(sample, self._ranges):
+        if self.uncorrectable(sample) or not usable(sample, self._ranges):
             return self._rejected(sample, NAN, NAN)
         if self._last is None:
             return self._restart(sample) if self._begun else self._begin(sample)
@@ -123,6 +126,10 @@ class FrictionEstimator:
         if dt <= 0.0:
             return self._rejected(sample, NAN, NAN)
         return self._advance(self._last, sample, dt)
+
+    def uncorrectable(self, sample: Sample) -> tuple[str, ...]:
+        """Corrections of the seed that were over at the beginning and are there again: the clock was set back."""
+        return self._correct.standing(sample.time)
 
     def _advance(self, last: Accepted, sample: Sample, dt: float) -> Estimate:
         """Look one step ahead; the sample is taken in only if the gate admits what it says."""
@@ -252,6 +259,7 @@ class FrictionEstimator:
         return {
             "state": self._state,
             "enabled": self._enabled,
+            "past_corrections": past_corrections(self._correct),
             "prior": self.assumed or "as the seed states it",
             "drum_torque": self.drum_torque,
             "noise_factor": math.sqrt(self._filter.noise_factor),

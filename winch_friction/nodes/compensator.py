@@ -58,7 +58,9 @@ class CompensatorNode(WinchNode):
         self.own, config = self._own.read(self), self._config.read(self)
         topics = self.options.topics(crane)
         model.compile(len(topics.groups))  # now, not while the first sample waits
-        self.service = CompensatorService(crane, model, topics, config, self._service_options())
+        self.service = CompensatorService(crane, model, topics, config, self._service_options(), since=self.ros_now())
+        if past := self.service.law.status()["past_corrections"]:
+            self.get_logger().warning(f"model '{model.name}': over, and not taken out: {past}")
         self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
         self.inputs = Inputs(self, self.service, self._answer, self._latest(config))
         patience = self.options.watchdog_timeout

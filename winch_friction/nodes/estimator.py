@@ -60,7 +60,7 @@ class EstimatorNode(WinchNode):
         topics = self.options.topics(crane)
         model.compile(len(topics.groups))  # now, not while the first sample waits
         options = ServiceOptions(self.options.watchdog_timeout, self.options.stamp_window)
-        periods = {"model_period": self.own.model_period, "max_age": self.own.max_age}
+        periods = {"model_period": self.own.model_period, "max_age": self.own.max_age, "since": self.ros_now()}
         self.service = EstimatorService(crane, model, topics, self._config.read(self), options, **periods)
         self.law = self.service.law
         self._restore()

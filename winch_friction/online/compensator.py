@@ -33,15 +33,15 @@ class CompensatorService:
     """Messages, or rows of a run, in; what is to be published out.
 
     Every method that may publish returns a `Feedforward` or None. `now` is a clock in s that only goes forward: the
-    steady one live, that of the recording in a replay.
+    steady one live, that of the recording in a replay. `since` s is the stamps' clock at the beginning, if known.
     """
 
     def __init__(
         self, crane: Crane, seed: FrictionModel, topics: TopicMap, config: CompensatorConfig | None = None,
-        options: ServiceOptions | None = None,
+        options: ServiceOptions | None = None, *, since: float = -math.inf,
     ) -> None:  # fmt: skip
         self.options = options or ServiceOptions()
-        self.law = FeedforwardCompensator(crane, seed, config)
+        self.law = FeedforwardCompensator(crane, seed, config, since)
         self.schedule = ModelSchedule(self.options.model_delay)
         hold = InputHold(topics.groups, self.law.config.max_age, dict(self.law.config.max_ages))
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)

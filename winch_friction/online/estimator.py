@@ -31,9 +31,10 @@ class EstimatorService:
     def __init__(
         self, crane: Crane, seed: FrictionModel, topics: TopicMap, config: EstimatorConfig | None = None,
         options: ServiceOptions | None = None, *, model_period: float = 5.0, max_age: float = 0.1,
+        since: float = -math.inf,
     ) -> None:  # fmt: skip
         self.options, self.model_period = options or ServiceOptions(), model_period
-        self.law = FrictionEstimator(crane, seed, config)
+        self.law = FrictionEstimator(crane, seed, config, since)
         hold = InputHold(topics.groups, max_age, dict(SLOW_INPUTS))
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
         self.last: Estimate | None = None
@@ -56,7 +57,8 @@ class EstimatorService:
         return self._learn(self.inputs.fill(sample, now))
 
     def _learn(self, sample: Sample) -> Estimate:
-        self.missing = self.law.crane.drive.lacking(sample)
+        standing = (f"{name} cannot be taken out" for name in self.law.uncorrectable(sample))
+        self.missing = (*self.law.crane.drive.lacking(sample), *standing)
         self.last = self.law.step(sample)
         if self.last.accepted:
             gain = self._gain.contradiction(sample)

@@ -5,6 +5,7 @@ taken out in the opposite order. Loads, calculated gas pressures and the command
 right by then.
 """
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -30,7 +31,7 @@ from winch_friction.physics.winch.torque_balance import driving_group
 
 __all__ = [
     "DECLARED", "Action", "Correction", "DeclaredCorrection", "SampleCorrector", "check_corrections", "corrected",
-    "corrected_crane", "declared_correction",
+    "corrected_crane", "declared_correction", "past_corrections",
 ]  # fmt: skip
 
 Columns = dict[str, FloatArray]
@@ -188,18 +189,23 @@ _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction], Columns]] = {
 class SampleCorrector:
     """Takes a model's corrections out of one sample after the other; `crane` is the crane as corrected.
 
-    What a running node cannot take out (a delay, a gas that cools) is refused with `InputError`, by name, unless
-    `refuse` is False: then `uncorrected` names it, together with what the latest sample lacked the channel for.
+    What a running node cannot take out (a delay, a gas that cools) is refused with `InputError`, by name, if it may be
+    there from `since` on (s, the samples' clock now; not known: whenever it may be there at all), unless `refuse` is
+    False: then `uncorrected` names it, together with what the latest sample lacked the channel for. What was over by
+    then is `past`, with the end of its last window; a clock that is set back into such a window makes it `standing`.
     """
 
-    def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True) -> None:
+    def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True, since: float = -math.inf) -> None:
         self.crane = corrected_crane(crane, model.corrections)
-        self.impossible = tuple(dict.fromkeys(c.name for c in model.corrections if not c.declared.live))
+        foreign = [c for c in model.corrections if not c.declared.live]
+        self._over = [c for c in foreign if c.ends < since]
+        self.impossible = tuple(dict.fromkeys(c.name for c in foreign if not c.ends < since))
         if refuse and self.impossible:
             raise InputError(
                 f"model '{model.name}': a running node cannot take out {', '.join(self.impossible)}; "
-                "mend it at its source and take it out of the model's corrections"
+                "mend it at its source and take it out of the model's corrections, or end its windows ('during')"
             )
+        self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
         live = [c for c in model.corrections if c.declared.live]
         self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
         self._lacking: tuple[str, ...] = ()
@@ -209,6 +215,10 @@ class SampleCorrector:
         """Names of corrections that the latest sample went without."""
         return self.impossible + self._lacking
 
+    def standing(self, time: float) -> tuple[str, ...]:
+        """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
+        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
+
     def __call__(self, sample: Sample) -> Sample:
         """The sample without its errors; the given one is left as it is."""
         if not self._signals:
@@ -217,6 +227,11 @@ class SampleCorrector:
         out = replace(sample, groups=groups)
         self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
         return out
+
+
+def past_corrections(corrector: SampleCorrector) -> str:
+    """What a model says of a time that is over, and is not taken out of what comes now: for diagnostics."""
+    return ", ".join(f"{name} until {end:.0f} s" for name, end in corrector.past.items())
 
 
 def _correct(sample: Sample, c: Correction) -> bool:

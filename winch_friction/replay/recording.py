@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -68,8 +69,9 @@ def replay_run(
 ) -> Replayed:
     """Replay a run; NaN entries are bridged up to the maximum ages, as in the nodes."""
     topics = TopicMap(groups=run.groups)
-    compensator = CompensatorVoice(crane, seed, topics, settings)
-    estimator = EstimatorVoice(crane, seed, topics, settings)
+    begin = float(run.time[0])
+    compensator = CompensatorVoice(crane, seed, topics, settings, begin)
+    estimator = EstimatorVoice(crane, seed, topics, settings, begin)
     for given, learnt_from in zip(run.samples(), run.samples(), strict=True):
         compensator.take_row(given)
         learned = estimator.take_row(learnt_from)
@@ -83,8 +85,9 @@ def _replay_bag(
 ) -> Replayed:
     settings = settings or settings_from_metadata(bag_metadata(path), str(path)) or ReplaySettings()
     with open_bag(path, crane, **options) as bag:
-        compensator = CompensatorVoice(crane, seed, bag.topics, settings)
-        estimator, clock = EstimatorVoice(crane, seed, bag.topics, settings), ReplayClock()
+        begin = next((each.stamp for each in bag.inputs()), -inf)
+        compensator = CompensatorVoice(crane, seed, bag.topics, settings, begin)
+        estimator, clock = EstimatorVoice(crane, seed, bag.topics, settings, begin), ReplayClock()
         recorded = bag.topics_ending(MODEL_TOPIC)
         for each in bag.events(*recorded):
             if isinstance(each, Other):

@@ -1,7 +1,7 @@
 """The two services along a recording: what they say, sample by sample and in the silences."""
 
 from dataclasses import dataclass, field
-from math import isfinite
+from math import inf, isfinite
 
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
@@ -26,6 +26,7 @@ class CompensatorVoice:
     seed: FrictionModel
     topics: TopicMap
     settings: ReplaySettings
+    since: float = -inf  # s, the first stamp: what was over by then needs no correcting
     steps: FeedforwardRecord = field(default_factory=FeedforwardRecord)
     watchdog: FeedforwardRecord = field(default_factory=FeedforwardRecord)
     refused: list[str] = field(default_factory=list)
@@ -39,7 +40,9 @@ class CompensatorVoice:
         """A node configured anew: seed, settings, nothing held."""
         self._phase = phase
         options = ServiceOptions(self.settings.watchdog_timeout, self.settings.stamp_window, self.settings.model_delay)
-        self.service = CompensatorService(self.crane, phase.seed or self.seed, self.topics, phase.config, options)
+        self.service = CompensatorService(
+            self.crane, phase.seed or self.seed, self.topics, phase.config, options, since=self.since
+        )
         self.service.refused_models = self.refused
         self.service.set_enabled(phase.enabled)
         if self._last_model is not None:  # latched: a node that begins afresh still gets it
@@ -80,10 +83,12 @@ class EstimatorVoice:
     seed: FrictionModel
     topics: TopicMap
     settings: ReplaySettings
+    since: float = -inf
 
     def __post_init__(self) -> None:
         options = ServiceOptions(self.settings.watchdog_timeout, self.settings.stamp_window)
         periods = {"model_period": self.settings.model_period, "max_age": self.settings.estimator_max_age}
+        periods["since"] = self.since
         self.service = EstimatorService(self.crane, self.seed, self.topics, self.settings.estimator, options, **periods)
         self.record = EstimateRecord(self.service.law)
 

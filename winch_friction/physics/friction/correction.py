@@ -217,6 +217,11 @@ class Correction:
         """Whether the error is there at that time, s."""
         return not self.during or any(begin <= time <= end for begin, end in self.during)
 
+    @property
+    def ends(self) -> float:
+        """When it is over, s; `inf` for what has no end."""
+        return max((end for _, end in self.during), default=float("inf"))
+
     def _check_bounds(self) -> None:
         own, (lower, upper) = self.declared.parameter, self.bounds
         if not own.lower <= lower <= upper <= own.upper:

@@ -7,7 +7,7 @@ import pytest
 
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.detectors.angle_spectrum import one_of_a_comb
+from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
 from winch_friction.discrepancy.detectors.ripple import angle_ripple
 from winch_friction.discrepancy.preparation.prepare import prepare
@@ -85,3 +85,21 @@ def test_a_line_among_many_is_the_sampling_s_comb_and_no_ripple():
     assert not one_of_a_comb(orders, two, int(np.argmax(two)), 9)
     strong = power(*((order, 108.0) for order in (0.17, 0.39, 1.31, 7.4, 11.9)))
     assert not one_of_a_comb(orders, strong, int(np.argmax(strong)), 9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_comb_is_counted_one_line_after_the_other(seed):
+    """Against the definition: from the strongest on, each line that is no harmonic of those counted before."""
+    random = np.random.default_rng(seed)
+    orders = np.linspace(0.1, 20.0, 3000)
+    power = random.exponential(size=orders.size) + 40.0 * np.isin(
+        np.arange(orders.size), random.integers(0, 3000, seed)
+    )
+    best = int(np.argmax(power))
+    strong = np.flatnonzero(power >= COMB_SHARE * power[best])
+    seen = [orders[best]]
+    for order in orders[strong[np.argsort(-power[strong])]]:
+        ratios = [max(order, each) / min(order, each) for each in seen]
+        if all(abs(ratio - round(ratio)) > SAME_ORDER for ratio in ratios):
+            seen.append(order)
+    assert one_of_a_comb(orders, power, best, 9) == (len(seen) > COMB_LINES)

@@ -36,10 +36,10 @@ def _cache_directory(path: str) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
-def cache_root() -> Path:
+def cache_root(kind: str = "numba") -> Path:
     """Where compiled code is kept: the user's cache, or the temporary directory where that cannot be written."""
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "winch_friction" / "numba"
-    return root if _writable(root) else Path(tempfile.gettempdir()) / f"winch_friction_numba_{os.getuid()}"
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "winch_friction" / kind
+    return root if _writable(root) else Path(tempfile.gettempdir()) / f"winch_friction_{kind}_{os.getuid()}"
 
 
 def source_digest(sources: Iterable[Path]) -> str:

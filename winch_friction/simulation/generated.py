@@ -6,10 +6,7 @@ is written to one, named by its own content; another equation is another file.
 
 import hashlib
 import importlib.util
-import inspect
-import re
 import sys
-from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
@@ -27,14 +24,6 @@ _P = types.CPointer(types.float64)
 
 @njit(error_model="numpy")
 """
-
-
-def python_source(function: Callable[..., Any], name: str) -> str:
-    """Source of a function that `sympy.lambdify` made, under another name, the same in every process."""
-    source = inspect.getsource(function)
-    for number, dummy in enumerate(dict.fromkeys(re.findall(r"_Dummy_\d+", source))):
-        source = source.replace(dummy, f"_argument_{number}")
-    return source.replace("_lambdifygenerated", name, 1) + "\n\n"
 
 
 def c_function(name: str, source: str, pointers: int) -> Any:

@@ -109,12 +109,14 @@ def one_of_a_comb(orders: FloatArray, power: FloatArray, best: int, parts: int) 
     if power[best] >= COMB_SHARE * MOST_OF_ONE_RUN * parts:
         return False
     strong = np.flatnonzero(power >= COMB_SHARE * power[best])
-    seen = [float(orders[best])]
-    for order in orders[strong[np.argsort(-power[strong])]]:
-        ratios = [max(order, each) / min(order, each) for each in seen]
-        if all(abs(ratio - round(ratio)) > SAME_ORDER for ratio in ratios):
-            seen.append(float(order))
-    return len(seen) > COMB_LINES
+    others, seen = orders[strong[np.argsort(-power[strong])]], orders[best]
+    for _ in range(COMB_LINES):  # the strongest that is no harmonic of those before, of up to 80 000 lines
+        ratio = np.maximum(others, seen) / np.minimum(others, seen)
+        others = others[np.abs(ratio - np.round(ratio)) > SAME_ORDER]
+        if not len(others):
+            return False
+        seen = others[0]
+    return True
 
 
 def _amplitude(order: float, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[float, float]:

@@ -12,9 +12,8 @@ import numpy as np
 import sympy as sp
 
 from winch_friction.physics.friction import symbols
+from winch_friction.physics.friction.sources import function_of
 from winch_friction.physics.friction.term import Parameter, Scope, Term
-
-_NUMPY = ["numpy"]
 
 
 class CompiledTerms:
@@ -29,11 +28,11 @@ class CompiledTerms:
         self.constants = dict(constants)
         self.parameters: tuple[Parameter, ...] = unique_parameters(terms)
         self.stateful = tuple(term for term in terms if term.state is not None)
-        self._arguments = (
-            symbols.layout(group_count),
-            tuple(parameter.symbol for parameter in self.parameters),
-            self._state_symbols(),
-        )
+
+    @cached_property
+    def _arguments(self) -> tuple[tuple[sp.Symbol, ...], ...]:
+        own = tuple(parameter.symbol for parameter in self.parameters)
+        return symbols.layout(self.group_count), own, self._state_symbols()
 
     def _state_symbols(self) -> tuple[sp.Symbol, ...]:
         return tuple(
@@ -84,40 +83,54 @@ class CompiledTerms:
         """Its partial derivative by speed at frozen direction: d/d omega with w = |omega|, dw/d omega = s."""
         return symbols.s * sp.diff(self.total, symbols.w) + sp.diff(self.total, symbols.omega)
 
-    def _lambdify(self, expression: Any, modules: Any) -> Callable[..., Any]:
+    @cached_property
+    def total_and_derivatives(self) -> list[sp.Expr]:
+        """The torque, its derivative by speed and those by the parameters."""
+        return [self.total, self.speed_derivative, *self.gradient]
+
+    @cached_property
+    def _key(self) -> str:
+        """Everything that the functions are made of."""
+        return repr((*map(_declared, self.terms), self.group_count, sorted(self.constants.items())))
+
+    def _function(self, part: str, dialect: str) -> Callable[..., Any]:
+        return function_of(f"{part} {dialect} {self._key}", dialect, lambda: self._lambdify(part, dialect))
+
+    def _lambdify(self, part: str, dialect: str) -> Callable[..., Any]:
         # several values as a tuple: numba would put a list on the heap, three times what the equations cost
-        several = isinstance(expression, Sequence)
-        return sp.lambdify(self._arguments, tuple(expression) if several else expression, modules=modules, cse=True)
+        expression = getattr(self, part)
+        several = tuple(expression) if isinstance(expression, Sequence) else expression
+        return sp.lambdify(self._arguments, several, modules=[dialect], cse=True)
 
     @cached_property
     def scalar_torque(self) -> Callable[..., float]:
         """Torque at one operating point of plain floats."""
-        return self._lambdify(self.total, "math")
+        return self._function("total", "math")
 
     @cached_property
     def scalar_torque_and_gradient(self) -> Callable[..., tuple[float, ...]]:
         """(torque, dT/domega, dT/dtheta_0, ...) at one operating point of plain floats."""
-        return self._lambdify([self.total, self.speed_derivative, *self.gradient], "math")
+        return self._function("total_and_derivatives", "math")
 
     @cached_property
     def scalar_contributions(self) -> Callable[..., tuple[float, ...]]:
         """Torque of each term at one operating point of plain floats."""
-        return self._lambdify(list(self.expressions), "math")
+        return self._function("expressions", "math")
 
     @cached_property
     def vector_torque(self) -> Callable[..., Any]:
         """Torque over arrays."""
-        return self._lambdify(self.total, _NUMPY)
+        return self._function("total", "numpy")
 
     @cached_property
     def vector_gradient(self) -> Callable[..., tuple[Any, ...]]:
         """Partial derivatives over arrays (entries that are constant come back as scalars)."""
-        return self._lambdify(self.gradient, _NUMPY)
+        return self._function("gradient", "numpy")
 
     @cached_property
     def vector_contributions(self) -> Callable[..., tuple[Any, ...]]:
         """Torque of each term over arrays."""
-        return self._lambdify(list(self.expressions), _NUMPY)
+        return self._function("expressions", "numpy")
 
     @cached_property
     def kernel(self) -> Callable[..., float]:
@@ -127,7 +140,8 @@ class CompiledTerms:
         return numba.njit(self.scalar_torque)
 
     @cached_property
-    def _state_equations(self) -> list[sp.Expr]:
+    def state_equations(self) -> list[sp.Expr]:
+        """Gain and decay of every state, in their order."""
         return [
             self._in_group(term, part.xreplace(self._constant_values()), g)
             for term in self.stateful
@@ -139,17 +153,24 @@ class CompiledTerms:
     @cached_property
     def scalar_state_rates(self) -> Callable[..., tuple[float, ...]]:
         """(gain_0, decay_0, gain_1, ...) of the states at one operating point of plain floats."""
-        return self._lambdify(self._state_equations, "math")
+        return self._function("state_equations", "math")
 
     @cached_property
     def vector_state_rates(self) -> Callable[..., tuple[Any, ...]]:
         """(gain_0, decay_0, gain_1, ...) over arrays."""
-        return self._lambdify(self._state_equations, _NUMPY)
+        return self._function("state_equations", "numpy")
 
     @cached_property
     def initial_states(self) -> tuple[float, ...]:
         """States at the start of a record."""
         return tuple(term.state.initial for term in self.stateful if term.state for _ in self._groups(term))
+
+
+def _declared(term: Term) -> tuple[Any, ...]:
+    """What a term's functions depend on, with its equations as SymPy writes them to be read again."""
+    state = () if term.state is None else (term.state.symbol, term.state.gain, term.state.decay)
+    names = tuple(parameter.name for parameter in term.parameters)
+    return term.scope, term.opposing, names, *map(sp.srepr, (term.equation, *state))
 
 
 def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:

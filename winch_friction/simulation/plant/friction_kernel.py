@@ -14,7 +14,8 @@ from numba.extending import intrinsic
 
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.simulation.generated import c_function, python_source
+from winch_friction.physics.friction.sources import python_source
+from winch_friction.simulation.generated import c_function
 from winch_friction.simulation.plant.point import GROUPS, POINT_LENGTH
 
 

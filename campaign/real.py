@@ -124,12 +124,17 @@ def said_of(arguments: list[str]) -> tuple[int, str, str]:
 
 
 def power_of(path: Path, crane: Crane, model_file: str | Path) -> tuple[Run, FloatArray]:
-    """A run and the mechanical power in W that a model file predicts along it."""
+    """A run and the mechanical power in W that a model file predicts along it.
+
+    The acceleration is that of the log's own samples, as in the regressions that it is compared with: the search looks
+    at both sides of the balance through one smoothing, behind which a raw power must not be put.
+    """
     model = load_model(model_file)
     run, right = corrected(read_run(path, crane), crane, model)
     prepared = prepare(run, right, model)
-    speed = run["motor_speed"]
-    return run, np.interp(run.time - run.time[0], prepared.time - prepared.time[0], prepared.predicted) * speed
+    speed, without = run["motor_speed"], prepared.predicted - right.inertia * prepared.acceleration
+    torque = np.interp(run.time - run.time[0], prepared.time - prepared.time[0], without)
+    return run, (torque + right.inertia * np.gradient(speed, run.time)) * speed
 
 
 def power_error(paths: list[Path], crane: Crane, model_file: str | Path) -> float:

@@ -53,15 +53,14 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
     base = cross.explain(())
     considered: list[Considered] = []
     p_values: dict[str, float] = {}
-    current = _forward(cross, base, base, rng, most, considered, p_values)
+    current = _whole(cross, _forward(cross, base, base, rng, most, considered, p_values), rng)
     start = _plain_together(cross, base, rng)
     if start.slots:
         others: tuple[list[Considered], dict[str, float]] = ([], {})
-        together = _forward(cross, base, start, rng, most, *others)
+        together = _whole(cross, _forward(cross, base, start, rng, most, *others), rng)
         if _no_worse(together, current, rng):
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
-    current = _with_company(cross, _pruned(cross, current, rng))
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
     return Selection(base, current, found, tuple(considered))
 
@@ -168,6 +167,11 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         if not improved:
             break
     return current
+
+
+def _whole(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
+    """The set as it is answered: without what is superfluous, with what its members bring along."""
+    return _with_company(cross, _pruned(cross, current, rng))
 
 
 def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:

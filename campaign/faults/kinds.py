@@ -7,6 +7,7 @@ import numpy as np
 from campaign.faults import plain_kinds as plain
 from campaign.faults.mixed_kinds import MIXED
 from campaign.faults.plain_kinds import REFERENCE, SPEED, Fault, Messages, one_of
+from campaign.faults.sent_kinds import SENT
 
 __all__ = ["KINDS", "REFERENCE", "SPEED", "Fault", "Messages", "draw"]
 
@@ -33,8 +34,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Fault]] = {
         plain.delayed,
         plain.flood,
         plain.second_publisher,
-        plain.malformed,
-        plain.stall,
+        *SENT,
         *MIXED,
     )
 }

@@ -283,20 +283,3 @@ def second_publisher(rng: np.random.Generator) -> Fault:
         return doubled(messages, topic, lambda v: -v, later)
 
     return Fault("second publisher", topic, spoil, detection=1.0)
-
-
-def malformed(rng: np.random.Generator) -> Fault:
-    """Empty arrays, or another joint's name."""
-    topic = one_of(rng, SPEED, REFERENCE, SWASH)
-    change = one_of(
-        rng,
-        lambda m, _k, _r: [setattr(m, name, []) for name in ("position", "velocity", "effort")],
-        lambda m, _k, _r: setattr(m, "name", ["elbow"]),
-        lambda m, _k, _r: setattr(m, "name", []),
-    )
-    return Fault("malformed", topic, edited(topic, change), silences=True)
-
-
-def stall(rng: np.random.Generator) -> Fault:
-    """The process stands still; afterwards everything that waited comes in one burst."""
-    return Fault("stall and burst", "", lambda m, _k, _r: m, paused=True)

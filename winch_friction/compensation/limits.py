@@ -18,9 +18,9 @@ class TorqueLimits:
         torque = self._clamped("envelope", torque, envelope)
         return self._clamped("absolute", torque, self.absolute)
 
-    def slewed(self, torque: float, previous: float, dt: float) -> float:
-        """The torque no further from the previous one than the slew limit allows in `dt` s."""
-        return previous + self._clamped("slew", torque - previous, self.slew * dt)
+    def slewed(self, torque: float, previous: float, dt: float, slew: float = 0.0) -> float:
+        """The torque no further from the previous one than the slew limit, or `slew` where more, allows in `dt` s."""
+        return previous + self._clamped("slew", torque - previous, max(self.slew, slew) * dt)
 
     def _clamped(self, name: str, value: float, bound: float) -> float:
         if abs(value) <= bound:

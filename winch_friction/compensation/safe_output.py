@@ -51,15 +51,20 @@ class SafeOutput:
         self._size = 0.0  # N m, what was published last while something carried it: the ramp is as steep as from there
         self._ramp_from, self._turns_at = math.nan, math.inf  # stamps: the ramp begins, the motion may turn; s
         self._steady, self._credit = math.nan, self.hold
-        self._dt = self._against = self._carried = 0.0
+        self._dt = self._against = self._pushing = self._carried = 0.0
         self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
         self._bump = self._usable = self._new_time = False
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
-        """Other limits from the next step on, without a bump."""
+        """Other limits from the next step on, without a bump; a ramp goes on from where it is."""
         self.absolute, self.slew, self.ramp_time, self.hold = absolute, slew, ramp_time, hold
         self.limits.absolute, self.limits.slew = absolute, slew
-        self.fade.duration = self._bridge.duration = ramp_time
+        self.fade.duration = ramp_time
+        self._bridge.stretch(ramp_time)
+        if self.time > self._fed:
+            self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
+            self._ramp_from = max(self._ramp_from, self.time)
+        self._behind, self._credit = min(self._behind, hold), min(self._credit, hold)
         self._bump = True
 
     def restrict(self, slew: float) -> None:
@@ -149,7 +154,8 @@ class SafeOutput:
         wanted = self._not_against(wanted, carried)
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
-        self.torque = self.limits.slewed(wanted, self.torque, self._dt) + 0.0  # never -0.0
+        self._pushing = max(self._pushing, abs(self.torque)) if self._opposed(self.torque) else 0.0
+        self.torque = self.limits.slewed(wanted, self.torque, self._dt, self._fast(self._pushing)) + 0.0  # never -0.0
         self.sequence += 1
         self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
         self._size = abs(self.torque) if carried else max(self._size, abs(self.torque))
@@ -175,6 +181,10 @@ class SafeOutput:
         against_motion = torque * self._motion < 0.0 and abs(self._motion) > AGAINST_SPEED
         return against_motion or torque * self._asked < 0.0
 
+    def _fast(self, pushing: float) -> float:
+        """N m/s for what pushes against the motion: what a slow reversal needs must not hold it up."""
+        return min(self.slew, max(self.limits.slew, pushing / LONGEST_AGAINST))
+
     # -- no sample
     def remaining(self, time: float) -> float:
         """What the ramp to zero leaves at stamp `time` when nothing was followed since; changes nothing."""
@@ -188,7 +198,7 @@ class SafeOutput:
         """N m/s: over within the ramp's time, and before the motion may have turned where the slew limit allows it."""
         duration = min(self.ramp_time, LONGEST_BLIND, max(self._turns_at - self._ramp_from, 0.0))
         if self._opposed(self._held) or duration == 0.0:
-            return self.limits.slew
+            return self._fast(max(self._pushing, abs(self._held)))
         return min(self.limits.slew, max(self._size, abs(self._held)) / duration)
 
     def decay(self, time: float) -> float:

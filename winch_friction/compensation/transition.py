@@ -40,6 +40,11 @@ class Bridge:
         """Carry `difference` from now on, for as long as was left."""
         self._height = difference * self.duration / self._left if self._left else 0.0
 
+    def stretch(self, duration: float) -> None:
+        """Let go over another duration, from what is still carried."""
+        self._left *= duration / self.duration
+        self.duration = duration
+
     def value(self) -> float:
         """What is still carried."""
         return self._height * self._left / self.duration

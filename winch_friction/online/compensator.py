@@ -23,9 +23,9 @@ LONGEST_END = 2.0  # s that the last ramp may take: whoever ends the process wai
 
 @dataclass
 class _Silence:
-    """The watchdog's ramp: when the speed fell silent and how many steps were published since."""
+    """The watchdog's ramp: the stamp that it begins at and how many steps were published since."""
 
-    began: float = math.nan  # steady s
+    begin: float = math.nan  # s; an age limit that is set meanwhile does not move it
     steps: int = 0
 
 
@@ -67,7 +67,7 @@ class CompensatorService:
     def _answer(self, sample: Sample, now: float) -> Feedforward:
         self._take_over(self.schedule.due(sample.time))
         self.contradictions = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
-        self._silence = _Silence()
+        self._silence = _Silence(sample.time + self.law.config.max_age)
         self._last_stamp = sample.time
         return self.law.step(sample, now if self.options.paced else None, self.contradictions)
 
@@ -96,7 +96,7 @@ class CompensatorService:
         if rested and steps // HEARTBEAT == self._silence.steps // HEARTBEAT:
             return None
         self._silence.steps = steps
-        stamp = self._last_stamp + self.law.config.max_age + (steps - 0.5) * self.options.watch_period
+        stamp = self._silence.begin + (steps - 0.5) * self.options.watch_period
         return self.law.decay(stamp) if stamp > self.law.output.time else None
 
     # -- models and settings

@@ -1,0 +1,108 @@
+"""Settings that change while the torque is on its way: it moves no faster than before or after, and gets to zero."""
+
+import math
+
+import pytest
+from sea import PERIOD, Fed, check_invariants, swell
+
+from winch_friction.compensation import CompensatorConfig
+
+REVERSAL = 1005.0  # s; the swell's speed passes zero there
+
+
+def sailing(until: float) -> Fed:
+    """A service in full swing at `until`."""
+    fed = Fed()
+    fed.run(until - fed.now)
+    assert abs(fed.torque) > 100.0
+    return fed
+
+
+def test_another_slew_limit_in_the_middle_of_the_ramp_moves_it_no_faster_than_that() -> None:
+    """The ramp was computed anew from its beginning, as if the new limit had always held: 0 at once."""
+    fed = sailing(REVERSAL + 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, slew_limit=100.0))
+    fed.run(PERIOD)
+    fed.wait(0.5)
+    assert abs(fed.torque) > 100.0
+    fed.service.configure(fed.config)
+    fed.wait(0.5)
+    assert fed.torque == 0.0
+    check_invariants(fed)
+
+
+def test_a_shorter_age_limit_does_not_count_what_the_stamps_fell_behind_under_the_longer_one() -> None:
+    """Slow stamps, an age limit of 10 s, then 0.1 s again: the difference counted as time that had passed."""
+    fed = sailing(REVERSAL + 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, max_age=10.0))
+    for _ in range(50):
+        fed.shift -= 0.5 * PERIOD
+        fed.run(PERIOD, skip=("winch/reference",))
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, slew_limit=2000.0))
+    fed.config = CompensatorConfig(ramp_time=0.5, slew_limit=2000.0)
+    before = len(fed.published) - 1
+    fed.run(0.3, skip=("winch/reference",))
+    fed.published = fed.published[before:]
+    check_invariants(fed)
+
+
+def test_a_shorter_age_limit_in_a_silence_does_not_stop_the_ramp() -> None:
+    """Its stamps began after the longer one, and waited for the shorter one to reach them."""
+    fed = sailing(REVERSAL + 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, max_age=10.0, slew_limit=1000.0))
+    fed.run(2 * PERIOD)
+    fed.wait(0.2)
+    assert abs(fed.torque) > 100.0
+    fed.service.configure(fed.config)
+    fed.wait(0.5)
+    assert fed.torque == 0.0
+    fed.run(1.5)
+    assert abs(fed.torque) > 50.0
+    check_invariants(fed)
+
+
+def test_a_shorter_ramp_does_not_raise_what_is_carried_over() -> None:
+    """A difference that 60 s were to let go counted a hundredfold when it got 0.5 s."""
+    fed = sailing(REVERSAL + 0.5)
+    slow = CompensatorConfig(ramp_time=60.0, scale=0.5)
+    fed.service.configure(slow)  # carried over: the difference between two scales
+    fed.run(0.3)
+    fed.run(8 * PERIOD, skip=("winch/reference",))
+    before = abs(fed.torque)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, scale=0.5))
+    said = fed.run(0.5, skip=("winch/reference",))
+    assert max(abs(each.friction_torque) for each in said) <= before
+    check_invariants(fed)
+
+
+def test_a_reversal_that_is_spread_further_does_not_hold_up_what_pushes_against_the_motion() -> None:
+    """The slew that such a reversal needs, 560 N m/s, was all that what is published got as well."""
+    fed = sailing(REVERSAL - 0.1)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, reversal_time=1.0))
+    longest, began = 0.0, math.nan
+    for _ in range(60):
+        fed.run(PERIOD)
+        speed = swell(fed.now).motor_speed
+        opposed = fed.torque * speed < 0.0 and abs(fed.torque) > 5.0 and abs(speed) > 5.0
+        began = math.nan if not opposed else fed.now if math.isnan(began) else began
+        longest = max(longest, fed.now - began if opposed else 0.0)
+    assert longest <= 0.35
+    check_invariants(fed)
+
+
+@pytest.mark.parametrize("silent", [True, False])
+def test_nor_where_nothing_carries_it_any_more(silent: bool) -> None:
+    fed = sailing(REVERSAL - 0.1)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, reversal_time=1.0))
+    fed.run(8 * PERIOD)
+    assert fed.torque * swell(fed.now).motor_speed < 0.0
+    began = fed.now
+    if silent:
+        fed.wait(0.6)
+    else:
+        fed.run(0.6, skip=("winch/reference", "winch/active/pressure_a"))
+    late = [
+        now - began for now, said in fed.published if now > began and said.friction_torque > 5.0
+    ]  # the motion is negative
+    assert max(late, default=0.0) <= 0.35
+    check_invariants(fed)

@@ -31,7 +31,7 @@ class Inputs:
     def __init__(self, node: Any, service: Service, answer: Answer, latest: float = float("inf")) -> None:
         self.node, self._service, self._answer, self.latest = node, service, answer, latest
         self._held: list[tuple[Input, Any]] = []
-        self._speed: Any = None
+        self.speed: Any = None  # its subscription, while open
         self.late = 0
 
     def open(self) -> None:
@@ -40,17 +40,17 @@ class Inputs:
         for source in topics.inputs.values():
             if source.topic != topics.speed_topic:
                 self._held.append((source, self._subscribe(source, None, held)))
-        self._speed = self._subscribe(topics.inputs[topics.speed_topic], self.node.guarded(self._on_speed))
+        self.speed = self._subscribe(topics.inputs[topics.speed_topic], self.node.guarded(self._on_speed))
 
     def close(self) -> None:
         """Unsubscribe."""
         for subscription in self.subscriptions().values():
             self.node.destroy_subscription(subscription)
-        self._speed, self._held = None, []
+        self.speed, self._held = None, []
 
     def subscriptions(self) -> dict[str, Any]:
         """The open subscriptions by contract topic."""
-        speed = {self._service.inputs.topics.speed_topic: self._speed} if self._speed is not None else {}
+        speed = {self._service.inputs.topics.speed_topic: self.speed} if self.speed is not None else {}
         return {**speed, **{source.topic: subscription for source, subscription in self._held}}
 
     def _subscribe(self, source: Input, callback: Callable[..., None] | None, group: Any = None) -> Any:
@@ -74,7 +74,7 @@ class Inputs:
         """The others first, all that have come: stamps decide what belongs to which speed."""
         topics = self._service.inputs.topics
         source = topics.inputs[topics.speed_topic]
-        waiting = [(message, info), *drain(self._speed)]
+        waiting = [(message, info), *drain(self.speed)]
         self.poll()
         receipt, now = self.node.ros_now(), self.node.service_now()
         for each, sent in self._in_time(source, waiting):

@@ -6,15 +6,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
 
-from winch_friction.nodes.polling import Seldom
+from winch_friction.nodes.loop import Loop
 from winch_friction.physics.errors import InputError
 
 BAD_INPUT = 2
-HEARTBEAT = 0.1  # s; the executor looks this often whether it was told to end, and for what comes seldom
-URGENT = ("change_state", "enable", "reset", "load_model", "save")  # services that are answered at once
 MOST_DEFECTS = 1000  # of the executor itself in a row, with nothing done in between
 
 
@@ -65,16 +63,11 @@ def _start(node: Any, ending: Ending) -> int:
 
 
 def _spin(node: Any, ending: Ending) -> int:
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    seldom = Seldom(URGENT)
-    seldom.open(node)
-    node.create_timer(HEARTBEAT, lambda: seldom.open(node), clock=node.steady_clock)
-    defects = 0
+    loop, defects = Loop(node), 0
     try:
         while not ending.asked and rclpy.ok() and defects < MOST_DEFECTS:
             try:
-                executor.spin_once()
+                loop.once()
                 defects = 0
             except (KeyboardInterrupt, ExternalShutdownException):
                 break
@@ -82,7 +75,7 @@ def _spin(node: Any, ending: Ending) -> int:
                 defects += 1
                 node.report_defect("executor")
     finally:
-        executor.remove_node(node)
+        loop.end()
     return 0 if defects < MOST_DEFECTS else 1
 
 

@@ -1,0 +1,116 @@
+"""One turn of a node's spinning: a speed is taken at once, everything else is left to rclpy's executor.
+
+The executor builds its wait set twice for each message, from everything that could wake it, and wraps the call in a
+task, which costs more than the message and its answer. The wait set here holds what may wake a node at all.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+from winch_friction.nodes.polling import Polled, Seldom
+
+HEARTBEAT = 0.1  # s; so often it is looked whether the node was told to end, and for what comes seldom
+URGENT = ("change_state", "enable", "reset", "load_model", "save")  # services that are answered at once
+
+
+class Loop:
+    """Waits for a node and runs what it is woken by, all in one thread."""
+
+    def __init__(self, node: Any) -> None:
+        self._node, self._executor, self._seldom = node, SingleThreadedExecutor(), Seldom(URGENT)
+        self._executor.add_node(node)
+        self._next = 0.0
+        self._wait: Callable[[float], bool] = self._wait_for_few if _wait_sets_as_known(node) else self._wait_for_all
+
+    def end(self) -> None:
+        """Let the node go."""
+        self._executor.remove_node(self._node)
+
+    def once(self) -> None:
+        """Wait, at most for a heartbeat, and run what is ready; raises what a callback raises."""
+        left = self._next - time.monotonic()
+        if left <= 0.0:
+            self._next = time.monotonic() + HEARTBEAT
+            self._seldom.open(self._node)
+            self._run_ready()
+        elif self._wait(left):
+            self._run_ready()
+
+    def _run_ready(self) -> None:
+        """One look of the executor, and every callback that it finds ready."""
+        try:
+            while True:
+                handler, _, _ = self._executor.wait_for_ready_callbacks(timeout_sec=0.0)
+                handler()
+                handler.result()
+        except TimeoutException:
+            return
+
+    def _wait_for_all(self, seconds: float) -> bool:
+        """By the executor itself, for an rclpy whose wait sets are others."""
+        self._executor.spin_once(timeout_sec=seconds)
+        return False
+
+    def _wait_for_few(self, seconds: float) -> bool:
+        """Whether anything besides a speed, which is worked through here, is ready."""
+        node = self._node
+        speed = _speed(node)
+        others = [each for each in node.subscriptions if each is not speed and not _polled(each)]
+        services = [each for each in node.services if each.callback_group is not self._seldom]
+        timers, clients = list(node.timers), list(node.clients)
+        count = len(others) + (speed is not None)
+        if not (count or timers or clients or services):
+            time.sleep(seconds)
+            return False
+        waiting = _wait_set(node, count, len(timers), len(clients), len(services))
+        waiting.clear_entities()
+        for add, entities in (
+            (waiting.add_subscription, others), (waiting.add_timer, timers), (waiting.add_client, clients),
+            (waiting.add_service, services),
+        ):  # fmt: skip
+            for each in entities:
+                add(each.handle)
+        place = None if speed is None else waiting.add_subscription(speed.handle)
+        waiting.wait(int(seconds * 1e9))
+        if place is not None and waiting.is_ready("subscription", place):
+            _take(speed)
+            return any(waiting.is_ready("subscription", k) for k in range(len(others))) or _ready(waiting)
+        return bool(waiting.get_ready_entities("subscription")) or _ready(waiting)
+
+
+def _ready(waiting: Any) -> bool:
+    return any(waiting.get_ready_entities(kind) for kind in ("timer", "service", "client"))
+
+
+def _speed(node: Any) -> Any:
+    """The subscription that drives a node with inputs, whose callback takes message and info; None while closed."""
+    inputs = getattr(node, "inputs", None)
+    return None if inputs is None else inputs.speed
+
+
+def _polled(entity: Any) -> bool:
+    return isinstance(entity.callback_group, Polled)
+
+
+def _take(subscription: Any) -> None:
+    """The oldest message, with its info, to the subscription's callback."""
+    with subscription.handle:
+        taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    if taken is not None:
+        subscription.callback(*taken)
+
+
+def _wait_set(node: Any, subscriptions: int, timers: int, clients: int, services: int) -> Any:
+    return rclpy_implementation.WaitSet(subscriptions, 0, timers, clients, services, 0, node.context.handle)
+
+
+def _wait_sets_as_known(node: Any) -> bool:
+    try:
+        found = _wait_set(node, 1, 0, 0, 0)
+    except (AttributeError, TypeError):
+        return False
+    return hasattr(found, "is_ready")

@@ -220,21 +220,29 @@ def hostile_models(probe: Probe, row: Row) -> None:
         probe.bench.drive(0.2)
 
 
+IN_RANGE = (
+    ("lead", 0.05), ("ramp_time", RAMP), ("ramp_time", 0.02), ("ramp_time", 60.0), ("max_age", 10.0),
+    ("reversal_time", 1.0),
+)  # fmt: skip
+OUT_OF_RANGE = (("scale", 99.0), ("ramp_time", 0.0), ("slew_limit", 0.0), ("slew_limit", math.inf), ("max_age", 1e9))
+
+
 def parameters(probe: Probe, row: Row) -> None:
     """Settings change while it works."""
     from winch_friction.physics.errors import InputError
 
     node = probe.bench.remote("compensator")
     for _ in range(3):
-        name, value = probe.random.choice(
-            (("scale", probe.random.uniform(0.0, 1.3)), ("lead", 0.05), ("ramp_time", RAMP), ("scale", 99.0))
-        )
+        name, value = probe.random.choice((*IN_RANGE, ("scale", probe.random.uniform(0.0, 1.3)), *OUT_OF_RANGE))
         try:
             node.set({name: value})
+            taken = True
         except InputError:
-            row.violations["a setting in range was refused"] += value != 99.0
+            taken = False
+        if taken == ((name, value) in OUT_OF_RANGE):
+            row.violations[f"{name} {value:g} was {'taken' if taken else 'refused'}"] += 1
         probe.bench.drive(0.2)
-    node.set({"scale": 0.9, "lead": 0.0, "ramp_time": RAMP})
+    node.set({"scale": 0.9, "lead": 0.0, "ramp_time": RAMP, "max_age": 0.1, "reversal_time": 0.05})
 
 
 KINDS: dict[str, Callable[[Probe, Row], None]] = {

@@ -140,6 +140,27 @@ def test_a_reset_does_not_give_a_torque_against_the_motion_another_life() -> Non
     check_invariants(fed)
 
 
+@pytest.mark.parametrize("every", [1, 2, 5])
+def test_whoever_resets_at_every_sample_does_not_hold_the_torque(every: int) -> None:
+    """Two senders of /clock that fight are a reset at every message: what was published stood still meanwhile."""
+    fed = sailing(REVERSAL - 0.5)
+    began = fed.now
+    for k in range(100):
+        if k % every == 0:
+            fed.service.reset()
+        fed.run(PERIOD)
+    assert against(fed, began) <= LONGEST
+    check_invariants(fed)
+
+
+def test_a_beginning_after_a_pause_is_no_step() -> None:
+    fed = sailing(REVERSAL + 1.0)
+    list(fed.service.ending(fed.now))
+    fed.service.reset()
+    fed.now += 10.0
+    assert abs(fed.run(PERIOD)[-1].friction_torque) <= 0.1 * 400.0  # 0.05 s of the ramp's 0.5 s
+
+
 def test_a_fade_does_not_wait_for_the_age_limit_at_every_gap() -> None:
     """An input is lost and the speed comes in pieces: the fade is over within the ramp's time all the same."""
     fed = sailing(REVERSAL + 0.4)

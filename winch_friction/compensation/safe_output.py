@@ -13,6 +13,7 @@ from winch_friction.compensation.transition import Bridge, Fade
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
 # stamps may gain this on the steady clock: a sender's clock, or a simulation, that runs faster than ours
 FASTEST_STAMPS = 1.5
+LONGEST_ANEW = 0.05  # s that count for a sample that begins anew: after a pause it is no step
 LONGEST_AGAINST = 0.2  # s; what is left of before and pushes against what is right now is let go within this
 LONGEST_BLIND = 0.3  # s; ... and what nobody can steer within this, for the motion may turn meanwhile
 AGAINST_SPEED = 5.0  # rad/s; a slower motion has no direction worth speaking of
@@ -91,8 +92,11 @@ class SafeOutput:
         then as quick as the steady clock.
         """
         ramped = self.time > self._fed  # what has passed since the last sample is used up already
+        anew = abs(time - self.time) if self._new_time else 0.0
         self._dt, self._overdue = self._elapsed(time), 0.0
         if now is not None:
+            if anew > 0.0 and now > self._steady:  # whoever resets at every sample does not hold the output
+                self._dt = min(anew, now - self._steady, LONGEST_ANEW)
             self._dt = self._paced(self._dt, now)
         if ramped:
             self._overdue = 0.0

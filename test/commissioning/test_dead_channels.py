@@ -74,3 +74,9 @@ def test_a_unit_in_one_port_of_one_run_is_told_by_the_others(run):
         assert words in found.sentence
     for fine in ([named(0), named(1), named(2, 0.5), named(3, 2.0)], [named(0), named(1, 0.1)], [named(0, 0.1)]):
         assert first_contradiction(quick_check(fine, CRANE, MODEL)) is None
+
+
+def test_one_missing_speed_is_no_dead_sensor(run):
+    columns = {name: run[name].copy() for name in run.columns}
+    columns["motor_speed"][-1] = np.nan
+    assert first_contradiction(quick_check([replace(run, columns=columns)], CRANE)) is None

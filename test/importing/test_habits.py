@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from campaign.import_habits import became
-from campaign.import_kinds import kinds
+from campaign.import_habits import became, kinds
 from winch_friction.commissioning.check import quick_check
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.units import header_readings
@@ -24,6 +23,21 @@ MENDED = (
     "load counts downwards",
     "a port is frozen",
     "groups as AHC and PHC",
+    "LabVIEW measurement file",
+    "MATLAB timetable v7.3",
+    "WinCC archive, a row per value",
+    "newest row first",
+    ".NET ticks",
+    "IEC time",
+    "date, time and milliseconds apart",
+    "seconds and nanoseconds apart",
+    "slow channels with blanks",
+    "negative numbers in parentheses",
+    "zero bytes behind a power cut",
+    "last line cut off",
+    "tenths of a bar",
+    "displacement negative",
+    "MPa of one port, bar of the other",
 )
 
 

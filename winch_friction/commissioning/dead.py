@@ -24,13 +24,14 @@ def dead_findings(runs: Sequence[Run], views: Sequence[RunView]) -> Iterator[Fin
 
 
 def _speed(run: Run) -> Iterator[Finding]:
-    if np.ptp(run["motor_speed"]) > 0.0 or "wire_out" not in run:
+    speed = run["motor_speed"][np.isfinite(run["motor_speed"])]
+    if not speed.size or np.ptp(speed) > 0.0 or "wire_out" not in run:
         return
     known = run["wire_out"][np.isfinite(run["wire_out"])]
     moved = float(np.ptp(known)) if known.size else 0.0
     if moved > WIRE_MOVED:
         said = (
-            f"{run.name}: motor_speed never changes ({run['motor_speed'][0] / RPM:.3g} rpm) though wire_out moves by "
+            f"{run.name}: motor_speed never changes ({speed[0] / RPM:.3g} rpm) though wire_out moves by "
             f"{moved:.3g} m: is the sensor connected?"
         )
         yield Finding("error", "stuck", said, "motor_speed", (run.name,), {"wire_moved": moved})
@@ -39,10 +40,10 @@ def _speed(run: Run) -> Iterator[Finding]:
 def _load(run: Run, view: RunView) -> Iterator[Finding]:
     if "hook_load" not in run or not view.groups:
         return
-    load, lever = run["hook_load"], float(np.median(view.lever))
+    load, lever = run["hook_load"][np.isfinite(run["hook_load"])], float(np.median(view.lever))
     held = float(np.nanmean(view.drive_torque)) / (GRAVITY * lever)
     least = LARGEST_TARE * view.rated_torque / (GRAVITY * lever)  # what hook, block and wire may weigh
-    if np.ptp(load) == 0.0 and abs(load[0]) < 0.01 * least < held and held > least:
+    if load.size and np.ptp(load) == 0.0 and abs(load[0]) < 0.01 * least < held and held > least:
         said = (
             f"{run.name}: hook_load is {load[0] / 1e3:.3g} t throughout though the motors hold about {held / 1e3:.3g} "
             "t: is the load cell connected? (a known load: import --set 'hook_load.constant=... t')"

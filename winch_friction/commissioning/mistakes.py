@@ -16,6 +16,7 @@ from winch_friction.commissioning.repairs import (
     drop_times,
     load_times,
     motor_torque_times,
+    port_times,
     speed_times,
     speeds_times,
 )
@@ -104,6 +105,11 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
     if not groups:
         return
     yield from each("pressure", PRESSURE_UNITS, drop_times)
+    for port in "ab":  # a port of its own transducer, scaled in another unit
+        for factor, words in PRESSURE_UNITS:
+            cost = UNIT + 2.0 + (RARE if words.startswith(RARELY) else 0.0)
+            said = f"pressure_{port} holds {words}, the other port does not"
+            yield Mistake("unit", f"pressure_{port}", said, cost, port_times(factor, port), factor)
     yield from each("displacement", _displacement_table(crane), displacement_times)
     for name in groups if len(groups) > 1 else ():
         for channel, table, undo in (

@@ -49,6 +49,17 @@ def drop_times(factor: float, only: str = "") -> Repair:
     return groups_changed(change)
 
 
+def port_times(factor: float, port: str) -> Repair:
+    """The pressures of one port of all groups, times a factor."""
+
+    def change(_: str, group: GroupView) -> GroupView:
+        a, b = 0.5 * (group.pressure_sum + group.drop), 0.5 * (group.pressure_sum - group.drop)
+        a, b = (a * factor, b) if port == "a" else (a, b * factor)
+        return replace(group, drop=a - b, pressure_sum=a + b)
+
+    return groups_changed(change)
+
+
 def displacement_times(factor: float, only: str = "") -> Repair:
     """Displacements times a factor, of one group or of all."""
 

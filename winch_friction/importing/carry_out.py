@@ -20,6 +20,7 @@ from winch_friction.records.headers import conversion_to_si
 from winch_friction.records.run_checks import checked_run
 
 STRAY = 0.01  # share of cells that are no numbers, or that no sensor can give, up to which they are strays
+_SPARSE, _LONGEST_HELD, _FEWEST_HELD = 0.67, 5.0, 10  # share of rows; usual steps; values: a slower channel
 _SHOWN = 5  # cells named in one message
 _AT = {
     "motor_speed": 1.0,
@@ -130,11 +131,26 @@ def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, cr
     if strict:
         _say_bad_cells(log, name, column, log_map.bad_cells, said, problems)
     scale, offset = scale_and_offset(name, channel, entry, crane)
-    values = column.values * scale + offset
+    values = _held(name, column, said if strict else []) * scale + offset
     if entry.differentiate:
         values = _rate(name, values, _time(log, log_map), entry.differentiate)
     kept = (said, problems) if strict else ([], [])
     return _within_limits(log, name, channel, column, values, *kept)
+
+
+def _held(name: str, column: LogColumn, said: list[str]) -> FloatArray:
+    """A column's numbers; one that is written in every n-th row only is held at its latest value between them."""
+    known = np.flatnonzero(np.isfinite(column.values))
+    if len(known) < _FEWEST_HELD or len(known) > _SPARSE * len(column.values):
+        return column.values
+    steps = np.diff(known)
+    usual = float(np.median(steps))
+    ends = max(known[0], len(column.values) - 1 - known[-1])
+    if steps.max() > _LONGEST_HELD * usual or ends > _LONGEST_HELD * usual:
+        return column.values  # holes, not a slower channel
+    said.append(f"{name}: column '{column.name}' has a value in every {usual:g} rows: held at its latest value")
+    latest = np.searchsorted(known, np.arange(len(column.values)), side="right") - 1
+    return np.asarray(column.values[known[np.maximum(latest, 0)]])
 
 
 def constant_in_si(name: str, channel: str, entry: Entry, crane: Crane | None) -> float:

@@ -31,10 +31,19 @@ MISSING = (
     "1.#qnan",
     "1.#ind",
 )
+# what historians, controllers and spreadsheets write where a sensor gave nothing
+NO_VALUE = frozenset((
+    *MISSING, "bad", "bad input", "no good", "no data", "nodata", "no value", "i/o timeout", "io timeout", "timeout",
+    "invalid", "not connected", "comm fail", "error", "err", "fault", "overflow", "underflow", "over", "under", "ovl",
+    "undefined", "undef", "missing", "void", "off-line", "offline", "?", "??", "???", "n.a.", "k.a.", "n.v.",
+    "#div/0!", "#value!", "#wert!", "#verdi!", "#num!", "#zahl!", "#ref!", "#bezug!", "#name?", "#n/v",
+))  # fmt: skip
 _DATE = r"\d{1,4}[-./ ](?:\d{1,2}|[^\W\d_]{3,9})\.?[-./ ]\d{1,4}"
-_CLOCK = r"\d{1,3}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?"
+_CLOCK = r"(?:\d{1,3}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?|\d{1,3}:\d{2}[.,]\d+)"
+_IEC = r"(?:T|TIME|LT)#[\d.dhmsu_n]+"
 TIME_LIKE = re.compile(
-    rf"^\W?(?:{_DATE}(?:[T ,]+{_CLOCK})?|{_CLOCK}|\d{{8}}[T ]\d{{4,6}})\s*[AaPp]?[Mm]?\s*(?:Z|UTC|[+-]\d\d:?\d\d)?$"
+    rf"^\W?(?:{_DATE}(?:[T ,]+{_CLOCK})?|{_CLOCK}|{_IEC}|\d{{8}}[T ]\d{{4,6}})"
+    r"\s*[AaPp]?[Mm]?\s*(?:Z|UTC|[+-]\d\d:?\d\d)?$"
 )
 _MARKS_KEPT = 200  # unreadable cells remembered per column: enough to tell a stray one from a column of text
 
@@ -51,8 +60,19 @@ def number_pattern(decimal: str, thousands: str = "") -> re.Pattern[str]:
 def is_number(cell: Any, decimal: str, thousands: str = "") -> bool:
     """Whether a cell is a number."""
     if isinstance(cell, str):
-        return bool(number_pattern(decimal, thousands).match(cell.strip().strip("'\"")))
+        return bool(number_pattern(decimal, thousands).match(_signed(cell)))
     return isinstance(cell, (int, float)) and not isinstance(cell, bool)
+
+
+def _signed(cell: str) -> str:
+    """A number's text with its sign in front: bookkeepers put it behind, or the number in parentheses."""
+    text = cell.strip().strip("'\"")
+    if len(text) > 1 and text[-1] in "-)" and text[-2].isdigit():
+        if text[-1] == "-" and text[0].isdigit():
+            return f"-{text[:-1]}"
+        if text[0] == "(":
+            return f"-{text[1:-1]}"
+    return text
 
 
 def is_time(cell: Any) -> bool:
@@ -98,7 +118,7 @@ def as_column(
         if isinstance(cell, (int, float)) and not isinstance(cell, bool):
             values[row] = cell
             continue
-        if is_missing(cell):
+        if is_missing(cell) or (isinstance(cell, str) and cell.strip().lower() in NO_VALUE):
             continue
         if isinstance(cell, str) and is_number(cell, decimal, thousands):
             values[row] = _number(cell, decimal, thousands)
@@ -152,7 +172,7 @@ def plain_numbers(cells: Sequence[str], decimal: str, thousands: str) -> FloatAr
 
 
 def _number(cell: str, decimal: str, thousands: str) -> float:
-    text = cell.strip().strip("'\"").replace("\u2212", "-")
+    text = _signed(cell).replace("\u2212", "-")
     if thousands:
         text = text.replace(thousands, "")
     return float(text.replace(decimal, "."))

@@ -10,6 +10,7 @@ from winch_friction.importing.units import looks_like_unit
 
 _SEEN = 300  # rows looked at for the beginning of the values
 _RUN = 4  # rows of values in a row that make a beginning
+_HEAD = 30  # rows above the values among which a row of labelled units is looked for
 _ABOVE = 5  # rows above the values among which names and units are looked for
 
 Row = Sequence[Any]
@@ -40,6 +41,9 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
         return None
     above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, decimal, thousands)]
     units = next((k for k in reversed(above) if _is_unit_row(seen[k])), -1)
+    if units < 0:  # a program's head: a property a row, each behind its label
+        head = range(max(0, first - _HEAD), first)
+        units = next((k for k in reversed(head) if _is_labelled_unit_row(seen[k], width)), -1)
     texts = [k for k in above if k != units]
     names = _names_row(seen, texts)
     other = [k for k in texts if k != names and abs(k - names) <= 2]
@@ -78,6 +82,15 @@ def _is_heading(row: Row, width: int, decimal: str, thousands: str) -> bool:
         if isinstance(cell, str) and not is_number(cell, decimal, thousands) and not is_time(cell)
     ]
     return len(cells) >= max(2, width // 2) and len(texts) >= 0.7 * len(cells) and _width(row) <= width + 1
+
+
+def _is_labelled_unit_row(row: Row, width: int) -> bool:
+    """`Y_Unit_Label`, then the unit of each channel."""
+    cells = [str(cell).strip() for cell in row]
+    return (
+        0 <= width - len(cells) <= 2 and bool(cells) and "unit" in cells[0].lower()
+        and sum(looks_like_unit(cell) for cell in cells[1:] if cell) >= 0.6 * max(1, sum(map(bool, cells[1:])))
+    )  # fmt: skip
 
 
 def _is_unit_row(row: Row) -> bool:

@@ -31,7 +31,7 @@ def map_schema() -> dict[str, Any]:
             }),
             "time": _object({
                 "from": _TEXTS, "form": {"enum": list(FORMS)}, "unit": _TEXT, "order": {"enum": ["", *ORDERS]},
-                "zone": _TEXT, "spread": {"type": "boolean"}, "confidence": _SURE, "because": _TEXT,
+                "zone": _TEXT, "spread": {"type": "boolean"}, "fraction": _TEXT, "confidence": _SURE, "because": _TEXT,
             }),
             "columns": {
                 "type": "object",

@@ -52,12 +52,14 @@ def map_text(log_map: LogMap) -> str:
 def _time_lines(log_map: LogMap) -> Iterable[str]:
     time = log_map.time
     yield f"  from: [{', '.join(_quoted(each) for each in log_map.time_from)}]"
-    yield f"  form: {time.form}   # seconds, unix, excel, matlab, datetime or clock"
+    yield f"  form: {time.form}   # seconds, unix, excel, matlab, filetime, dotnet, datetime or clock"
     if time.form in ("seconds", "unix"):
         yield f"  unit: {_quoted(time.unit)}"
     if time.form == "datetime":
         yield f"  order: {time.order or 'ymd'}   # ymd, dmy or mdy"
         yield f"  zone: {_quoted(time.zone)}   # of dates without an offset of their own, e.g. Europe/Oslo"
+    if time.fraction:
+        yield f"  fraction: {_quoted(time.fraction)}   # unit of the last column: what is beyond the whole seconds"
     if time.spread:
         yield "  spread: true   # rows of one tick lie evenly between this tick and the next"
     yield f"  confidence: {log_map.time_confidence:.2f}"

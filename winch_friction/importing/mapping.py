@@ -124,6 +124,7 @@ def _time(section: Section) -> TimeBase:
         order=_choice(section, "order", ("", *ORDERS), ""),
         zone=section.text("zone", ""),
         spread=section.get("spread", False) is True,
+        fraction=section.text("fraction", ""),
     )
 
 

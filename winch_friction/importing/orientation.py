@@ -24,6 +24,8 @@ def settle_orientation(draft: Draft, said: frozenset[str] = frozenset()) -> None
         return
     if "hook_load" in draft.log_map.columns and "hook_load" not in said:
         _settle_load(draft)
+    for name in [n for n in draft.log_map.columns if n.endswith(".displacement") and n not in said]:
+        _settle_displacement(draft, name)
     _settle_ports(draft, draft.crane)
     if "motor_speed" in draft.log_map.columns and "motor_speed" not in said:
         _settle_speed(draft, draft.crane)
@@ -37,6 +39,18 @@ def _settle_load(draft: Draft) -> None:
     loads = loads[np.isfinite(loads)]
     if len(loads) and np.percentile(loads, 95.0) < 0.0:
         draft.change("hook_load", sign=-1, because="sign turned: a hanging load counts negative in this log")
+
+
+def _settle_displacement(draft: Draft, name: str) -> None:
+    """A motor that never goes over centre, logged with a negative displacement: its sign, where the load says so."""
+    values = np.concatenate([each.columns.get(name, np.zeros(0)) for each in draft.converted()])
+    values = values[np.isfinite(values)]
+    if not len(values) or np.max(values) >= 0.0:
+        return
+    kept, before = draft.log_map, _mean_mismatch(draft)
+    draft.change(name, sign=-1, because="sign turned: the displacement counts negative throughout in this log")
+    if not _mean_mismatch(draft) < 0.5 * before:
+        draft.log_map = kept
 
 
 def _settle_speed(draft: Draft, crane: Crane) -> None:

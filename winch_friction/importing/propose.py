@@ -14,6 +14,7 @@ from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.reading import read_log
+from winch_friction.importing.ticks import fraction_unit
 from winch_friction.importing.time_base import TimeGuess, guess_time, to_seconds
 from winch_friction.importing.unit_guess import settle_units
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, header_readings
@@ -21,6 +22,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
 
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
+_SIGNALS, _NAMED = 500, 0.5  # names of one archive; how well a name must fit a channel
 _POOLED = 20_000  # values of each log that are looked at together
 
 
@@ -48,6 +50,7 @@ def propose(
     logs = [read_log(path) for path in watched(paths)]
     draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
     _refuse_different_names(draft)
+    _refuse_rows_of_values(draft)
     pooled = _pooled(logs)
     _settle_time(draft)
     found = matches(pooled, crane, draft.log_map.time_from)
@@ -85,6 +88,22 @@ def _refuse_different_names(draft: Draft) -> None:
             )
 
 
+def _refuse_rows_of_values(draft: Draft) -> None:
+    """A controller's archive or a database that writes a row per value, with the signal's name beside it."""
+    log = draft.logs[0]
+    for column in log.columns:
+        cells = [str(each).strip() for each in column.text] if column.text is not None else []
+        names = dict.fromkeys(cells)
+        if not 2 <= len(names) <= min(_SIGNALS, len(cells) // 5):
+            continue
+        spoken = [c for name in names if (c := name_concepts(name))]
+        if sum(any(name_score(ch, c) > _NAMED for ch in CHANNEL_UNITS if ch != "time") for c in spoken) >= 2:
+            draft.problems.append(
+                f"{log.path.name} has a row per value, of the signals that '{column.name}' names "
+                f"({listed(list(names)[:5])}): export or pivot it to a column per signal"
+            )
+
+
 def _pooled(logs: Sequence[Log]) -> Log:
     """The logs' columns put together, thinned."""
     columns = []
@@ -114,15 +133,41 @@ def _settle_time(draft: Draft) -> None:
                 replace(guess, because=because, confidence=guess.confidence * (1.0 if named else 0.7)),
             )
     if best is None:
-        draft.problems.append(f"time: no column of times found among {listed(c.name for c in draft.logs[0].columns)}")
+        falling, names = _falling(draft.logs[0]), listed(c.name for c in draft.logs[0].columns)
+        draft.problems.append(
+            f"time: '{falling}' falls from row to row, the newest first; sort the log by time"
+            if falling else f"time: no column of times found among {names}"
+        )  # fmt: skip
         return
     _, columns, guess = best
+    columns, guess = _with_fraction(draft.logs[0], columns, guess)
     draft.log_map = replace(
         draft.log_map, time_from=tuple(c.name for c in columns), time=guess.base, time_confidence=guess.confidence,
         time_because=guess.because,
     )  # fmt: skip
     if guess.question:
         draft.questions.append(f"time: {guess.question}")
+
+
+def _falling(log: Log) -> str:
+    """The column that is a time from the last row to the first."""
+    turned = lambda c: replace(c, values=c.values[::-1], text=None if c.text is None else c.text[::-1])
+    named = [c for c in log.columns if name_score("time", name_concepts(_time_reading(c)[0]))]
+    return next((c.name for c in named if guess_time([turned(c)], _time_reading(c)[1]) is not None), "")
+
+
+def _with_fraction(
+    log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess
+) -> tuple[tuple[LogColumn, ...], TimeGuess]:
+    """The time with the column that holds its fractions of a second, where the log keeps them apart."""
+    whole = to_seconds(columns, replace(guess.base, spread=False), "time", log.place, strict=False)
+    for column in log.columns:
+        unit = "" if column in columns else fraction_unit(whole, column)
+        if unit:
+            because = f"{guess.because.partition('; about')[0]}; '{column.name}' holds their fractions in {unit}"
+            base = replace(guess.base, spread=False, fraction=unit)
+            return (*columns, column), replace(guess, base=base, because=because)
+    return columns, guess
 
 
 def _time_reading(column: LogColumn) -> tuple[str, str]:

@@ -7,7 +7,7 @@ from typing import Any
 from winch_friction.importing.log import Log
 from winch_friction.physics.errors import InputError
 
-TEXT = (".csv", ".txt", ".tsv", ".asc", ".log", ".gz", ".zip", ".prn")
+TEXT = (".csv", ".txt", ".tsv", ".asc", ".log", ".gz", ".zip", ".prn", ".lvm")
 WORKBOOK = (".xlsx", ".xlsm")
 SIGNALS = (".parquet", ".pq", ".mat", ".tdms", ".mf4", ".mdf")
 BAGS = (".mcap", ".db3")

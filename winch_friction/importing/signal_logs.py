@@ -18,6 +18,10 @@ from winch_friction.physics.signals import FloatArray
 TIME = "time"  # the name given to the times that a file keeps beside its signals
 _PEEKED = 300  # cells of a column of text whose decimal mark is looked at
 _DEEPEST = 6  # structs within structs of a .mat file
+_OBJECTS = (
+    "{}, which MATLAB alone can open; save its columns: s = table2struct(timetable2table(TT), 'ToScalar', true); "
+    "save log.mat -struct s, or writetimetable(TT, 'log.csv')"
+)
 _MOST = 50_000_000  # values of one signal: ten days at 50 Hz
 
 
@@ -104,14 +108,16 @@ def _parquet(path: Path) -> tuple[list[Signal], dict[str, Any]]:
 
 def _mat(path: Path) -> tuple[list[Signal], dict[str, Any]]:
     from scipy.io import loadmat
+    from scipy.io.matlab import MatlabOpaque
 
     try:
         content = loadmat(path, squeeze_me=True, struct_as_record=False, simplify_cells=True)
     except NotImplementedError:  # version 7.3 is HDF5
         return list(_hdf5(path)), {}
-    return [
-        each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)
-    ], {}
+    found = [each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)]
+    if not found and any(isinstance(value, MatlabOpaque) for value in content.values()):
+        raise InputError(f"{path}: {_OBJECTS.format('a timetable, table or other object')}")
+    return found, {}
 
 
 def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
@@ -135,8 +141,13 @@ def _hdf5(path: Path) -> Iterator[Signal]:
     h5py = library("h5py", "MATLAB files of version 7.3")
     found: list[tuple[str, Any]] = []
 
+    objects: list[str] = []
+
     def visit(name: str, item: Any) -> None:
-        if (
+        if "MATLAB_object_decode" in item.attrs:
+            kind = item.attrs.get("MATLAB_class", b"object")
+            objects.append(f"'{name}' is a {kind.decode() if isinstance(kind, bytes) else kind}")
+        elif (
             isinstance(item, h5py.Dataset)
             and not name.startswith("#")
             and item.dtype.kind in "biuf"
@@ -146,6 +157,8 @@ def _hdf5(path: Path) -> Iterator[Signal]:
 
     with h5py.File(path, "r") as file:
         file.visititems(visit)
+    if objects and not found:
+        raise InputError(f"{path}: {_OBJECTS.format(', '.join(objects))}")
     for name, array in found:
         yield from _arrays(name, array, 0)
 

@@ -10,6 +10,7 @@ from winch_friction.importing.cells import as_column, plain_numbers
 from winch_friction.importing.layout import Layout
 from winch_friction.importing.log import LogColumn, unique_names
 from winch_friction.importing.text_rows import TextRows
+from winch_friction.importing.units import looks_like_unit
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 
@@ -66,6 +67,8 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
             f"does '{delimiter}' also stand inside cells (a decimal comma)? Quote such cells, or separate by ';'"
         )
     units, remarks = padded(rows.row(layout.units), width), padded(rows.row(layout.notes_row), width)
+    if "unit" in units[0].lower() and not looks_like_unit(units[0]):
+        units[0] = ""  # the label of a row of units
     heads = [
         (name, units[k].strip().strip("[]()"), remarks[k].strip())
         for k, name in enumerate(unique_names(padded(names, width)))

@@ -19,14 +19,17 @@ LARGEST = 1 << 30  # bytes of text: ten hours of ten channels at 100 Hz; more is
 _PACKED = 64 << 20  # bytes from which a packed file is looked at more closely
 _RATIO = 100  # times smaller packed than unpacked: numbers of a log pack to a third or a tenth
 _WIDEST = 1 << 16  # characters of one line: a header of a thousand columns has a quarter of it
+_HEAD = 4000  # bytes that tell an encoding
+_MOST_COLUMNS = 1000  # no winch log has more
 _DELIMITERS = (";", ",", "\t", "|")
 
 
 def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     """A text log; `settings` of an earlier look (encoding, delimiter, decimal, thousands, rows) or found anew."""
     given, notes = dict(settings or {}), list[str]()
-    encoding, lines = _decoded(path, given.get("encoding"))
+    encoding, lines = _decoded(path, given.get("encoding"), notes)
     delimiter = given.get("delimiter") or _delimiter(lines)
+    _refuse_channels_in_rows(path, lines, delimiter)
     rows = TextRows(path, _without_empty_tail(lines, delimiter, notes), delimiter)
     del lines
     rows.take_units_out(notes)
@@ -43,9 +46,13 @@ def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     return Log(path, tuple(columns), found, place, tuple(notes))
 
 
-def _decoded(path: Path, encoding: str | None) -> tuple[str, list[str]]:
+def _decoded(path: Path, encoding: str | None, notes: list[str]) -> tuple[str, list[str]]:
     """Encoding and lines; the bytes are not kept."""
     raw = _unpacked(path)
+    padding = len(raw) - len(raw.rstrip(b"\0"))
+    if padding > 1 and 0 not in raw[:_HEAD]:  # a logger that lost its power leaves the room it had taken
+        notes.append(f"{padding} zero bytes at the end are no text: left out")
+        raw = raw[: len(raw) - padding]
     encoding = encoding or _encoding(path, raw)
     return encoding, _lines(path, raw, encoding)
 
@@ -92,7 +99,7 @@ def _encoding(path: Path, raw: bytes) -> str:
     for mark, name in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
         if raw.startswith(mark):
             return name
-    head = raw[:4000]
+    head = raw[:_HEAD]
     if head.count(0) > len(head) // 3:  # text of two bytes a letter without its mark
         return "utf-16-le" if head[1:2] == b"\0" else "utf-16-be"
     if 0 in raw:
@@ -114,6 +121,8 @@ def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
             f"{path}: cannot be read as {encoding} ({str(error)[:80]}); set log.encoding in the map"
         ) from error
     lines = text.splitlines()
+    if text.lstrip("\ufeff \t\r\n")[:9].lower().startswith(("<html", "<!doctype", "<?xml", "<table")):
+        raise InputError(f"{path}: an HTML or XML page, no table of text; save it as .csv or .xlsx where it was made")
     if not any(line.strip() for line in lines):
         raise InputError(f"{path}: the file is empty")
     longest = max(range(len(lines)), key=lambda k: len(lines[k]))
@@ -155,6 +164,15 @@ def _cut(line: str, delimiter: str) -> list[str]:
         return next(csv.reader([line], delimiter=delimiter), [])
     except csv.Error:
         return []
+
+
+def _refuse_channels_in_rows(path: Path, lines: Sequence[str], delimiter: str) -> None:
+    """A table that lies on its side: few rows, each a channel's name and all its values."""
+    rows = [_cut(line, delimiter) for line in lines if line.strip()] if len(lines) <= _MOST_COLUMNS else []
+    wide = [row for row in rows if len(row) > max(_MOST_COLUMNS, 10 * len(rows))]
+    if len(wide) > 1 and 2 * len(wide) > len(rows):
+        names = listed(row[0][:40] for row in wide)
+        raise InputError(f"{path}: the channels stand in rows ({names}), {len(wide[0]) - 1} values each; transpose it")
 
 
 def _without_empty_tail(lines: list[str], delimiter: str, notes: list[str]) -> list[str]:

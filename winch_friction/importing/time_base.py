@@ -1,7 +1,8 @@
 """A log's time as seconds: which form its cells have, told from the values, and the way to seconds.
 
-Forms: `seconds` (any unit, from any origin), `unix` (counted since 1970), `excel` and `matlab` (days), `datetime`
-(dates with a time of day, in one column or two) and `clock` (a time of day alone, from midnight).
+Forms: `seconds` (any unit, from any origin), `unix` (counted since 1970), `excel` and `matlab` (days), `filetime` and
+`dotnet` (tenths of a microsecond since 1601 and since year 1), `datetime` (dates with a time of day, in one column or
+two) and `clock` (a time of day alone, from midnight).
 """
 
 from collections.abc import Sequence
@@ -13,17 +14,20 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 import numpy as np
 
 from winch_friction.importing.log import LogColumn, Place
+from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
 from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.headers import conversion_to_si
 
-FORMS = ("seconds", "unix", "excel", "matlab", "datetime", "clock")
+FORMS = ("seconds", "unix", "excel", "matlab", "filetime", "dotnet", "datetime", "clock")
 ORDERS = ("ymd", "dmy", "mdy")
 _DAY = 86_400.0
 _EXCEL_EPOCH = 25_569.0  # days from 1899-12-30 to 1970-01-01
 _MATLAB_EPOCH = 719_529.0  # days from year 0 to 1970-01-01
-UNSTEADY = 0.5  # periods that a steady clock's row may miss its tick by, for what its own jitter is
+_TICK = 1e-7  # s
+_EPOCHS = {"filetime": 11_644_473_600.0, "dotnet": 62_135_596_800.0}  # s from their origin to 1970
+_TICK_YEARS = (9.4e8, 2.6e9)  # s: 2000 to 2052; before that nobody's log counts so
 _UNIX_YEARS = (6.3e8, 2.6e9)  # s: 1990 to 2052
 
 
@@ -32,7 +36,8 @@ class TimeBase:
     """How a column (or a date and a clock) becomes seconds.
 
     `form` one of FORMS; `unit` of numbers; `order` of a date's parts; `zone` for dates without an offset, '' where
-    none is needed; `spread`: rows of one tick lie evenly between this tick and the next.
+    none is needed; `spread`: rows of one tick lie evenly between this tick and the next; `fraction`: unit of the last
+    column, which holds what is beyond the others' whole seconds ('' for none).
     """
 
     form: str
@@ -40,6 +45,7 @@ class TimeBase:
     order: str = ""
     zone: str = ""
     spread: bool = False
+    fraction: str = ""
 
 
 @dataclass(frozen=True)
@@ -61,7 +67,7 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     finite = seconds[np.isfinite(seconds)]
     if len(finite) < 2 or finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02:
         return None
-    ticks = _rows_of_one_tick(finite)
+    ticks = rows_of_one_tick(finite)
     if ticks > 1.5:
         return replace(
             guess,
@@ -71,20 +77,14 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     return guess
 
 
-def _rows_of_one_tick(seconds: FloatArray) -> float:
-    """Rows per different time where the ticks are regular, else 1."""
-    _, counts = np.unique(seconds, return_counts=True)
-    inner = counts[1:-1]
-    if len(inner) < 3 or np.median(inner) < 2:
-        return 1.0
-    return float(np.mean(inner)) if np.mean(np.abs(inner - np.median(inner)) <= 0.35 * np.median(inner)) > 0.8 else 1.0
-
-
 def _guess_numbers(column: LogColumn, unit: str) -> TimeGuess | None:
     values = column.values[np.isfinite(column.values)]
     if len(values) < 2:
         return None
     low, high = float(values.min()), float(values.max())
+    for form, origin in _EPOCHS.items():
+        if _TICK_YEARS[0] < _TICK * low - origin and _TICK * high - origin < _TICK_YEARS[1]:
+            return TimeGuess(TimeBase(form), 0.95, f"values of {low:.4g} are tenths of a microsecond ({form})")
     for name, factor in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)):
         if _UNIX_YEARS[0] < low * factor and high * factor < _UNIX_YEARS[1]:
             return TimeGuess(TimeBase("unix", name), 0.95, f"values of {low:.4g} are {name} since 1970")
@@ -152,6 +152,10 @@ def to_seconds(
     columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool = True
 ) -> FloatArray:
     """Seconds of every row; NaN where a cell is empty; raises `InputError` by row for a cell that is no time."""
+    if base.fraction:
+        scale, _ = conversion_to_si(base.fraction, "s", where)
+        *whole, beyond = columns
+        return to_seconds(whole, replace(base, fraction=""), where, place, strict) + scale * beyond.values
     if columns[0].numeric:
         seconds = _from_numbers(columns[0].values, base, where)
     else:
@@ -164,6 +168,8 @@ def _from_numbers(values: FloatArray, base: TimeBase, where: str) -> FloatArray:
         return (values - _EXCEL_EPOCH) * _DAY
     if base.form == "matlab":
         return (values - _MATLAB_EPOCH) * _DAY
+    if base.form in _EPOCHS:
+        return _TICK * values - _EPOCHS[base.form]
     if base.form not in ("seconds", "unix"):
         raise InputError(
             f"{where}: time.form is '{base.form}', but the column holds plain numbers; use seconds or unix"
@@ -196,45 +202,6 @@ def _over_midnight(seconds: FloatArray) -> FloatArray:
     """Times of day that fall from the end of a day to its beginning go on into the next one."""
     steps = np.diff(seconds, prepend=seconds[0])
     return seconds + _DAY * np.cumsum(np.nan_to_num(steps) < -0.9 * _DAY)
-
-
-def spread_ticks(seconds: FloatArray) -> FloatArray:
-    """Rows of one time at a steady rate where one puts every row into its tick; else laid evenly between this time and
-    the next, the first and last tick like the others.
-    """
-    ticks, first, counts = np.unique(seconds, return_index=True, return_counts=True)
-    if len(ticks) < 2 or np.any(np.diff(seconds) < 0.0) or not np.isfinite(seconds).all():
-        return seconds
-    steady = _steady_clock(seconds, float(np.median(np.diff(ticks))))
-    if steady is not None:
-        return steady
-    usual = float(np.median(counts[1:-1])) if len(ticks) > 2 else float(max(counts))
-    width = float(np.median(np.diff(ticks)))
-    rank = np.arange(len(seconds)) - np.repeat(first, counts)
-    share = np.repeat(np.maximum(counts, 1), counts).astype(float)
-    ends = np.repeat(np.append(np.diff(ticks), width), counts)
-    last, begin = (
-        np.repeat(np.arange(len(ticks)) == len(ticks) - 1, counts),
-        np.repeat(np.arange(len(ticks)) == 0, counts),
-    )
-    share = np.where(last, np.maximum(share, usual), share)
-    rank = np.where(begin, rank + np.maximum(usual - counts[0], 0.0), rank)  # the first tick was joined late
-    share = np.where(begin, np.maximum(share, usual), share)
-    return seconds + ends * rank / share
-
-
-def _steady_clock(seconds: FloatArray, tick: float) -> FloatArray | None:
-    """Times at one rate that rounding or cutting to whole ticks makes of these, or None.
-
-    A logger that writes whole seconds gives 9 and 11 rows in turn at 10 Hz; spread inside each tick, the rate would
-    jump by a fifth from one to the next, and every acceleration with it.
-    """
-    row = np.arange(len(seconds))
-    period = float(np.polyfit(row, seconds - seconds[0], 1)[0])
-    off = seconds - seconds[0] - period * row
-    if not period > 0.0 or np.ptp(off) > tick + UNSTEADY * period:
-        return None
-    return np.asarray(seconds[0] + float(off.max() + off.min()) / 2.0 + 0.5 * tick + period * row)
 
 
 def _joined(columns: Sequence[LogColumn]) -> Any:

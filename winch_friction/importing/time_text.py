@@ -21,6 +21,13 @@ _STAMP = re.compile(
 )
 _COMPACT = re.compile(r"^(\d{4})(\d\d)(\d\d)[T _-](\d\d):?(\d\d):?(\d\d)")
 
+_MINUTES = re.compile(r"^(\d{1,3}):(\d{2}[.,]\d+)$")  # what a spreadsheet shows of a short time
+_IEC = re.compile(
+    r"^(?:T|TIME|LT)#(?:([\d.]+)d_?)?(?:([\d.]+)h_?)?(?:([\d.]+)m_?)?(?:([\d.]+)s_?)?(?:([\d.]+)ms_?)?(?:([\d.]+)us)?$",
+    re.IGNORECASE,
+)  # a controller's T#1m2s345ms
+_IEC_SECONDS = (86_400.0, 3600.0, 60.0, 1.0, 1e-3, 1e-6)
+
 
 def time_parts(cell: Any) -> tuple[Any, ...] | None:
     """Three parts of the date (or None), hour, minute, second, am/pm, zone, and the date's mark."""
@@ -32,6 +39,12 @@ def time_parts(cell: Any) -> tuple[Any, ...] | None:
     if isinstance(cell, (datetime, date, time)):
         cell = cell.isoformat()
     text = _COMPACT.sub(r"\1-\2-\3 \4:\5:\6", str(cell).strip()) if cell is not None else ""
+    minutes, spoken = _MINUTES.match(text), _IEC.match(text)
+    if minutes:
+        return None, None, None, "0", minutes[1], minutes[2], None, None, ""
+    if spoken and any(spoken.groups()):
+        total = sum(s * float(part or 0) for s, part in zip(_IEC_SECONDS, spoken.groups(), strict=True))
+        return None, None, None, "0", "0", str(total), None, None, ""
     match = _STAMP.match(text)
     if not text or match is None or (match[1] is None and match[4] is None):
         return None

@@ -82,6 +82,7 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
     if match.unit and not options:  # what the log says gives no usual size: which unit would?
         others = [u for u in usual_units(match.slot.channel) if u != match.unit]
         likely = [u for u in others if plausible_units(column, u, match.slot.channel, draft.crane)]
+        likely.sort(key=lambda u: -_closing(draft, {name: u}))  # as usual ones as they close the balance alike
         low, high = usual_size(match.slot.channel, draft.crane)
         size = float(np.nanpercentile(np.abs(column.values), 95.0))
         hint = f"; '{likely[0]}' would give a usual size: set {name}.unit={likely[0]}" if likely else ""

@@ -76,9 +76,16 @@ def header_text(column: str) -> str:
     return column if unit in (None, "1") else f"{column} [{unit}]"
 
 
+_COUNTED = re.compile(r"^[x×]?\s*(0?[.,]0{0,5}1|10{1,5})\s*[x×*]?\s*([A-Za-z°%µμ].*)$")  # powers of ten alone
+
+
 @lru_cache(maxsize=256)
 def conversion_to_si(unit: str, expected: str, where: str) -> tuple[float, float]:
     """Scale and offset that take values in `unit` to `expected`; raises `InputError` for a unit that does not fit."""
+    counted = _COUNTED.match(unit.strip())
+    if counted:  # a controller's whole numbers: tenths of a bar, hundreds of microseconds
+        scale, offset = conversion_to_si(counted[2], expected, where)
+        return scale * float(counted[1].replace(",", ".")), offset
     registry, name = _registry(), pint_name(unit, expected, where)
     try:
         _refuse_arithmetic(name)

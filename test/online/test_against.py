@@ -153,6 +153,21 @@ def test_whoever_resets_at_every_sample_does_not_hold_the_torque(every: int) -> 
     check_invariants(fed)
 
 
+def test_stamps_that_fell_behind_give_no_leave_to_step() -> None:
+    """By the clock 0.12 s had passed, by the stamps 0.02 s: the first message without the command stepped to zero."""
+    fed = sailing(REVERSAL - 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.02))
+    for _ in range(20):
+        fed.shift -= 0.5 * PERIOD
+        fed.run(PERIOD)
+    fed.now += 0.1
+    fed.shift -= 0.1
+    fed.service.set_enabled(False)
+    fed.run(0.2)
+    assert fed.torque == 0.0
+    check_invariants(fed)
+
+
 def test_a_beginning_after_a_pause_is_no_step() -> None:
     fed = sailing(REVERSAL + 1.0)
     list(fed.service.ending(fed.now))

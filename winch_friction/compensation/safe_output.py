@@ -52,7 +52,7 @@ class SafeOutput:
         self._size = 0.0  # N m, what was published last while something carried it: the ramp is as steep as from there
         self._ramp_from, self._turns_at = math.nan, math.inf  # stamps: the ramp begins, the motion may turn; s
         self._steady, self._credit = math.nan, self.hold
-        self._dt = self._against = self._pushing = self._carried = 0.0
+        self._dt = self._gap = self._against = self._pushing = self._carried = 0.0
         self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
         self._bump = self._usable = self._new_time = False
 
@@ -91,12 +91,12 @@ class SafeOutput:
         the moment that it takes. Stamps that fall behind it by more than `hold` hold up no way out: a fade to zero is
         then as quick as the steady clock.
         """
-        ramped = self.time > self._fed  # what has passed since the last sample is used up already
-        anew = abs(time - self.time) if self._new_time else 0.0
+        anew, ramped = self._new_time, self.time > self._fed  # what has passed since the last sample is used up already
+        self._gap = abs(time - self.time) if self.time == self.time else 0.0
         self._dt, self._overdue = self._elapsed(time), 0.0
         if now is not None:
-            if anew > 0.0 and now > self._steady:  # whoever resets at every sample does not hold the output
-                self._dt = min(anew, now - self._steady, LONGEST_ANEW)
+            if anew and now > self._steady:  # whoever resets at every sample does not hold the output
+                self._dt = min(self._gap, now - self._steady, LONGEST_ANEW)
             self._dt = self._paced(self._dt, now)
         if ramped:
             self._overdue = 0.0
@@ -159,7 +159,8 @@ class SafeOutput:
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
         self._pushing = max(self._pushing, abs(self.torque)) if self._opposed(self.torque) else 0.0
-        self.torque = self.limits.slewed(wanted, self.torque, self._dt, self._fast(self._pushing)) + 0.0  # never -0.0
+        passed = min(self._dt, self._gap)  # by the stamps as well: they go out with the torque
+        self.torque = self.limits.slewed(wanted, self.torque, passed, self._fast(self._pushing)) + 0.0  # never -0.0
         self.sequence += 1
         self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
         self._size = abs(self.torque) if carried else max(self._size, abs(self.torque))

@@ -126,3 +126,18 @@ def test_no_block_is_no_segment():
     blocks = problem_with(np.ones(RUNS)).blocks
     none = replace(blocks, **{f.name: getattr(blocks, f.name)[:0] for f in fields(blocks) if f.name != "features"})
     assert grams(none).total().tolist() == [[0.0, 0.0], [0.0, 0.0]]
+
+
+def test_what_is_asked_again_is_what_was_answered_first():
+    """Of each order of the same effects, for the columns and so the coefficients follow it."""
+    problem = problem_with(np.full(RUNS, 1.0))
+    again = CrossFit(problem)
+    for slots in ((), (EFFECT,), (), (EFFECT,)):
+        fresh, kept = CrossFit(problem).explain(slots), again.explain(slots)
+        np.testing.assert_array_equal(fresh.losses, kept.losses)
+        np.testing.assert_array_equal(fresh.beta, kept.beta)
+        np.testing.assert_array_equal(fresh.left_out, kept.left_out)
+        assert fresh.train_loss == kept.train_loss == again.train_loss(slots)[0]
+        assert kept.slots == slots
+    assert again.explain([EFFECT]) is again.explain((EFFECT,))
+    assert not again.explain((EFFECT,)).beta.flags.writeable

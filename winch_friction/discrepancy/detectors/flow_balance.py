@@ -15,7 +15,7 @@ from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction.terms.effects_winch import walther
+from winch_friction.physics import viscosity
 from winch_friction.physics.signals import FloatArray, Run
 
 REFERENCE = "speed_reference"
@@ -131,7 +131,7 @@ def _per_leakage(prepared: PreparedRun) -> FloatArray:
     if "oil_temperature" in prepared.channels:
         celsius = prepared.channels["oil_temperature"]
         law = 10 ** (10 ** np.interp(celsius, *_table())) - 0.7
-        thinness = float(walther(40.0)) / law
+        thinness = viscosity.kinematic_viscosity(viscosity.REFERENCE) / law
     return driving.pressure / driving.displacement * thinness
 
 
@@ -139,7 +139,7 @@ def _per_leakage(prepared: PreparedRun) -> FloatArray:
 def _table() -> tuple[FloatArray, FloatArray]:
     """log10 log10 (nu + 0.7) of the reference oil over temperature."""
     celsius = np.linspace(-20.0, 120.0, 71)
-    return celsius, np.array([np.log10(np.log10(float(walther(c)) + 0.7)) for c in celsius])
+    return celsius, np.log10(np.log10(viscosity.kinematic_viscosity(celsius) + 0.7))
 
 
 def _fit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, float]:

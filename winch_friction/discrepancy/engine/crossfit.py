@@ -50,6 +50,9 @@ class CrossFit:
         for k in np.unique(self.fold):
             own = np.flatnonzero(self.fold == k)
             self.sums.append((own, self.total_g - g.total(own), self.total_b - g.b[own].sum(axis=0)))
+        # a search asks for most sets three times; each answer keeps its slots alive, so that an id stays one slot's
+        self._fits: dict[tuple[int, ...], tuple[float, FloatArray]] = {}
+        self._explained: dict[tuple[int, ...], Explanation] = {}
 
     @property
     def floor(self) -> float:
@@ -59,13 +62,25 @@ class CrossFit:
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
         """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)
+        if columns not in self._fits:
+            self._fits[columns] = self._fit(columns)
+        return self._fits[columns]
+
+    def _fit(self, columns: tuple[int, ...]) -> tuple[float, FloatArray]:
         beta = self.problem.fit(self.total_g, self.total_b, columns)
         index = np.asarray(columns)
         loss = self.total_y2 - 2.0 * self.total_b[index] @ beta + beta @ self.total_g[np.ix_(index, index)] @ beta
+        beta.setflags(write=False)  # it is given out again
         return float(loss), beta
 
     def explain(self, slots: Sequence[Slot]) -> Explanation:
         """Held-out losses of a set of effects."""
+        key = tuple(map(id, slots))
+        if key not in self._explained:
+            self._explained[key] = self._explain(slots)
+        return self._explained[key]
+
+    def _explain(self, slots: Sequence[Slot]) -> Explanation:
         columns = self.problem.columns(slots)
         index = np.asarray(columns)
         losses, left_out = np.empty(len(self.fold)), np.empty((len(self.sums), len(columns)))

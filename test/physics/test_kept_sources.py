@@ -108,3 +108,16 @@ def test_two_processes_agree(tmp_path):
     }
     assert len(said) == 1
     assert len(list((tmp_path / "winch_friction" / "equations").iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    ("power", "product"),
+    [
+        ("K2*x**2", "K2*(x*x)"),
+        ("1/C4**2 - w**3", "1/(C4*C4) - (w*w*w)"),
+        ("-x**2*y", "-(x*x)*y"),
+        ("x**4 + x**20 + x**2.0 + x**2**y + 2.5**2 + (a + b)**2 + exp(x)**3", None),
+    ],
+)
+def test_small_powers_of_names_alone_are_products(power, product):
+    assert sources._multiplied(power) == (product or power)

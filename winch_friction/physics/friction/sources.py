@@ -26,6 +26,7 @@ from winch_friction.physics.friction import symbols
 Function = Callable[..., Any]
 
 NAME = "equation"
+_SMALL_POWER = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\*\*([23])(?!\*\*|[\w.])")  # of a name alone
 MOST_FILES = 4000  # of 1 to 4 kB; a search of data leaves some thirty that never come again
 _NAMESPACES: dict[str, dict[str, Any]] = {
     "math": {**vars(math), "__name__": __name__, "abs": abs},
@@ -41,7 +42,7 @@ def function_of(key: str, dialect: str, make: Callable[[], Function]) -> Functio
         made = make()
         if not _plain(made, _NAMESPACES[dialect]):
             return made
-        source = python_source(made, NAME)
+        source = _multiplied(python_source(made, NAME))
         if path is not None:
             _write(path, source)
     return _executed(source, dialect)
@@ -53,6 +54,11 @@ def python_source(function: Function, name: str) -> str:
     for number, dummy in enumerate(dict.fromkeys(re.findall(r"_Dummy_\d+", source))):
         source = re.sub(rf"\b{dummy}\b", f"_argument_{number}", source)
     return re.sub(r"^def \w+\(", f"def {name}(", source, count=1) + "\n\n"
+
+
+def _multiplied(source: str) -> str:
+    """Squares and cubes as products: a power of floats costs Python two products and NumPy twenty."""
+    return _SMALL_POWER.sub(lambda found: f"({'*'.join([found[1]] * int(found[2]))})", source)
 
 
 def _plain(function: Function, namespace: dict[str, Any]) -> bool:

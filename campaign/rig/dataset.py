@@ -21,6 +21,7 @@ from campaign.rig.world import SHIPPED, World, draw_world
 
 Columns = dict[str, np.ndarray]
 EPOCH = 1_700_000_000.0  # Unix time of the first run
+SETTLES = 6.0  # how many times over all dates what creeps comes nearer by a factor of e
 FILLS_IN = 30.0  # s, of a buffer between PLC and logger
 DRAWN = "drawn"  # the flavour of a crane, seed model, test plan and instruments that are drawn from the data set's seed
 
@@ -215,6 +216,7 @@ def _log(
     there = plant.date > hidden.pressure_after
     warm = (celsius[index] - 40.0) / 15.0
     offset = hidden.pressure_offset * there + hidden.pressure_drift * plant.date + hidden.pressure_warm * warm
+    offset += hidden.pressure_settles * (1.0 - np.exp(-SETTLES * plant.date))
     gain = hidden.pressure_scale + hidden.pressure_curve * p_a[at] / (200 * BAR)
     gain += hidden.pressure_bend * np.maximum(1.0 - 150 * BAR / np.maximum(p_a[at], BAR), 0.0)
     shown = instruments.filtered(angle, hidden.speed_filter) if hidden.speed_filter > 0.0 else angle
@@ -242,7 +244,9 @@ def _swash(
     true: float, hidden: Hidden, play: np.ndarray, world: World, size: int, rng: np.random.Generator
 ) -> np.ndarray:
     noise = rng.normal(0, 0.15, size) * CM3_PER_REV * world.motor_size
-    return true * (1.0 + hidden.swivel_gain) + hidden.swivel + play + noise
+    x = true / world.max_displacement
+    bow = 4.0 * hidden.swivel_mid * x * (1.0 - x)
+    return true * (1.0 + hidden.swivel_gain) + hidden.swivel + bow + play + noise
 
 
 def _optional(

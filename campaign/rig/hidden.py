@@ -83,6 +83,7 @@ class Hidden(NamedTuple):
     tare_beyond: float = 0.0  # m of wire from which on it counts
     pressure_offset: float = 0.0  # Pa, port A of the driving motors
     pressure_after: float = -1.0  # share of the dates from which on that offset is there
+    pressure_settles: float = 0.0  # Pa, that it creeps to, fast at first
     pressure_drift: float = 0.0  # Pa over all dates, that the same zero creeps
     pressure_offset_b: float = 0.0  # Pa, port B of the driving motors
     pressure_offset_passive: float = 0.0  # Pa, port A of the passive motors
@@ -97,6 +98,7 @@ class Hidden(NamedTuple):
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative
+    swivel_mid: float = 0.0  # m^3/rad at half stroke, nothing at its ends
     swivel_warm: float = 0.0  # m^3/rad per 15 K above 40 degC
     swivel_play: float = 0.0  # m^3/rad, to the side on which the run's adjustment ended
     # outside any catalogue

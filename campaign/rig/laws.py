@@ -167,7 +167,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("warm_electronics", _set(pressure_warm=2.5 * BAR)),
         Law("since_a_date", lambda s, rng, f: {
             "pressure_offset": 2.5 * BAR * s, "pressure_after": rng.uniform(0.3, 0.7)}),
-        Law("creeps", _set(pressure_drift=4.0 * BAR), held_out=True),
+        Law("creeps", _set(pressure_drift=4.0 * BAR)),
+        Law("settles", _set(pressure_settles=4.0 * BAR), held_out=True),
     ),
     "pressure_scale": (
         Law("passive_side", _set(pressure_scale_passive=0.012)),
@@ -181,7 +182,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "swivel_offset": (
         Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV)),
-        Law("warm_electronics", _set(swivel_warm=1.5 * CM3_PER_REV), held_out=True),
+        Law("warm_electronics", _set(swivel_warm=1.5 * CM3_PER_REV)),
+        Law("mid_stroke", _set(swivel_mid=2.5 * CM3_PER_REV), held_out=True),
     ),
     "entrained_air": (
         Law("more", _set(air=0.02)), Law("little", _set(air=0.005), held_out=True),

@@ -52,6 +52,7 @@ def ties(name):
     """What a correction of that name has to be given beside its value."""
     own = DECLARED[name]
     more = {"groups": ("active",)} if own.by_group else {}
+    more |= {"during": ((-20.0, 30.0),)} if own.grows else {}
     return more | ({"time_constant": 60.0} if own.has_time_constant else {})
 
 
@@ -73,6 +74,9 @@ def spoiled(run, correction):
             if action is Action.OFFSET:
                 warmer = columns["oil_temperature"] - 40.0 if correction.declared.reads else 1.0
                 columns[name] = true + e * warmer
+                if correction.declared.grows:
+                    ((begin, end),) = correction.during
+                    columns[name] = true + e * np.interp(run.time, [begin, end], [0.0, 1.0])
             elif action is Action.SCALE:
                 columns[name] = true * (1.0 + e)
             elif action is Action.CURVATURE:
@@ -196,6 +200,23 @@ def test_a_sample_without_the_oil_keeps_its_pressure_and_says_so(truth, crane_15
     cold = replace(warm, oil_temperature=float("nan"))
     assert corrector(cold).groups["active"].pressure_a == pressure
     assert corrector.uncorrected == ("pressure_thermal_zero",)
+
+
+def test_a_zero_creeps_within_its_time_and_stays(truth, crane_150t, crane2_model):
+    creeping = Correction("pressure_creep", 4.0 * BAR, during=((100.0, 200.0),))
+    corrector = SampleCorrector(crane_150t, replace(crane2_model, corrections=(creeping,)))
+    sample = next(iter(truth.samples()))
+    logged = sample.groups["active"].pressure_a
+    for time, error in ((50.0, 0.0), (100.0, 0.0), (150.0, 2.0 * BAR), (200.0, 4.0 * BAR), (9e9, 4.0 * BAR)):
+        right = corrector(replace(sample, time=time)).groups["active"].pressure_a
+        assert right == pytest.approx(logged - error, abs=1e-6)
+    assert corrector.uncorrected == ()
+
+
+@pytest.mark.parametrize("during", [(), ((0.0, 1.0), (2.0, 3.0)), ((0.0, float("inf")),)])
+def test_a_creeping_zero_needs_one_window_that_ends(during):
+    with pytest.raises(InputError, match="pressure_creep' needs during: one window"):
+        Correction("pressure_creep", 4.0 * BAR, during=during)
 
 
 def test_without_corrections_nothing_is_touched(truth, crane_150t, crane2_model):

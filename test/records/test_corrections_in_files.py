@@ -16,6 +16,7 @@ def every_correction():
     found = []
     for name, own in DECLARED.items():
         more = {"time_constant": 45.0} if own.has_time_constant else {}
+        more |= {"during": ((1.7e9, 1.8e9),)} if own.grows else {}
         lower = 0.0 if own.parameter.lower == 0.0 else 0.5 * own.parameter.lower
         value = own.parameter.typical / 3.0
         found.append(Correction(name, value, 0.1 * value, lower, 2.0 * own.parameter.typical, "a test", **more))

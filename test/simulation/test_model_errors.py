@@ -29,7 +29,8 @@ def wrong(model, name, size=1.0, **more):
 @pytest.mark.parametrize("name", SIGNALS)
 def test_a_signal_is_wrong_in_the_log_and_right_again(name, sign, scenario, crane, model):
     plain = simulate(scenario, crane, model).run
-    erring = wrong(model, name, sign, groups=("active",) if DECLARED[name].by_group else ())
+    more = {"during": ((-2.0, -1.0),)} if DECLARED[name].grows else {}  # grown long ago
+    erring = wrong(model, name, sign, groups=("active",) if DECLARED[name].by_group else (), **more)
     log = simulate(scenario, crane, erring).run
     right, same = corrected(log, crane, erring)
     assert same is crane

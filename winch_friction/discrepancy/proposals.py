@@ -224,7 +224,7 @@ def _proven(
         return None  # one memory is all that a proposal may have
     declared = declare(scored.law, scored.amount)
     grid = {name: (value,) for name, value in declared.constants.items()}
-    candidate = friction_candidate(declared.term, grid, hydraulic=False)
+    candidate = friction_candidate(declared.term, grid, hydraulic=False, own_size=True)
     with known_for_now(declared.term):
         expansion = expand(refit.search, candidate)
         cross = expansion.cross(train, expansion.layout.slots)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.candidate import Candidate, machine_sizes
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
@@ -76,6 +76,7 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
     curves: list[tuple[tuple[int, ...], FloatArray]] = []
     known = model.as_dict()
     lower, upper = list(base.lower), list(base.upper)
+    sizes = machine_sizes(runs)
     for candidate in candidates:
         present = candidate.term is not None and candidate.term.name in model.term_names
         most = candidate.most_in(model)
@@ -84,14 +85,15 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
             for parameter in candidate.linear:
                 # what the model has already may change by as much as it is
                 own = abs(known.get(parameter.name, 0.0)) if present else 0.0
-                scales.append(max(own, abs(parameter.typical)) * np.sign(parameter.typical))
+                typical = candidate.scale(parameter, sizes)
+                scales.append(max(own, abs(typical)) * np.sign(typical))
                 # in typical sizes, which have the sign that a curve that may only fall asks for
                 either = parameter.lower < 0.0 if parameter.typical > 0.0 else parameter.upper > 0.0
                 low, high = shape.bounds or (-most if either or present else 0.0, most)
                 if candidate.corrects is not None and parameter.unit == "1":  # a share means what it is declared for
                     low, high = (
-                        max(low, parameter.lower / parameter.typical),
-                        min(high, parameter.upper / parameter.typical),
+                        max(low, parameter.lower / typical),
+                        min(high, parameter.upper / typical),
                     )
                 lower.append(low)
                 upper.append(high)

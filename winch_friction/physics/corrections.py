@@ -15,7 +15,6 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import (
     DECLARED,
-    THERMAL_REFERENCE,
     Action,
     Correction,
     DeclaredCorrection,
@@ -106,12 +105,8 @@ def _missing(correction: Correction, run: Run) -> list[str]:
 
 # -- whole runs
 def _offset(columns: Columns, run: Run, c: Correction) -> Columns:
-    error = c.value * (columns["oil_temperature"] - THERMAL_REFERENCE) if _thermal(c) else c.value
+    error = c.error(columns["time"], columns.get("oil_temperature"))
     return columns | {name: columns[name] - error for name in affected(c, run.groups) if name in columns}
-
-
-def _thermal(c: Correction) -> bool:
-    return "oil_temperature" in c.declared.reads
 
 
 def _scale(columns: Columns, run: Run, c: Correction) -> Columns:
@@ -241,7 +236,7 @@ def _correct(sample: Sample, c: Correction) -> bool:
         if length == length:
             sample.hook_load += c.value * length
         return length == length or sample.hook_load != sample.hook_load
-    error = c.value * (sample.oil_temperature - THERMAL_REFERENCE) if _thermal(c) else c.value
+    error = float(c.error(sample.time, sample.oil_temperature))
     if error != error:
         return False
     for name, member in sample.groups.items():

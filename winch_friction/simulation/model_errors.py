@@ -4,7 +4,7 @@ import numpy as np
 
 from winch_friction.physics.corrections import affected, corrected_crane
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Action, Correction
+from winch_friction.physics.friction.correction import Action, Correction
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.scenario import Scenario
@@ -43,14 +43,14 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
 
 
 def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) -> None:
-    factor = _degrees(correction, scenario) if "oil_temperature" in correction.declared.reads else 1.0
+    oil = _oil(correction, scenario) if "oil_temperature" in correction.declared.reads else None
     groups = dict.fromkeys(name.rpartition(".")[0] for name in channels.names if "." in name)
     columns = affected(correction, groups)
     for name, row in zip(channels.names, channels.settings, strict=True):
         if name not in columns:
             continue
         if correction.declared.action is Action.OFFSET:
-            row["offset"] += correction.value * factor
+            row["offset"] += correction.error(scenario.start_time, oil)
         elif correction.declared.action is Action.SCALE:
             row["scale"] *= 1.0 + correction.value
         elif correction.declared.action is Action.CURVATURE:
@@ -59,15 +59,15 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
             row["delay"] += correction.value
 
 
-def _degrees(correction: Correction, scenario: Scenario) -> float:
-    """The oil above the reference; a sensor of the simulator has one offset for a whole run."""
+def _oil(correction: Correction, scenario: Scenario) -> float:
+    """The oil's temperature in degC; a sensor of the simulator has one offset for a whole run."""
     oil = scenario.oil_temperature
     if oil.end not in (None, oil.start):
         raise InputError(
             f"scenario '{scenario.name}': the oil goes from {oil.start:g} to {oil.end:g} degC, and correction "
             f"{correction.name} needs one temperature in the simulator; give start and end alike"
         )
-    return oil.start - THERMAL_REFERENCE
+    return float(oil.start)
 
 
 def _put_mass(correction: Correction, scenario: Scenario, plant: np.void) -> None:

@@ -5,6 +5,7 @@ where it shows, how large it may be, and how it goes into the repaired model.
 """
 
 import itertools
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -25,6 +26,9 @@ Merge = Callable[[Values, Values], Mapping[str, float]]
 # where an effect shows: in moving samples, just after reversals, over the shaft's angle, in the flow, or nowhere
 SOURCE, CUT = "winch-friction gap", "cut at its bound from"
 MOVING, REVERSALS, ANGLE, FLOW, NOWHERE = "moving", "just after reversals", "angle", "flow", "nowhere"
+# the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
+REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
+LINE = "line_pressure_drop"
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
 
@@ -87,6 +91,22 @@ def correction(name: str, estimate: ParameterEstimate, factor: float = 1.0, **ti
     return Correction(name, inside, abs(factor) * estimate.std, source=source, **ties)
 
 
+def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
+    """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
+    motor's torque with its displacement, masses with what the winch lifts at one pressure, a resistance (also one that
+    is stated at a fixed flow, under `LINE`) with the square of its flow. Empty where no run shows motors.
+    """
+    run = runs[0]
+    swept = dict(run.constants).get("max_displacement", 0.0)
+    motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
+    if not swept or not motors:
+        return {}
+    one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
+    lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
+    torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
+    return {**torques, LINE: whole**-2, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
+
+
 def single_shape(_: Sequence[PreparedRun]) -> list[Shape]:
     """For effects without shape parameters."""
     return [Shape("")]
@@ -125,6 +145,7 @@ class Candidate:
     blind: Blind | None = None  # (need, reason) where the runs cannot show it for a reason of its own
     # -- what is believed of it
     plausible: float = 6.0  # typical sizes
+    own_size: bool = False  # its typical sizes are stated for this very machine
     plain: bool = False  # a base term that a bare model simply lacks, of any size
     brings: tuple[str, ...] = ()  # lower-order effects that belong to it
     continuous: tuple[str, ...] = ()  # shape parameters on a grid over a positive quantity, refined once found
@@ -133,6 +154,12 @@ class Candidate:
     shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
     corrects: Corrects | None = None  # how its estimates become corrections of the repaired model
     merge: Merge | None = None  # how its term melts with the same term of another shape; None: values add
+
+    def scale(self, parameter: Parameter, sizes: Mapping[str, float]) -> float:
+        """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""
+        if self.own_size:
+            return parameter.typical
+        return parameter.typical * sizes.get(LINE if self.name == LINE else parameter.unit, 1.0)
 
     @property
     def latex(self) -> str:

@@ -1,6 +1,7 @@
 """All candidates: the shipped ones, a user's own, and what the channels at hand cannot show."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, NOWHERE, Candidate, Untestable
@@ -36,7 +37,7 @@ def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
     """Every candidate, with those that a user's file registers as terms; a clash of names raises `InputError`."""
     found = [*DETECTED, *shipped_friction(), *signal_candidates(), *gas_candidates(), *geometry_candidates()]
     if effects_file is not None:
-        found += [friction_candidate(term) for term in load_file(Path(effects_file))]
+        found += [replace(friction_candidate(term), own_size=True) for term in load_file(Path(effects_file))]
     found += literature()
     names = [each.name for each in found if not each.law_name]
     twice = sorted({name for name in names if names.count(name) > 1})

@@ -193,7 +193,8 @@ def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
     term = tabulated(table)
     return Candidate(
         row.cause, "", term.parameters, partial(term_columns, term), term=term, needs=row.needs,
-        hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=name, free=True, plausible=FAR,
+        hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=name, free=True, own_size=True,
+        plausible=FAR,
     )  # fmt: skip
 
 

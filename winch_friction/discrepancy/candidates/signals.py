@@ -5,6 +5,7 @@ The true pressure stands for itself only through the base model's prediction; th
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -21,11 +22,15 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
 DELAYS = (0.05, 0.1)  # s
+OIL = ("oil_temperature",)
+SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
+SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
 SLOWEST_FOR_DELAY = 0.03  # s between samples
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
@@ -38,6 +43,11 @@ p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
 )
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
+p_d = Parameter("p_d", "Pa", 3.0 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="how far the zero creeps over the runs")
+D_T = Parameter(
+    "D_T", "m^3/rad/K", 0.1 * CM3_PER_REV, lower=-2.0 * CM3_PER_REV, upper=2.0 * CM3_PER_REV,
+    doc="thermal zero shift of the displacement feedback",
+)  # fmt: skip
 c_p = Parameter(
     "c_p", "1/Pa", 0.01 / (200 * BAR), lower=-0.1 / (200 * BAR), upper=0.1 / (200 * BAR),
     doc="gain error of the transducers per pressure",
@@ -72,6 +82,40 @@ def warm_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Zero error of the transducers and what the oil's warmth adds to it, N m, shape (samples, 2)."""
     constant = group_columns(_offset, run, values)
     return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
+
+
+def warm_swivel_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the displacement feedback and what the oil's warmth adds to it, N m, shape (samples, 2)."""
+    constant = group_columns(_swivel, run, values)
+    return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
+
+
+def creeping_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the transducers at first, and what comes in proportion to the time, N m, shape (samples, 2)."""
+    constant = group_columns(_offset, run, values)
+    grown = np.clip((run.start + run.time - values["from"]) / (values["to"] - values["from"]), 0.0, 1.0)
+    return np.column_stack([constant, constant * grown[:, None]])
+
+
+def _creeping_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Which transducers creep, from the first run on, to the end or until they have settled before."""
+    begin, end = min(run.start for run in runs), max(run.start + float(run.time[-1]) for run in runs)
+    return [
+        Shape(
+            f"{each.label}, within {share:.0%} of the time",
+            each.values | {"from": begin, "to": begin + share * (end - begin)},
+            carried=each.carried,
+        )
+        for each in group_shapes(runs)
+        for share in SETTLED
+    ]
+
+
+def _one_date(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    starts = [run.start for run in runs]
+    if len(runs) >= LIMITS.fewest_levels and max(starts) - min(starts) > SHORTEST_CREEP:
+        return None
+    return "runs of several days", "what creeps shows between runs that lie apart"
 
 
 def _offset(g: GroupSignals) -> FloatArray:
@@ -168,6 +212,22 @@ def _to_warm(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     ]
 
 
+def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups, during = _groups(shape, sides), ((shape.values["from"], shape.values["to"]),)
+    return [
+        correction("pressure_offset", found[p_0.name], groups=groups),
+        correction("pressure_creep", found[p_d.name], groups=groups, during=during),
+    ]
+
+
+def _to_warm_swivel(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = _groups(shape, sides)
+    return [
+        correction("displacement_offset", found[D_0.name], groups=groups),
+        correction("displacement_thermal_zero", found[D_T.name], groups=groups),
+    ]
+
+
 def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_scale_a" if shape.values["port_a"] else "pressure_scale"
     return [correction(name, found[e_p.name], groups=_groups(shape, sides))]
@@ -187,61 +247,27 @@ def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
 
 def signal_candidates() -> list[Candidate]:
     """Offset, gain, delay, displacement feedback, and the passive side's gas."""
-    scale, delay = r"e_p\sum_g n_g D_g\,\Delta p_g", r"\tau\,\dot M"
+    offset, swivel = r"\sum_g n_g D_g\,", r"\sum_g n_g\,\Delta p_g\,"
     return [
-        _in_groups(
-            "pressure_offset",
-            r"\sum_g n_g D_g\,p_0",
-            p_0,
-            partial(group_columns, _offset),
-            group_shapes,
-            _to("pressure_offset", p_0),
-        ),
-        Candidate(
-            "pressure_offset",
-            r"\sum_g n_g D_g\,(p_0 + p_T(\vartheta-40))",
-            (p_0, p_T),
-            warm_columns,
-            group_shapes,
-            kind="signal",
-            law_name="thermal zero shift",
-            needs=("oil_temperature",),
-            hydraulic=True,
-            corrects=_to_warm,
-        ),
-        _in_groups("pressure_scale", scale, e_p, scale_columns, _scale_shapes, _to_scale),
-        Candidate(
-            "pressure_scale",
-            r"c_p\sum_g n_g D_g\,p_g^2",
-            (c_p,),
-            curved_columns,
-            _scale_shapes,
-            kind="signal",
-            law_name="grows with the pressure",
-            hydraulic=True,
-            corrects=_to_curved,
-        ),
-        _in_groups(
-            "swivel_offset",
-            r"D_0\sum_g n_g\,\Delta p_g",
-            D_0,
-            partial(group_columns, _swivel),
-            group_shapes,
-            _to("displacement_offset", D_0),
-        ),
-        Candidate(
-            "signal_delay",
-            delay,
-            (tau,),
-            delay_columns,
-            _delay_shapes,
-            kind="signal",
-            reversal_rival=True,
-            blind=_too_slow,
-            corrects=_to_delay,
-        ),
-    ]
+        _in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
+                   _to("pressure_offset", p_0)),
+        _in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), warm_columns, group_shapes,
+                   _to_warm, law_name="thermal zero shift", needs=OIL),
+        _in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
+                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
+        _in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
+        _in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
+                   law_name="grows with the pressure"),
+        _in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
+                   _to("displacement_offset", D_0)),
+        _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), warm_swivel_columns,
+                   group_shapes, _to_warm_swivel, law_name="thermal zero shift of the feedback", needs=OIL),
+        Candidate("signal_delay", r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
+                  reversal_rival=True, blind=_too_slow, corrects=_to_delay),
+    ]  # fmt: skip
 
 
-def _in_groups(name: str, law: str, parameter: Parameter, columns: Columns, shapes: Shapes, to: Corrects) -> Candidate:
-    return Candidate(name, law, (parameter,), columns, shapes, kind="signal", hydraulic=True, corrects=to)
+def _in_groups(
+    name: str, law: str, linear: tuple[Parameter, ...], columns: Columns, shapes: Shapes, to: Corrects, **more: Any
+) -> Candidate:
+    return Candidate(name, law, linear, columns, shapes, kind="signal", hydraulic=True, corrects=to, **more)

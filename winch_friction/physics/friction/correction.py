@@ -5,8 +5,12 @@ the error itself: `pressure_offset` = +1.5 bar means that the log shows 1.5 bar 
 out of runs, samples and cranes; the simulator puts it into its sensors from the same declarations.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
+
+import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import Parameter
@@ -37,7 +41,8 @@ class DeclaredCorrection:
     `parameter`: its unit, typical size and the bounds beyond which it is not physical. `kind`: signal, geometry, load
     or inertia. `channels`: the run columns (a group's channel without the group) that are wrong; `reads`: further
     columns that the correction needs. `by_group`, `by_layer`: whether it may be tied to motor groups or wire layers;
-    `has_time_constant`: whether it fades over one; `live`: whether a running node can take it out.
+    `has_time_constant`: whether it fades over one; `live`: whether a running node can take it out; `grows`: whether it
+    comes in proportion to the time within `during`, and stays.
     """
 
     name: str
@@ -50,6 +55,7 @@ class DeclaredCorrection:
     by_layer: bool = False
     has_time_constant: bool = False
     live: bool = True
+    grows: bool = False
 
     @property
     def doc(self) -> str:
@@ -78,6 +84,11 @@ def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> D
     )  # fmt: skip
 
 
+def _creeping(name: str, unit: str, typical: float, reach: float, doc: str, channel: str) -> DeclaredCorrection:
+    parameter = Parameter(name, unit, typical, lower=-reach, upper=reach, doc=doc)
+    return DeclaredCorrection(name, parameter, "signal", Action.OFFSET, (channel,), by_group=True, grows=True)
+
+
 _DECLARED = (
     _signal(
         "pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
@@ -104,6 +115,16 @@ _DECLARED = (
     _signal(
         "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
         "zero error of the displacement feedback", "displacement",
+    ),
+    DeclaredCorrection(
+        "displacement_thermal_zero",
+        Parameter("displacement_thermal_zero", "m^3/rad/K", 0.1 * CM3_PER_REV, -2.0 * CM3_PER_REV, 2.0 * CM3_PER_REV,
+                  doc="zero error of the displacement feedback per degree of the oil above 40 degC"),
+        "signal", Action.OFFSET, ("displacement",), reads=("oil_temperature",), by_group=True,
+    ),
+    _creeping(
+        "pressure_creep", "Pa", 3.0 * BAR, 50 * BAR,
+        "zero error of the transducers at port A that has come within the given time, and stays", "pressure_a",
     ),
     _signal(
         "displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback", "displacement"
@@ -160,7 +181,8 @@ class Correction:
     """One correction of a model, SI: the error's value, its standard deviation (None: unknown), bounds and source.
 
     `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade; `during` the windows of
-    absolute time, s from and to, in which it was there (empty: always; `inf`: since then). Bounds that are
+    absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in which it
+    grew. Bounds that are
     not given are the declared ones. Raises `InputError` for a value, bounds or ties that the declaration does not
     allow.
     """
@@ -197,6 +219,8 @@ class Correction:
             raise InputError(f"correction '{self.name}' cannot be tied to a time: the {own.kind} does not change")
         if not all(begin < end for begin, end in self.during):
             raise InputError(f"correction '{self.name}': during must be windows [from, to] with from before to, in s")
+        if own.grows and (len(self.during) != 1 or not all(map(math.isfinite, self.during[0]))):
+            raise InputError(f"correction '{self.name}' needs during: one window [from, to] in s, in which it grew")
 
     @property
     def declared(self) -> DeclaredCorrection:
@@ -215,7 +239,17 @@ class Correction:
 
     def holds(self, time: float) -> bool:
         """Whether the error is there at that time, s."""
-        return not self.during or any(begin <= time <= end for begin, end in self.during)
+        return self.declared.grows or not self.during or any(begin <= time <= end for begin, end in self.during)
+
+    def error(self, time: Any, oil: Any) -> Any:
+        """The error at times in s and oil temperatures in degC, where they matter to it; in the value's unit."""
+        value = self.value
+        if "oil_temperature" in self.declared.reads:
+            value = value * (oil - THERMAL_REFERENCE)
+        if self.declared.grows:
+            ((begin, end),) = self.during
+            value = value * np.clip((time - begin) / (end - begin), 0.0, 1.0)
+        return value
 
     @property
     def ends(self) -> float:

@@ -26,7 +26,9 @@ n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="expone
 c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")
 w_np = Parameter("w_np", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
 a_np = Parameter("a_np", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
-p_l = Parameter("p_l", "Pa", 2e5, upper=1e7, doc="pressure lost between transducer and motor at 0.02 m^3/s")
+p_l = Parameter(  # of a small winch, whose flow never comes near, it is the law carried on to there
+    "p_l", "Pa", 2e5, upper=1e9, doc="pressure lost between transducer and motor at 0.02 m^3/s"
+)
 n_l = Parameter("n_l", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
 b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"

@@ -1,13 +1,24 @@
 """A candidate's column is the torque that the error of its transducers adds, port by port."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.signals import ALL, curved_columns, scale_columns
+from winch_friction.discrepancy.candidates.candidate import machine_sizes
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.candidates.signals import (
+    ALL,
+    bent_columns,
+    creeping_columns,
+    curved_columns,
+    scale_columns,
+    warm_swivel_columns,
+)
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.physics.corrections import straight
+from winch_friction.physics.units import CM3_PER_REV
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
 
@@ -30,3 +41,60 @@ def test_a_column_is_the_torque_that_the_error_adds(columns, power, error, port_
 @pytest.mark.parametrize("error", [5e-10, -5e-10, 1e-20, 0.0])
 def test_a_gain_that_grows_is_taken_out_exactly(error):
     np.testing.assert_allclose(straight(A * (1.0 + error * A), error), A, rtol=1e-12)
+
+
+def machine(motors, swept, gear, radius, inertia=1.54):
+    group = SimpleNamespace(count=motors)
+    return SimpleNamespace(
+        constants=(("max_displacement", swept),), groups=[group], gear_ratio=gear, radius=np.array([radius]),
+        inertia=inertia,
+    )  # fmt: skip
+
+
+def test_typical_sizes_are_those_of_the_machine():
+    reference = machine_sizes([machine(11, 215 * CM3_PER_REV, 250.0, 1.136)])
+    for size in reference.values():
+        assert size == pytest.approx(1.0, rel=0.01)
+    small = machine_sizes([machine(4, 80 * CM3_PER_REV, 150.0, 0.4, 0.14)])
+    whole = 4 * 80 / (11 * 215)
+    line = next(each for each in all_candidates() if each.name == "line_pressure_drop" and not each.law_name)
+    assert line.scale(line.linear[0], small) == pytest.approx(line.linear[0].typical / whole**2)
+    churning = next(each for each in all_candidates() if each.name == "churning" and not each.law_name)
+    assert churning.scale(churning.linear[0], small) == pytest.approx(churning.linear[0].typical * 80 / 215)
+    assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
+    assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)
+    assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical
+    assert machine_sizes([SimpleNamespace(constants=(), groups=[])]) == {}
+
+
+def test_a_creeping_zero_is_there_after_its_time():
+    creeping = SimpleNamespace(**vars(run()) | {"start": 100.0, "time": np.array([0.0, 50.0, 500.0])})
+    columns = creeping_columns(creeping, {"groups": ALL, "from": 100.0, "to": 200.0})
+    np.testing.assert_allclose(columns[:, 0], MOTORS * SWASH)
+    np.testing.assert_allclose(columns[:, 1], MOTORS * SWASH * np.array([0.0, 0.5, 1.0]))
+
+
+def test_a_feedback_that_drifts_reads_the_oil():
+    warm = SimpleNamespace(**vars(run()) | {"channels": {"oil_temperature": np.array([40.0, 50.0, 30.0])}})
+    columns = warm_swivel_columns(warm, {"groups": ALL})
+    np.testing.assert_allclose(columns[:, 0], MOTORS * (A - B))
+    np.testing.assert_allclose(columns[:, 1], MOTORS * (A - B) * np.array([0.0, 10.0, -10.0]))
+
+
+def test_a_gain_that_bends_is_both_its_parts():
+    values = {"groups": ALL, "port_a": 0.0}
+    both = bent_columns(run(), values)
+    np.testing.assert_array_equal(both[:, :1], scale_columns(run(), values))
+    np.testing.assert_array_equal(both[:, 1:], curved_columns(run(), values))
+
+
+@pytest.mark.parametrize(("period", "tested"), [(0.05, True), (0.1, False)])
+@pytest.mark.parametrize("name", ["signal_delay", "inertia_error"])
+def test_at_20_hz_delays_and_inertias_are_looked_for(name, period, tested):
+    still = np.zeros(3)
+    log = SimpleNamespace(
+        dt=period, present=frozenset(), groups=[1], inertia=1.0, acceleration=np.arange(3.0), load=still,
+        radius=still, gear_ratio=1.0, load_acceleration=still, gap=np.arange(3.0), used=np.ones(3, bool),
+    )  # fmt: skip
+    candidate = next(each for each in all_candidates() if each.name == name and not each.law_name)
+    assert (candidate.untestable([log]) is None) is tested

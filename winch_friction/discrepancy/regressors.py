@@ -11,7 +11,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
-from winch_friction.discrepancy.preparation.balance import SPARSE, Accounted
+from winch_friction.discrepancy.preparation.balance import SPARSEST, Accounted
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
@@ -124,7 +124,7 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
 def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
-    inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSE else 1.0)
+    inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSEST else 1.0)
     return np.column_stack([weight, inertia, timing_column(run), run.corrections])
 
 

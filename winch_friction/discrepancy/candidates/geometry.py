@@ -14,7 +14,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     single_shape,
 )
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.balance import SPARSE
+from winch_friction.discrepancy.preparation.balance import SPARSEST
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
@@ -91,9 +91,9 @@ def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
 
 
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    if max(run.dt for run in runs) <= SPARSE or all(_hardly_any_inertia(run) for run in runs):
+    if max(run.dt for run in runs) <= SPARSEST or all(_hardly_any_inertia(run) for run in runs):
         return None
-    return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 33 Hz or more"
+    return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 20 Hz or more"
 
 
 def _hardly_any_inertia(run: PreparedRun) -> bool:

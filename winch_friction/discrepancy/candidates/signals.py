@@ -31,7 +31,7 @@ DELAYS = (0.05, 0.1)  # s
 OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
-SLOWEST_FOR_DELAY = 0.03  # s between samples
+SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
@@ -140,6 +140,11 @@ def curved_columns(run: PreparedRun, values: Values) -> FloatArray:
     return group_columns(_curve_a if values["port_a"] else _curve, run, values)
 
 
+def bent_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """A gain error and what it gains with the pressure, N m, shape (samples, 2)."""
+    return np.hstack([scale_columns(run, values), curved_columns(run, values)])
+
+
 def _curve(g: GroupSignals) -> FloatArray:
     return _scale(g) * g.pressure_sum
 
@@ -189,7 +194,7 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     if max(run.dt for run in runs) <= SLOWEST_FOR_DELAY:
         return None
-    return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is within one sample; log at 33 Hz or more"
+    return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is less than one sample; log at 20 Hz or more"
 
 
 def _groups(shape: Shape, sides: Sides) -> tuple[str, ...]:
@@ -238,6 +243,10 @@ def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]
     return [correction(name, found[c_p.name], groups=_groups(shape, sides))]
 
 
+def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    return _to_scale(found, shape, sides) + _to_curved(found, shape, sides)
+
+
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     """A speed that comes late, or pressures that do, which is a speed that comes early."""
     if shape.values["late"] == SPEED:
@@ -258,6 +267,8 @@ def signal_candidates() -> list[Candidate]:
         _in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
         _in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
                    law_name="grows with the pressure"),
+        _in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
+                   _scale_shapes, _to_bent, law_name="bends with the pressure"),
         _in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
                    _to("displacement_offset", D_0)),
         _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), warm_swivel_columns,

@@ -103,7 +103,7 @@ def _creeping_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return [
         Shape(
             f"{each.label}, within {share:.0%} of the time",
-            each.values | {"from": begin, "to": begin + share * (end - begin)},
+            {**each.values, "from": begin, "to": begin + share * (end - begin)},
             carried=each.carried,
         )
         for each in group_shapes(runs)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from winch_friction.commissioning.finding import first_contradiction
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import read_run
 
+PRACTICE = Path(__file__).parents[2] / "config" / "examples" / "practice_150t"
 LENGTH = 0.3  # of a campaign's runs, to be quick
 WORLDS = ((0, rig.DRAWN), (3, rig.DRAWN), (1, "rough"))
 SOME = (1, 4, 8, 10)  # of the twelve runs: two of constant speeds, two of heave compensation
@@ -123,3 +126,24 @@ def test_the_whole_check_says_what_the_runs_teach_and_what_is_missing(tmp):
     content = result.content()
     assert set(content["channels"]) == {run.name for run in runs}
     assert np.isfinite([each["score"] for each in content["balance"]]).all()
+
+
+PAIRS = (
+    ("kg under [t]", "speed sign"), ("kN under [t]", "ports"), ("psi under [bar]", "ports"),
+    ("MPa under [bar]", "ports"),
+    ("rad/s under [rpm]", "speed sign"), ("drum's speed", "ports"), ("fraction under [cm^3/rev]", "ports"),
+    ("cm^3/rev read per radian", "speed sign"), ("kg under [t]", "psi under [bar]"), ("speed sign", "ports"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("names", PAIRS, ids="+".join)
+def test_two_mistakes_at_once_are_both_named_before_any_other(crane_150t, names):
+    run = read_run(PRACTICE / "test_02.parquet")
+    made = {each.name: each for each in spoils(crane_150t.max_displacement, crane_150t.gear_ratio)}
+    columns = {name: run[name] for name in run.columns}
+    for name in names:
+        columns = made[name].apply(columns)
+    found = first_contradiction(quick_check([Run(run.name, columns)], crane_150t))
+    assert found is not None
+    assert found.cause == "two"
+    assert all(made[name].channels[0] in found.channel for name in names), found.sentence

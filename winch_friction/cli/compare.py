@@ -43,7 +43,9 @@ def command(
         if out is not None:
             raise InputError("compare: the page shows the grid; leave out the runs, or leave out --out")
     else:
-        content = _on_grid(one, two, machine, _loads(loads), out)
+        masses = _loads(loads)
+        _say_beyond(masses, machine)
+        content = _on_grid(one, two, machine, masses, out)
     if as_json:
         show_json(content)
         return
@@ -72,7 +74,22 @@ def _loads(text: str) -> list[float]:
         found = [float(each) for each in text.split(",")]
     except ValueError:
         raise InputError(f"--loads '{text}': give masses in t with commas, e.g. 15,55,100") from None
+    if not all(0.0 <= each < float("inf") for each in found):
+        raise InputError(f"--loads '{text}': a hanging mass is a number of t from 0 on")
     return found
+
+
+def _say_beyond(loads: list[float], crane: Any) -> None:
+    """One line on masses that the crane cannot hold: what a model says of them is extrapolated."""
+    from winch_friction.importing.expectations import most_held
+
+    most = most_held(crane) / 1e3
+    beyond = [f"{each:g}" for each in loads if each > most]
+    if beyond:
+        show_warnings([
+            f"--loads {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {most:.0f} t, all "
+            "motors at 450 bar or the torque limit); what the models say there is extrapolated"
+        ])  # fmt: skip
 
 
 def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | None) -> dict[str, Any]:

@@ -99,7 +99,10 @@ def _proof(diagnosis: Diagnosis, best: Hypothesis) -> str:
     balance = ""
     if worst.before == worst.before:
         balance = f" (the torque balance of {worst.run} is off by {worst.before:.3g} N m RMS)"
-    return f"with that put right {told} fit the crane: misfit {diagnosis.score:.3g} -> {best.score:.3g}{balance}"
+    misfit = f"misfit {diagnosis.score:.3g} -> {best.score:.3g}{balance}"
+    if max(best.scores) > CONTRADICTS:
+        return f"with that put right {told} fit the crane better and not well, so there is more amiss: {misfit}"
+    return f"with that put right {told} fit the crane: {misfit}"
 
 
 def _evidence(diagnosis: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesis]) -> dict[str, object]:

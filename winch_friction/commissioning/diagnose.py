@@ -9,6 +9,7 @@ from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, st
 from winch_friction.commissioning.kinematics import agreements
 from winch_friction.commissioning.mistakes import Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.ranges import range_score
+from winch_friction.commissioning.two_mistakes import both, common_pairs
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
@@ -21,6 +22,8 @@ NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes
 MIXED = 10.0  # for a mistake that only some of the runs hold
 HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
 DELAYS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 2.8, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
+PAIR_RUNS = 2  # on these every pair of mistakes is tried: there are hundreds
+FIRSTS = 3  # single mistakes beside which any other is tried
 FIRST_RUNS, FIRST_BLOCKS, FINALISTS = 4, 200, 8  # every mistake is tried on these, the best of them on all runs
 
 
@@ -83,8 +86,28 @@ def diagnose(
         mistakes += _free([v for v, s in zip(views, scores, strict=True) if s > CONTRADICTS])
     mistakes += _companions(views) if contradict or scores.sum() > SURE else []
     hypotheses = bench.ranked(mistakes)
+    if contradict and (not hypotheses or max(hypotheses[0].scores) > CONTRADICTS):
+        firsts = [each.mistake for each in hypotheses[:FIRSTS]]
+        pairs = [*common_pairs(mistakes), *_beside(firsts, mistakes, views)]
+        found = [each for each in bench.ranked(pairs, PAIR_RUNS) if max(each.scores) < CONTRADICTS]
+        hypotheses = sorted([*found, *hypotheses], key=lambda each: each.score)
     names = tuple(view.name for view in views)
     return Diagnosis(float(scores.sum()), tuple(scores.tolist()), tuple(hypotheses), closures, names)
+
+
+def _beside(firsts: Sequence[Mistake], mistakes: Sequence[Mistake], views: Sequence[RunView]) -> list[Mistake]:
+    """What may stand beside the likeliest mistakes: any other of the whole winch, and those whose number shows once
+    these are undone; a delay, which takes whole records to try, beside the likeliest alone.
+    """
+    found: list[Mistake] = []
+    for first in firsts:
+        free = _free([first.undo(view) for view in views])
+        late = [each for each in mistakes if each.cause == "delay" and first is firsts[0]]
+        others = [
+            each for each in mistakes if each.cause in ("sign", "ports", "groups", "unit") and "." not in each.channel
+        ]
+        found += [both(first, each) for each in (*others, *free, *late) if each.channel != first.channel]
+    return found
 
 
 def _is_sure(mistake: Mistake) -> bool:
@@ -100,23 +123,28 @@ class _Bench:
     def __init__(self, views: Sequence[RunView], as_is: np.ndarray, model: FrictionModel | None) -> None:
         self.views, self.as_is, self.model = views, as_is, model
         order = np.argsort(-as_is)
-        self.first = sorted(order[:FIRST_RUNS].tolist())
+        self.worst = order.tolist()
 
-    def ranked(self, mistakes: Sequence[Mistake]) -> list[Hypothesis]:
-        """The mistakes that are worth a look on every run, least score first."""
-        whole = [self.views[k] for k in self.first]
+    def ranked(self, mistakes: Sequence[Mistake], runs: int = FIRST_RUNS) -> list[Hypothesis]:
+        """The mistakes that are worth a look on every run, least score first; so many runs are tried first."""
+        first = sorted(self.worst[:runs])
+        whole = [self.views[k] for k in first]
         thin = [_thin(view) for view in whole]
 
         def quick(mistake: Mistake) -> float:
-            views = whole if mistake.cause == "delay" else thin  # a shift of time needs the neighbours
+            late = any(each.cause == "delay" for each in (mistake, *mistake.parts))
+            views = whole if late else thin  # a shift of time needs the neighbours
             undone = np.array([self._undone(mistake, view) for view in views])
-            some = float(np.minimum(undone, self.as_is[self.first]).sum()) + MIXED
+            some = float(np.minimum(undone, self.as_is[first]).sum()) + MIXED
             return mistake.cost + min(float(undone.sum()), some)
 
         kept = sorted(mistakes, key=quick)[:FINALISTS]
         return sorted((self._tried(each) for each in kept), key=lambda each: each.score)
 
     def _undone(self, mistake: Mistake, view: RunView) -> float:
+        if mistake.parts:
+            first, second = mistake.parts
+            return self._undone(second, first.undo(view)) + _shrinking(first, view)
         if mistake.cause == "delay":  # a shift must not pass for agreement by losing the likeness to other channels
             follow = [each.channel for each in agreements(view)]
             shifted = mistake.undo(view)

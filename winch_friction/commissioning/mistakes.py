@@ -59,7 +59,8 @@ LARGEST_TARE = 0.05  # of the mass that all motors hold at 300 bar: hook, block 
 class Mistake:
     """A mistake: `cause` and `channel` as in `Finding`, `words` that complete 'most likely ...', `undo` puts it right.
 
-    `factor` is the number by which the channel was put right, NaN where there is none.
+    `factor` is the number by which the channel was put right, NaN where there is none; `parts` the two that are one
+    mistake each, where it takes both.
     """
 
     cause: str
@@ -68,6 +69,7 @@ class Mistake:
     cost: float
     undo: Repair
     factor: float = float("nan")
+    parts: tuple["Mistake", ...] = ()
 
 
 def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
@@ -105,8 +107,10 @@ def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> I
     if not groups:
         return
     yield from each("pressure", PRESSURE_UNITS, drop_times)
-    for port in "ab":  # a port of its own transducer, scaled in another unit
+    for port in "ab":  # a port of its own transducer, scaled in another unit than its neighbour on the same panel
         for factor, words in PRESSURE_UNITS:
+            if not 1e-2 <= factor <= 1e2:
+                continue
             cost = UNIT + 2.0 + (RARE if words.startswith(RARELY) else 0.0)
             said = f"pressure_{port} holds {words}, the other port does not"
             yield Mistake("unit", f"pressure_{port}", said, cost, port_times(factor, port), factor)
@@ -206,6 +210,8 @@ def _cranes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane])
         if other == crane or other.drive.kind != crane.drive.kind or any(_lacks(view, other) for view in views):
             continue
         said = f"these are runs of crane '{name}', not of '{crane.name}'"
+        if name == crane.name:
+            said = f"the crane file differs from the shipped '{name}', whose figures fit: gear, drum or motor is wrong"
         yield Mistake("crane", "", said, CRANE, _on(other))
 
 

@@ -58,6 +58,13 @@ def largest_load(crane: Crane) -> float:
     return torque * crane.gear_ratio / (crane.drum.layer_radii[0] * GRAVITY)
 
 
+def most_held(crane: Crane) -> float:
+    """The load in kg that the crane's file allows: by its motors where it is hydraulic, else by its torque limit."""
+    if crane.drive.hydraulic and crane.groups:
+        return largest_load(crane)
+    return float(crane.absolute_torque_limit) * crane.gear_ratio / (crane.drum.layer_radii[0] * GRAVITY)
+
+
 def fits(channel: str, values: FloatArray, crane: Crane | None) -> bool:
     """Whether the values of a channel in SI have a size that a log of this crane can have."""
     finite = np.abs(values[np.isfinite(values)])

@@ -129,8 +129,8 @@ def _winch(outcome: Outcome, images: Path) -> list[str]:
         "terms: fitted to the same cycles, which nothing of this form gets below but by chance, and fitted to the "
         "judged cycles themselves. Above the bar of 0.26 is bold.", "", *split, "",
         "After the first cycles alone the bar is out of reach of least squares as well: their losses are higher than "
-        "those of the hours after them. Three cycles mostly do not do: their steep starts and stops decide which of "
-        "friction, offset and gain holds what is left, and the locked ends of three runs do not bear a guess out.",
+        "those of the hours after them. Three cycles mostly do not do: what a third or fourth term gains hangs on a "
+        "few stretches of time and is not significant, and what two terms leave is too much to be called explained.",
     ]  # fmt: skip
 
 

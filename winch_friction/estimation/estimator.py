@@ -70,6 +70,8 @@ class FrictionEstimator:
     ((10, 10), 17, True)
     >>> abs(estimator.load_apart) < 0.1  # the load cell and the balance of torques agree
     True
+    >>> estimator.uncorrectable(sample)  # what of the seed's corrections a live estimator cannot take out
+    ()
     >>> kept = estimator.snapshot()  # what a checkpoint holds
     >>> estimator.reset()  # back to the seed
     >>> estimator.restore(kept)

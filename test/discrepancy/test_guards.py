@@ -1,6 +1,7 @@
 """The guards of the workflow, each on the smallest data that can break it: no winch, no simulator."""
 
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from winch_friction.discrepancy.proof import (
     _noise,
     adds,
     at_the_floor,
+    is_minor,
     leaves_too_much,
     nothing_compared,
     prove,
@@ -305,9 +307,17 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
         left = 3.0 * WAVE * ("wave" not in names) + more * OTHER * ("other" not in names) + noise(1)
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
-    proven = _each_proven(trial_of(search), trial_of, np.random.default_rng(0))
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert list(proven.search.selection.final.names) == stay
     assert [each.slot.name for each in proven.search.selection.found] == stay
+
+
+@pytest.mark.parametrize(("fewer", "minor"), [(0.6, True), (0.9, True), (1.2, False), (3.0, False)])
+def test_a_second_name_may_only_mend_the_law_of_the_first(fewer, minor):
+    """Of 8 bar down to 0.5 a tenth is 0.8: from 0.94 bar on what the second takes off is more than that."""
+    sides = [SimpleNamespace(size_after=Size(left, (left, left))) for left in (8.0, fewer, 0.5)]
+    assert is_minor(*sides) is minor
 
 
 @pytest.mark.parametrize(("left", "enough"), [(0.4, False), (1.0, False), (1.6, True), (2.5, True)])

@@ -70,6 +70,14 @@ def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
     return bool(removed >= more.least_noise and chance_of_no_gain(*_common(fewer, more), rng) <= LIMITS.proof_p)
 
 
+def is_minor(nameless: Side, fewer: Side, more: Side) -> bool:
+    """Whether what `more` takes off the locked gap beside the names of `fewer` is as small, beside what all of them take
+    off, as what a law may be inexact by: it need not be another cause."""
+    own = fewer.size_after.value**2 - more.size_after.value**2
+    whole = nameless.size_after.value**2 - more.size_after.value**2
+    return bool(own < LIMITS.law_accuracy**2 * whole)
+
+
 def leaves_too_much(side: Side) -> str:
     """Why names do not answer for the locked gap although they make it smaller; empty where they do.
 

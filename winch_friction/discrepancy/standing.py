@@ -18,7 +18,7 @@ from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.proof import adds, at_the_floor, leaves_too_much, prove, worse_runs
+from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
 from winch_friction.discrepancy.proposals import best_law
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -41,7 +41,7 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     for each in _sets(search, rng):
         full, why = _stands(each, refit, trial_of, rng)
         if full is not None:
-            return _each_proven(full, trial_of, rng)
+            return _each_proven(full, refit, trial_of, rng)
         whys.append(why)
     beside = replace(_nameless(search), ripple=search.ripple, leakage=search.leakage)
     if search.ripple or search.leakage:
@@ -183,10 +183,10 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
     return replace(search, ripple=ripple, leakage=leakage, reversal=reversal)
 
 
-def _each_proven(full: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
+def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
     """The trial without those names, the last found first, that the locked runs do not need beside the others: which
-    take nothing off them surely, or, beside a name whose law is not the catalogue's own and may want mending, those
-    without which nothing would be missing.
+    take nothing off them surely, or no more than the others' laws may be inexact by, or, beside a name whose law is
+    not the catalogue's own and may want mending, those without which nothing would be missing.
     """
     for slot in reversed(full.search.selection.final.slots):
         search, final = full.search, full.search.selection.final
@@ -195,7 +195,8 @@ def _each_proven(full: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> T
             continue
         without = trial_of(_without(search, slot))
         mends = any(each.law for each in without.search.selection.final.slots) and at_the_floor(without.holdout)
-        if mends or not adds(without.holdout, full.holdout, rng):
+        minor = is_minor(refit.holdout, without.holdout, full.holdout) and not leaves_too_much(without.holdout)
+        if mends or minor or not adds(without.holdout, full.holdout, rng):
             full = without
     return full
 

@@ -66,6 +66,7 @@ class Thresholds:
     stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third
     surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
     stiffness: float = 0.01  # of what the data know of an interval of a curve, that speaks against a change of slope
+    law_accuracy: float = 0.1  # of itself: what the literature's laws of losses are good for on another machine
     outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial

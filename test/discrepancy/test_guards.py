@@ -313,10 +313,13 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
     assert [each.slot.name for each in proven.search.selection.found] == stay
 
 
-@pytest.mark.parametrize(("fewer", "minor"), [(0.6, True), (0.9, True), (1.2, False), (3.0, False)])
-def test_a_second_name_may_only_mend_the_law_of_the_first(fewer, minor):
+@pytest.mark.parametrize(
+    ("fewer", "floor", "minor"),
+    [(0.6, 0.4, True), (0.9, 0.4, True), (0.9, 0.2, False), (1.2, 0.4, False), (1.2, 1.0, False), (3.0, 1.0, False)],
+)
+def test_a_second_name_may_only_mend_the_law_of_the_first(fewer, floor, minor):
     """Of 8 bar down to 0.5 a tenth is 0.8: from 0.94 bar on what the second takes off is more than that."""
-    sides = [SimpleNamespace(size_after=Size(left, (left, left))) for left in (8.0, fewer, 0.5)]
+    sides = [SimpleNamespace(size_after=Size(left, (left, left)), floor=floor) for left in (8.0, fewer, 0.5)]
     assert is_minor(*sides) is minor
 
 

@@ -71,11 +71,12 @@ def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
 
 
 def is_minor(nameless: Side, fewer: Side, more: Side) -> bool:
-    """Whether what `more` takes off the locked gap beside the names of `fewer` is as small, beside what all of them take
-    off, as what a law may be inexact by: it need not be another cause."""
+    """Whether what `more` takes off the locked gap beside the names of `fewer` need not be another cause: it is as
+    small, beside what all of them take off, as a law may be inexact, and the fewer leave little above the floor."""
     own = fewer.size_after.value**2 - more.size_after.value**2
     whole = nameless.size_after.value**2 - more.size_after.value**2
-    return bool(own < LIMITS.law_accuracy**2 * whole)
+    near = fewer.size_after.value <= LIMITS.near_the_floor * fewer.floor
+    return bool(near and own < LIMITS.law_accuracy**2 * whole)
 
 
 def leaves_too_much(side: Side) -> str:

@@ -67,6 +67,7 @@ class Thresholds:
     surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
     stiffness: float = 0.01  # of what the data know of an interval of a curve, that speaks against a change of slope
     law_accuracy: float = 0.1  # of itself: what the literature's laws of losses are good for on another machine
+    near_the_floor: float = 3.0  # times it: what an inexact law may leave; more is seen by whoever looks at the runs
     outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial

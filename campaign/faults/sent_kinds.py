@@ -52,6 +52,8 @@ def joint_arrays(rng: np.random.Generator) -> Fault:
     wrong = float(rng.uniform(-100.0, 100.0))
 
     def change(message: Any, _tick: int, r: np.random.Generator) -> None:
+        if not all(len(getattr(message, name)) for name in ("name", *ARRAYS)):
+            return  # a second fault has emptied it
         own = message.name[0]
         if how in ("reordered", "twice"):
             first = bool(r.integers(2)) if how == "reordered" else False

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from campaign.faults.kinds import KINDS
+from campaign.faults.kinds import KINDS, REFERENCE, SPEED
 from campaign.faults.study import one_trial
 from campaign.faults.trial import Trial, violations
-from campaign.faults.voyages import voyage
+from campaign.faults.voyages import MESSAGES, voyage
 from campaign.faults.watch import OutputWatch, Row
 
 
@@ -88,3 +88,19 @@ def test_an_output_that_is_obeyed_without_its_input_is_seen():
     trial.service.options = type(trial.service.options)(watchdog_timeout=600.0)
     trial.run(60.0)
     assert any("obeyed although an input is gone" in row.violations for row in trial.rows.values())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kind_takes_what_another_one_has_emptied(kind):
+    """Two faults at once: the second meets messages without values, or none at all."""
+    sailing = voyage("ahc_irregular", 77)
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        fault = KINDS[kind](rng)
+        for tick in range(3):
+            encoded = list(sailing.topics.encode(next(iter(sailing.samples)), MESSAGES))
+            for topics in ((SPEED, REFERENCE), (SPEED,), ()):
+                messages = [(topic, message) for topic, message in encoded if topic in topics]
+                for _, message in messages:
+                    message.name, message.velocity = ["shaft"] * len(topics[1:]), []
+                assert isinstance(fault.spoil(messages, tick, rng), list)

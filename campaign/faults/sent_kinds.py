@@ -33,7 +33,7 @@ def malformed(rng: np.random.Generator) -> Fault:
     topic = one_of(rng, SPEED, REFERENCE, SWASH)
     change = one_of(
         rng,
-        lambda m, _k, _r: [setattr(m, name, []) for name in ("position", "velocity", "effort")],
+        lambda m, _k, _r: [setattr(m, name, []) for name in ARRAYS],
         lambda m, _k, _r: setattr(m, "name", ["elbow"]),
         lambda m, _k, _r: setattr(m, "name", []),
     )

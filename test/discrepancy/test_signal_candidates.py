@@ -10,11 +10,12 @@ from winch_friction.discrepancy.candidates.candidate import machine_sizes
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.signals import (
     ALL,
+    _swivel,
     bent_columns,
     creeping_columns,
     curved_columns,
     scale_columns,
-    warm_swivel_columns,
+    warm_columns,
 )
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.physics.corrections import straight
@@ -76,7 +77,7 @@ def test_a_creeping_zero_is_there_after_its_time():
 
 def test_a_feedback_that_drifts_reads_the_oil():
     warm = SimpleNamespace(**vars(run()) | {"channels": {"oil_temperature": np.array([40.0, 50.0, 30.0])}})
-    columns = warm_swivel_columns(warm, {"groups": ALL})
+    columns = warm_columns(_swivel, warm, {"groups": ALL})
     np.testing.assert_allclose(columns[:, 0], MOTORS * (A - B))
     np.testing.assert_allclose(columns[:, 1], MOTORS * (A - B) * np.array([0.0, 10.0, -10.0]))
 

@@ -78,15 +78,9 @@ def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return shapes
 
 
-def warm_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Zero error of the transducers and what the oil's warmth adds to it, N m, shape (samples, 2)."""
-    constant = group_columns(_offset, run, values)
-    return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
-
-
-def warm_swivel_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Zero error of the displacement feedback and what the oil's warmth adds to it, N m, shape (samples, 2)."""
-    constant = group_columns(_swivel, run, values)
+def warm_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
+    """A zero error and what the oil's warmth adds to it, N m, shape (samples, 2)."""
+    constant = group_columns(law, run, values)
     return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
 
 
@@ -202,19 +196,13 @@ def _groups(shape: Shape, sides: Sides) -> tuple[str, ...]:
     return {ALL: (), BALANCING: sides.balancing, OTHER: sides.passive}[shape.values["groups"]]
 
 
-def _to(name: str, parameter: Parameter) -> Corrects:
+def _to(*found_as: tuple[str, Parameter]) -> Corrects:
+    """To one correction for each estimate: its name, and the parameter."""
+
     def corrects(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-        return [correction(name, found[parameter.name], groups=_groups(shape, sides))]
+        return [correction(name, found[p.name], groups=_groups(shape, sides)) for name, p in found_as]
 
     return corrects
-
-
-def _to_warm(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    groups = _groups(shape, sides)
-    return [
-        correction("pressure_offset", found[p_0.name], groups=groups),
-        correction("pressure_thermal_zero", found[p_T.name], groups=groups),
-    ]
 
 
 def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
@@ -222,14 +210,6 @@ def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     return [
         correction("pressure_offset", found[p_0.name], groups=groups),
         correction("pressure_creep", found[p_d.name], groups=groups, during=during),
-    ]
-
-
-def _to_warm_swivel(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    groups = _groups(shape, sides)
-    return [
-        correction("displacement_offset", found[D_0.name], groups=groups),
-        correction("displacement_thermal_zero", found[D_T.name], groups=groups),
     ]
 
 
@@ -259,9 +239,10 @@ def signal_candidates() -> list[Candidate]:
     offset, swivel = r"\sum_g n_g D_g\,", r"\sum_g n_g\,\Delta p_g\,"
     return [
         _in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
-                   _to("pressure_offset", p_0)),
-        _in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), warm_columns, group_shapes,
-                   _to_warm, law_name="thermal zero shift", needs=OIL),
+                   _to(("pressure_offset", p_0))),
+        _in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
+                   group_shapes, _to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
+                   law_name="thermal zero shift", needs=OIL),
         _in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                    _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         _in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
@@ -270,9 +251,10 @@ def signal_candidates() -> list[Candidate]:
         _in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
                    _scale_shapes, _to_bent, law_name="bends with the pressure"),
         _in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
-                   _to("displacement_offset", D_0)),
-        _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), warm_swivel_columns,
-                   group_shapes, _to_warm_swivel, law_name="thermal zero shift of the feedback", needs=OIL),
+                   _to(("displacement_offset", D_0))),
+        _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), partial(warm_columns, _swivel),
+                   group_shapes, _to(("displacement_offset", D_0), ("displacement_thermal_zero", D_T)),
+                   law_name="thermal zero shift of the feedback", needs=OIL),
         Candidate("signal_delay", r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
                   reversal_rival=True, blind=_too_slow, corrects=_to_delay),
     ]  # fmt: skip

@@ -66,14 +66,15 @@ class DeclaredCorrection:
 _PRESSURES = ("pressure_a", "pressure_b")
 _SPEED = ("motor_speed", "drum_speed", "shaft_angle")
 _DRIVE = (*_PRESSURES, "motor_torque")
+_OIL = ("oil_temperature",)
 
 
 def _signal(
-    name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, live: bool = True
+    name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
     parameter = Parameter(name, unit, typical, lower=-reach, upper=reach, doc=doc)
     by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action is not Action.DELAY
-    return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, live=live)
+    return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
 
 
 def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> DeclaredCorrection:
@@ -84,21 +85,14 @@ def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> D
     )  # fmt: skip
 
 
-def _creeping(name: str, unit: str, typical: float, reach: float, doc: str, channel: str) -> DeclaredCorrection:
-    parameter = Parameter(name, unit, typical, lower=-reach, upper=reach, doc=doc)
-    return DeclaredCorrection(name, parameter, "signal", Action.OFFSET, (channel,), by_group=True, grows=True)
-
-
 _DECLARED = (
     _signal(
         "pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
         "pressure_a",
     ),
-    DeclaredCorrection(
-        "pressure_thermal_zero",
-        Parameter("pressure_thermal_zero", "Pa/K", 0.1 * BAR, -5.0 * BAR, 5.0 * BAR,
-                  doc="zero error of the transducers at port A per degree of the oil above 40 degC"),
-        "signal", Action.OFFSET, ("pressure_a",), reads=("oil_temperature",), by_group=True,
+    _signal(
+        "pressure_thermal_zero", Action.OFFSET, "Pa/K", 0.1 * BAR, 5.0 * BAR,
+        "zero error of the transducers at port A per degree of the oil above 40 degC", "pressure_a", reads=_OIL,
     ),
     _signal(
         "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES
@@ -116,15 +110,14 @@ _DECLARED = (
         "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
         "zero error of the displacement feedback", "displacement",
     ),
-    DeclaredCorrection(
-        "displacement_thermal_zero",
-        Parameter("displacement_thermal_zero", "m^3/rad/K", 0.1 * CM3_PER_REV, -2.0 * CM3_PER_REV, 2.0 * CM3_PER_REV,
-                  doc="zero error of the displacement feedback per degree of the oil above 40 degC"),
-        "signal", Action.OFFSET, ("displacement",), reads=("oil_temperature",), by_group=True,
+    _signal(
+        "displacement_thermal_zero", Action.OFFSET, "m^3/rad/K", 0.1 * CM3_PER_REV, 2.0 * CM3_PER_REV,
+        "zero error of the displacement feedback per degree of the oil above 40 degC", "displacement", reads=_OIL,
     ),
-    _creeping(
-        "pressure_creep", "Pa", 3.0 * BAR, 50 * BAR,
+    _signal(
+        "pressure_creep", Action.OFFSET, "Pa", 3.0 * BAR, 50 * BAR,
         "zero error of the transducers at port A that has come within the given time, and stays", "pressure_a",
+        grows=True,
     ),
     _signal(
         "displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback", "displacement"
@@ -253,8 +246,8 @@ class Correction:
 
     @property
     def ends(self) -> float:
-        """When it is over, s; `inf` for what has no end."""
-        return max((end for _, end in self.during), default=float("inf"))
+        """When it is over, s; `inf` for what has no end or, once grown, stays."""
+        return float("inf") if self.declared.grows else max((end for _, end in self.during), default=float("inf"))
 
     def _check_bounds(self) -> None:
         own, (lower, upper) = self.declared.parameter, self.bounds

@@ -349,6 +349,20 @@ def test_a_network_that_jitters_within_the_age_limit_changes_nothing():
     np.testing.assert_array_equal(_faded(1.0, jitter=0.02), _faded(1.0))
 
 
+@pytest.mark.parametrize("waited", [0.02, 0.04, 3.0])
+def test_a_clock_that_is_set_back_leaves_no_dip(waited):
+    """The motion goes on as before, and so does what is published: what fades in is what is let go, from the start."""
+    output = SafeOutput(absolute=1000.0, slew=15_000.0, ramp_time=0.3, hold=0.1)
+    for k in range(100):
+        output.arrive(1000.0 + k * PERIOD, k * PERIOD)
+        output.follow(-350.0, 1000.0, usable=True, enabled=True, motion=-50.0)
+    assert output.torque == pytest.approx(-350.0)
+    output.restart()
+    for k in range(30):
+        output.arrive(k * PERIOD, 99 * PERIOD + waited + k * PERIOD)
+        assert output.follow(-350.0, 1000.0, usable=True, enabled=True, motion=-50.0) == pytest.approx(-350.0)
+
+
 def test_time_that_a_ramp_has_used_is_not_used_again():
     """Stamps run slowly, the watchdog ramps between two samples: no pair lies further apart than the slew limit."""
     output = SafeOutput(absolute=1000.0, slew=2000.0, ramp_time=0.5, hold=0.1)

@@ -146,9 +146,10 @@ class SafeOutput:
             self._bump = True
         self._usable, self._asked, self._motion = usable, target, motion
         hurry = max(min(self.ramp_time, reversal), 1e-6)
+        before = self.fade.value * target  # what fades in within this very step is no part of what is carried over
         faded = self.fade.step(carried, self._dt, hurry) * target
         if self._bump and usable:
-            self._bridge.start(self.torque - faded)
+            self._bridge.start(self.torque - before)
             self._bump, self._carried = False, 0.0
         elif self._carried:
             self._bridge.start(self._bridge.value() + self.fade.value * self._carried)

@@ -363,6 +363,20 @@ def test_a_clock_that_is_set_back_leaves_no_dip(waited):
         assert output.follow(-350.0, 1000.0, usable=True, enabled=True, motion=-50.0) == pytest.approx(-350.0)
 
 
+@pytest.mark.parametrize("waited", [0.02, 0.04, 3.0])
+def test_a_clock_that_is_set_once_makes_no_step(waited):
+    """Whatever the motion is by then: the first sample after it says what was said last."""
+    output = SafeOutput(absolute=1000.0, slew=15_000.0, ramp_time=0.3, hold=0.1)
+    for k in range(100):
+        output.arrive(1000.0 + k * PERIOD, k * PERIOD)
+        output.follow(-350.0, 1000.0, usable=True, enabled=True, motion=-50.0)
+    output.restart()
+    output.arrive(0.0, 99 * PERIOD + waited)
+    assert output.follow(340.0, 1000.0, usable=True, enabled=True, motion=50.0) == pytest.approx(-350.0)
+    output.arrive(PERIOD, 100 * PERIOD + waited)
+    assert output.follow(340.0, 1000.0, usable=True, enabled=True, motion=50.0) > -350.0
+
+
 def test_time_that_a_ramp_has_used_is_not_used_again():
     """Stamps run slowly, the watchdog ramps between two samples: no pair lies further apart than the slew limit."""
     output = SafeOutput(absolute=1000.0, slew=2000.0, ramp_time=0.5, hold=0.1)

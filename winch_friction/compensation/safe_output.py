@@ -55,6 +55,7 @@ class SafeOutput:
         self._dt = self._gap = self._against = self._pushing = self._carried = 0.0
         self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
         self._bump = self._usable = self._new_time = False
+        self._anew = False  # the latest sample began anew
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float) -> None:
         """Other limits from the next step on, without a bump; a ramp goes on from where it is."""
@@ -95,11 +96,13 @@ class SafeOutput:
         self._gap = abs(time - self.time) if self.time == self.time else 0.0
         self._dt, self._overdue = self._elapsed(time), 0.0
         if now is not None:
-            if anew and now > self._steady:  # whoever resets at every sample does not hold the output
+            # a clock that is set once makes no step; whoever resets at every sample does not hold the output
+            if anew and self._anew and now > self._steady:
                 self._dt = min(self._gap, now - self._steady, LONGEST_ANEW)
             self._dt = self._paced(self._dt, now)
         if ramped:
             self._overdue = 0.0
+        self._anew = anew
         self._fed = self.time = time
         return self._dt
 

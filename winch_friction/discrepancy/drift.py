@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import linregress
+from scipy.special import stdtr
 
 from winch_friction.discrepancy.answer import Side
+from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.proof import drive_of
 
 HOUR = 3600.0  # s
 FEWEST_RUNS = 6  # fewer lie on a line by chance
+TINY = 1e-300  # against a division by nothing
 SURE = 0.01  # chance that runs of a constant loss seem to drift
 MATTERS = 0.02  # of the drive, over the whole time: less is no one's concern
 EXPLAINED = ("wear_drift", "viscosity_temperature")
@@ -29,16 +31,26 @@ def drift_note(sides: Sequence[Side], named: Sequence[str], unit: str) -> str:
     hours = (start - start.min()) / HOUR if len(start) else start
     if len(hours) < FEWEST_RUNS or np.ptp(hours) <= 0.0:
         return ""
-    line = linregress(hours, loss)
+    slope, std = _line(hours, loss)
     drive = float(np.mean([drive_of(run) for run in runs]))
-    change = line.slope * np.ptp(hours)
-    if line.pvalue > SURE or abs(change) < MATTERS * drive:
+    change = slope * np.ptp(hours)
+    p_value = 2.0 * float(stdtr(len(hours) - 2, -abs(slope) / std))
+    if p_value > SURE or abs(change) < MATTERS * drive:
         return ""
     return (
         f"over {np.ptp(hours):.1f} h the loss along the motion changes by {change:+.3g} ± "
-        f"{1.96 * line.stderr * np.ptp(hours):.2g} {unit} (95 %, p = {line.pvalue:.1g}): undecided between temperature "
+        f"{1.96 * std * np.ptp(hours):.2g} {unit} (95 %, p = {p_value:.1g}): undecided between temperature "
         "and wear, for no oil_temperature was logged; log it, or repeat a run cold and warm"
     )
+
+
+def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Slope of the straight line through points and its standard deviation."""
+    away = x - x.mean()
+    square = float(away @ away)
+    slope = float(away @ y) / square
+    left = y - y.mean() - slope * away
+    return slope, max(float(np.sqrt(left @ left / (len(x) - 2) / square)), TINY)
 
 
 def _losses(side: Side) -> list[tuple[float, float]]:

@@ -69,15 +69,17 @@ def plan_experiment(
     """The scenario in which the nearest rival of `own` stays farthest away; None where none of them can be run."""
     others = tuple(slot for slot in fitted.slots if slot is not own)
     imitating = [cross.explain((*others, rival)) for rival in rivals]
+    names = {own.name, *(rival.name for rival in rivals)}
+    # of the hundreds of columns only what is there and what may imitate it
+    asked = [slot for slot in cross.problem.slots if slot in fitted.slots or slot.name in names]
     separation: dict[str, tuple[float, Slot]] = {}
     for name in EXPERIMENTS:
         try:
-            new = _simulated(name, crane, expansion, seed)
+            g = cross.total_g + _simulated(name, crane, expansion, seed, asked)
         except InputError:
             continue
         z = [
-            (_apart(cross, new, fitted, own, other, rival), rival)
-            for rival, other in zip(rivals, imitating, strict=True)
+            (_apart(cross, g, fitted, own, other, rival), rival) for rival, other in zip(rivals, imitating, strict=True)
         ]
         separation[name] = min(z, key=lambda pair: pair[0])
     if not separation:
@@ -91,30 +93,34 @@ def plan_experiment(
     )  # fmt: skip
 
 
-def _simulated(name: str, crane: Crane, expansion: Expansion, seed: int) -> CrossFit:
+def _simulated(name: str, crane: Crane, expansion: Expansion, seed: int, asked: Sequence[Slot]) -> FloatArray:
+    """The scenario's Gram matrix in the columns of the whole layout; 0 for what is not asked for."""
     from winch_friction.simulation import load_scenario, simulate
 
     measured = simulate(load_scenario(name), crane, expansion.model, seed=seed).run
     prepared = prepare(measured, crane, expansion.model)
-    return CrossFit(build_problem([prepared], expansion.layout))
+    problem = build_problem([prepared], expansion.layout.only(asked)[0])
+    whole = np.zeros(2 * (len(expansion.layout.scales),))
+    columns = np.asarray(problem.base_columns + tuple(c for slot in asked for c in slot.columns))
+    whole[np.ix_(columns, columns)] = problem.grams.total()
+    return whole
 
 
-def _apart(cross: CrossFit, new: CrossFit, one: Explanation, own: Slot, other: Explanation, rival: Slot) -> float:
+def _apart(cross: CrossFit, g: FloatArray, one: Explanation, own: Slot, other: Explanation, rival: Slot) -> float:
     """Sigma between two causes whichever of them is there, each imitated by the best law that the other's cause has:
     with new runs that may be another one."""
     others = tuple(slot for slot in one.slots if slot is not own)
     found = []
     for truth, imitator in ((one, rival), (other, own)):
         family = [slot for slot in cross.problem.slots if slot.name == imitator.name]
-        found += [_separation(cross, new, truth, (*others, slot)) for slot in family]
+        found += [_separation(cross, g, truth, (*others, slot)) for slot in family]
     return min(found)
 
 
-def _separation(cross: CrossFit, new: CrossFit, truth: Explanation, rival: Sequence[Slot]) -> float:
-    """Sigma by which the rival's best fit to old and new runs misses what the truth predicts for both."""
+def _separation(cross: CrossFit, g: FloatArray, truth: Explanation, rival: Sequence[Slot]) -> float:
+    """Sigma by which the rival's best fit to old and new runs, of Gram matrix `g`, misses what the truth predicts."""
     true_columns = np.asarray(cross.problem.columns(truth.slots))
     columns = np.asarray(cross.problem.columns(rival))
-    g = cross.total_g + new.total_g
     b = g[:, true_columns] @ truth.beta
     y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
     beta = cross.problem.fit(g, b, columns.tolist())

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtri
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -130,9 +130,9 @@ def _surprise(wide: CrossFit, shift: FloatArray, count: int) -> tuple[float, Flo
     values, vectors = np.linalg.eigh(0.5 * (spread + spread.T))
     told = values > LIMITS.told
     z = (vectors.T @ shift)[told] / np.sqrt(values[told])
-    p = float(chi2.sf(float(z @ z), int(told.sum()))) if told.any() else 1.0
+    p = float(chdtrc(int(told.sum()), float(z @ z))) if told.any() else 1.0
     marginal = np.where(np.diag(spread) > LIMITS.told, shift / np.sqrt(np.maximum(np.diag(spread), 1e-9)), 0.0)
-    return float(norm.isf(max(p, 1e-300) / 2.0)), marginal
+    return float(-ndtri(max(p, 1e-300) / 2.0)), marginal
 
 
 def _inflated(loss: float, shift: FloatArray) -> float:

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.grammar import Factor
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.recursion import lagged
 
 QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 LAGS = (3.0, 10.0, 30.0, 90.0)  # s
@@ -91,8 +91,7 @@ def shape(kind: str, x: FloatArray, constants: Mapping[str, float], dt: float) -
     """A function over the samples of one run."""
     c, h = constants.get("c", 0.0), constants.get("h", 1.0)
     if kind == "lag":
-        keep = float(np.exp(-dt / c))
-        return np.asarray(lfilter([1.0 - keep], [1.0, -keep], x, zi=[keep * x[0]])[0])
+        return lagged(x, dt, c)
     made: dict[str, Callable[[], FloatArray]] = {
         "linear": lambda: x,
         "root": lambda: np.sqrt(np.maximum(x, 0.0)),

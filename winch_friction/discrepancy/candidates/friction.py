@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from winch_friction.discrepancy.candidates.candidate import REVERSALS, Candidate, Shape, Shapes, Values, label_of
 from winch_friction.discrepancy.engine import FloatArray
@@ -105,6 +104,8 @@ def _stribeck_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 
 def _one_stribeck(at: Values, own: Values) -> Mapping[str, float]:
     """The one exponential nearest to the sum of two over speed (rad/s), for the two load coefficients."""
+    from scipy.optimize import least_squares  # a fifth of a second, for few models come here
+
     speed = np.linspace(0.5, 4.0 * max(at["C4"], own["C4"]), 60)
     first, second = np.exp(-speed / at["C4"]), np.exp(-speed / own["C4"])
     load = [at["C1"] * first + own["C1"] * second, at["C3"] * first + own["C3"] * second]

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.recursion import lagged
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 
@@ -37,8 +37,7 @@ def _gas_torque(group: GroupSignals, run: PreparedRun, tau: float) -> FloatArray
     fading = np.exp(-run.time / tau)
     # the calculated ln p moves with ln V; what has relaxed of it is its low-passed change
     change = np.log(np.maximum(port, 1.0) / max(port[0], 1.0))
-    keep = np.exp(-run.dt / tau)
-    relaxed = lfilter([1.0 - keep], [1.0, -keep], change)
+    relaxed = lagged(change, run.dt, tau)
     return np.column_stack([torque * fading, -torque * relaxed])
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
-from scipy.stats import gamma
+from scipy.special import gammaincc
 
 from winch_friction.physics.signals import FloatArray
 
@@ -49,7 +49,7 @@ def strongest_line(tables: Sequence[Table]) -> Line:
             power += np.minimum(_prominence(angle[part], weighted[part], size, use), MOST_OF_ONE_PART)
             parts += 1
     # whole runs see a small ripple better, but it must be in their parts as well
-    whole[gamma.sf(power, parts) > IN_PARTS] = 0.0
+    whole[gammaincc(parts, power) > IN_PARTS] = 0.0
     own = [table[:3] for table in tables]
     of_runs = _strongest(orders[use], whole, len(tables), own)
     return of_runs if of_runs.p_value < IN_RUNS else _strongest(orders[use], power, parts, own)
@@ -60,7 +60,7 @@ def line_holds(order: float, tables: Sequence[Table]) -> bool:
     size, orders, use = _lines(tables)
     power = np.sum([_prominence(angle, torque * static, size, use) for angle, torque, static, _ in tables], axis=0)
     near = np.abs(orders[use] - order) < SAME_ORDER * max(order, LOWEST_ORDER)
-    chance = gamma.sf(power[near].max(initial=0.0), len(tables)) * max(int(near.sum()), 1)
+    chance = gammaincc(len(tables), power[near].max(initial=0.0)) * max(int(near.sum()), 1)
     return bool(chance <= IN_PARTS)  # a lumpy background has a line of one in a hundred near any order
 
 
@@ -96,7 +96,7 @@ def _strongest(
 ) -> Line:
     best = int(np.argmax(power))
     order = float(orders[best])
-    alone = 1.0 if one_of_a_comb(orders, power, best, parts) else gamma.sf(power[best], parts)
+    alone = 1.0 if one_of_a_comb(orders, power, best, parts) else gammaincc(parts, power[best])
     amplitude, std = _amplitude(order, tables)
     prominence = float(power[best] / parts)
     return Line(order, amplitude, std, float(min(1.0, 2 * alone * len(orders))), prominence)

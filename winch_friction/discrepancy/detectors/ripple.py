@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
@@ -181,6 +180,8 @@ def in_phase(
     step = np.pi / max(float(np.ptp(angle)) for angle, *_ in tables)  # a quarter of a line's width
     orders = ripple.order + step * np.arange(-8, 9) / 2.0
     best = max(orders, key=lambda order: _shared(tables, order)[0])
+    from scipy.optimize import minimize_scalar  # a fifth of a second, for few runs come here
+
     near = minimize_scalar(lambda k: -_shared(tables, k)[0], bounds=(best - step, best + step), method="bounded")
     order = float(near.x)
     explained, amplitude, std = _shared(tables, order)

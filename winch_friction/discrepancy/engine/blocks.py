@@ -153,13 +153,15 @@ def grams(blocks: Blocks) -> Grams:
     segment, size = blocks.segment[order], blocks.x.shape[1]
     _, starts = np.unique(segment, return_index=True)
     ends = np.append(starts[1:], len(segment))[: len(starts)]
-    half = np.triu_indices(size)
-    upper, b, y2 = np.empty((len(starts), len(half[0]))), np.empty((len(starts), size)), np.empty(len(starts))
+    rows, columns = np.triu_indices(size)
+    half = rows * (size + 1) + columns
+    upper, b, y2 = np.empty((len(starts), len(half))), np.empty((len(starts), size)), np.empty(len(starts))
     for k, (first, last) in enumerate(zip(starts, ends, strict=True)):
         own = order[first:last]
         z = np.column_stack([blocks.x[own], blocks.y[own]]) * blocks.weight[own, None]
         full = z.T @ z
-        upper[k], b[k], y2[k] = full[half], full[:-1, -1], full[-1, -1]
+        np.take(full.ravel(), half, out=upper[k], mode="clip")  # `mode` saves NumPy a copy; no place is outside
+        b[k], y2[k] = full[:-1, -1], full[-1, -1]
     return Grams(upper, b, y2, (ends - starts).astype(float), blocks.run[order][starts])
 
 

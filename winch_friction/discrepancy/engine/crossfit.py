@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtr
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -129,7 +129,7 @@ class CrossFit:
         spread = float(np.sqrt((folds - 1) / folds * ((amplitude - amplitude.mean()) ** 2).sum()))
         if not spread > 0.0:
             return 1.0
-        return float(2.0 * student.sf(abs(amplitude.mean()) / spread, folds - 1))
+        return float(2.0 * stdtr(folds - 1, -abs(amplitude.mean()) / spread))
 
 
 def _folds(run: np.ndarray) -> np.ndarray:

@@ -5,7 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.ndimage import convolve1d, median_filter
-from scipy.signal import savgol_coeffs
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
@@ -86,7 +85,7 @@ def _weights(window: int, order: int) -> tuple[FloatArray, FloatArray, FloatArra
     """Of a parabola through the samples around one, and at both ends: `savgol_filter` makes them at each call."""
     powers = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
     fitted = powers @ np.linalg.pinv(powers)
-    return savgol_coeffs(window, order), fitted[: window // 2], fitted[window // 2 + 1 :]
+    return fitted[window // 2], fitted[: window // 2], fitted[window // 2 + 1 :]
 
 
 def thinned(run: Run) -> Run:

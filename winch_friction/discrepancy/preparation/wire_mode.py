@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.signal import lfilter, lfilter_zi
 
+from winch_friction.discrepancy.preparation.recursion import filtered
 from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)
@@ -116,8 +116,7 @@ def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) ->
     numerator = np.array([mode + first, 2.0 * mode, mode - first])
     denominator = np.array([square + first + mode, 2.0 * (mode - square), square - first + mode])
     numerator, denominator = numerator / denominator[0], denominator / denominator[0]
-    out, _ = lfilter(numerator, denominator, rigid, zi=lfilter_zi(numerator, denominator) * rigid[0])
-    return np.asarray(out)
+    return rigid[0] + filtered(numerator, denominator, rigid - rigid[0])  # at rest before the first sample
 
 
 def settling_time(frequency: float, ratio: float) -> float:

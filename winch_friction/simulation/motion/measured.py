@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
@@ -58,6 +57,8 @@ def load_heave(path: Path, start: float = 0.0) -> MeasuredHeave:
         problems.append(f"heave goes {far:.4g} m from its mean, at most {LARGEST:g} m; is its unit right?")
     if problems:
         raise InputError(f"{path}: {'; '.join(problems)}")
+    from scipy.interpolate import CubicSpline  # brings scipy.optimize, and few scenarios follow a measured heave
+
     own = time - time[0]
     return MeasuredHeave(CubicSpline(own, heave - heave.mean()), float(own[-1]), str(path), start)
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.measuring import Row, sea
+from bench.measuring import Pace, Row, sea
 from winch_friction.physics.errors import InputError
 
 RATES = (50, 100, 200, 500)  # Hz
@@ -91,9 +91,9 @@ class Driver:
                 if began is not None:
                     trips.append((info["received_timestamp"] - began) * 1e-9)
 
-        begin, count = time.time(), int(duration * rate)
-        for number in range(count):
-            due = begin + number / rate
+        pace = Pace(rate)
+        for number in range(int(duration * rate)):
+            due = pace.next()
             while (wait := due - time.time()) > 0.0:
                 time.sleep(min(wait, 0.001))
                 take()

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.measuring import Row, sea
+from bench.measuring import Pace, Row, sea
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run, Sample
 
@@ -107,8 +107,9 @@ class Driver:
         finally:
             _end([process])
 
-    def soak(self, samples: list[Sample], duration: float) -> tuple[int, dict[str, int]]:
-        """Speeds sent at 200 Hz, and how many of them each node answered; both answer before it counts."""
+    def soak(self, samples: list[Sample], duration: float) -> tuple[int, dict[str, int], int]:
+        """Speeds sent at 200 Hz, how many of them each node answered, and how often the sender was kept waiting; both
+        answer before it counts."""
         processes = [_started([sys.executable, "-m", module]) for module in NODES.values()]
         try:
             number, waiting = 0, set(NODES)
@@ -122,16 +123,17 @@ class Driver:
                 number += 1
             sent: set[tuple[int, int]] = set()
             answered: dict[str, set[tuple[int, int]]] = {name: set() for name in NODES}
-            begin = time.time()
+            pace = Pace(RATE)
             for step in range(int(duration * RATE)):
-                due = begin + step / RATE
+                due = pace.next()
                 if (wait := due - time.time()) > 0.0:
                     time.sleep(wait)
                 sent.add(self.send(samples[(number + step) % len(samples)], due))
                 for name, stamps in answered.items():
                     stamps |= self.taken(name)
             time.sleep(SETTLING)
-            return len(sent), {name: len(sent & (stamps | self.taken(name))) for name, stamps in answered.items()}
+            found = {name: len(sent & (stamps | self.taken(name))) for name, stamps in answered.items()}
+            return len(sent), found, pace.pauses
         finally:
             _end(processes)
 
@@ -151,7 +153,7 @@ def measure(smoke: bool = False) -> list[Row]:
             name: median(driver.first_answer(name, samples) for _ in range(1 if smoke else REPEATS))
             for name in ("empty", *NODES)
         }
-        sent, answered = driver.soak(samples, 2.0 if smoke else SOAK)
+        sent, answered, pauses = driver.soak(samples, 2.0 if smoke else SOAK)
     finally:
         driver.close()
     against = f"beyond an empty rclpy node's {first['empty']:.2f} s"
@@ -162,7 +164,8 @@ def measure(smoke: bool = False) -> list[Row]:
     ]  # fmt: skip
     return rows + [
         Row(f"live: share of speeds that the {name} answered", answered[name] / sent, "1",
-            f"{sent} at {RATE:g} Hz, {sent - answered[name]} without an answer", at_least=1.0)
+            f"{sent} at {RATE:g} Hz, {sent - answered[name]} without an answer; {pauses} pauses of the sender",
+            at_least=1.0)
         for name in NODES
     ]  # fmt: skip
 

@@ -3,7 +3,7 @@
 import gc
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from statistics import median
 from typing import Any
@@ -17,6 +17,7 @@ from winch_friction.records.model_file import load_model
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 
+PATIENCE = 5.0  # periods; a stamp that advances by one of ten counts as standing still
 REPEATS = 7  # the median of seven ratios stands three disturbed pairs
 
 
@@ -89,6 +90,28 @@ def paired(ours: Callable[[], Any], theirs: Callable[[], Any], smoke: bool = Fal
     times = [(seconds(ours), seconds(theirs)) for _ in range(1 if smoke else repeats)]
     ratios = [a / max(b, 1e-9) for a, b in times]
     return Paired(median(a for a, _ in times), median(b for _, b in times), median(ratios), (min(ratios), max(ratios)))
+
+
+@dataclass
+class Pace:
+    """When to send next, at `rate` Hz by the clock on the wall.
+
+    A sender that was itself kept waiting goes on from then and stamps what it measures then, as a controller does.
+    With the stamps of its timetable the first speed after a pause would have advanced by less than a tenth of the
+    clock, which nodes refuse as a stamp that stands still.
+    """
+
+    rate: float
+    pauses: int = 0
+    _last: float = field(default_factory=time.time)
+
+    def next(self) -> float:
+        """The next time to send at, s; it may be over already, by less than `PATIENCE` periods."""
+        due, now = self._last + 1.0 / self.rate, time.time()
+        if now - due > PATIENCE / self.rate:
+            due, self.pauses = now, self.pauses + 1
+        self._last = due
+        return due
 
 
 @lru_cache(maxsize=4)

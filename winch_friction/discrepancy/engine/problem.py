@@ -51,6 +51,13 @@ class Layout:
         small = Layout(self.base, tuple(placed), self.scales[own], self.lower[own], self.upper[own], bending)
         return small, tuple(placed)
 
+    def inside(self, columns: Sequence[int]) -> FloatArray:
+        """Coefficients of these columns that are next to nothing, but at none of their bounds, to start a fit from."""
+        index = list(columns)
+        lower, upper = self.lower[index], self.upper[index]
+        off = RIDGE * np.minimum(upper - lower, 1.0)
+        return np.clip(np.zeros(len(index)), lower + off, upper - off)
+
     def slot_like(self, other: Slot) -> Slot:
         """The slot of the same candidate and shape as one of another layout."""
         own = (other.name, other.law, other.label)

@@ -1,6 +1,7 @@
 """A torque that pushes against the motion, or against what is asked for, is let go at the slew limit as soon as what
 carried it is gone: whatever goes wrong next."""
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -8,6 +9,7 @@ import pytest
 from sea import CRANE, PERIOD, TOPICS, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.online.agreement import Agreement
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.ranges import ChannelRanges
@@ -292,3 +294,71 @@ def test_a_message_that_comes_twice_is_no_second_voice():
         fed.hear(fed.service.tick(fed.now))
     alone.run(50 * PERIOD)
     assert fed.torque == pytest.approx(alone.torque)
+
+
+@pytest.mark.parametrize("each", [2, 3, 5, 7])
+def test_a_second_sender_whose_command_comes_in_batches_does_not_push_for_long(each: int) -> None:
+    """One sample of every batch had the right command: each time the doubt began anew, and what was published had not
+    even passed zero. A torque against the motion stood for 0.35 s and more."""
+    fed = sailing(REVERSAL + 0.5)
+    began, waiting = fed.now, []
+    for k in range(60):
+        fed.now += PERIOD
+        sample = swell(fed.now)
+        other = swell(fed.now)
+        other.speed_reference = -other.speed_reference
+        own = dict(fed.messages(sample))
+        late = dict(fed.messages(dataclasses.replace(other, time=other.time + 0.003)))
+        waiting += [own.pop(REFERENCE), late[REFERENCE]]
+        if k % each == 0:
+            for message in waiting:
+                fed.hear(fed.service.take(TOPICS.inputs[REFERENCE], message, fed.now, fed.now))
+            waiting.clear()
+        for topic, message in own.items():
+            fed.hear(fed.service.take(TOPICS.inputs[topic], message, fed.now, fed.now))
+        fed.hear(fed.service.tick(fed.now))
+    assert against(fed, began) <= 0.3
+    check_invariants(fed)
+
+
+def test_a_command_that_is_right_now_and_then_is_a_contradiction_all_the_same() -> None:
+    """Four samples wrong, one right: wrong for more than a lag, whoever looks at it every 0.1 s."""
+    watch = Agreement(CRANE, ChannelRanges(CRANE))
+    said = []
+    for k in range(12):
+        sample = swell(REVERSAL + 0.5 + k * PERIOD)
+        if k % 5:
+            sample.speed_reference = -sample.speed_reference
+        said.append(watch.contradictions(sample))
+    assert any("turns against" in name for names in said for name in names)
+
+
+@pytest.mark.parametrize("lead", [0.0, 0.1])
+def test_a_target_that_is_wrong_for_a_while_is_let_go_whatever_nobody_doubts(lead: float) -> None:
+    """The last line: the torque itself, against the measured motion, whatever asks for it."""
+    output = SafeOutput(2000.0, 1.5e4, 0.5, 0.1, lead)
+    pushed = []
+    for k in range(100):
+        now = k * PERIOD
+        output.arrive(now, now)
+        wrong = k > 50 and k % 25 != 0
+        pushed.append(output.follow(-300.0 if wrong else 300.0, 500.0, True, True, motion=80.0) < -5.0)
+    longest = max(len(run) for run in "".join("x" if each else " " for each in pushed).split())
+    assert 0.1 < longest * PERIOD <= lead + 0.3
+    assert any(pushed[-20:])  # a target that is right begins anew
+
+
+def test_nobody_knows_whether_command_or_speed_is_wrong() -> None:
+    """Friction by a measured speed that stands still while the command turns: what it asked for is let go at once, not
+    over the ramp time."""
+    config = CompensatorConfig(ramp_time=1.0, velocity_source="measured")
+    fed = Fed(config)
+    fed.run(REVERSAL - 0.3 - fed.now)
+    speed, began = swell(fed.now).motor_speed, fed.now
+
+    def stuck(sample: Sample) -> None:
+        sample.motor_speed = speed
+
+    fed.run(1.0, stuck)
+    assert against(fed, began) <= LONGEST
+    check_invariants(fed)

@@ -84,7 +84,9 @@ class FeedforwardCompensator:
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
         self._needs = self._needed()
-        self.output = SafeOutput(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
+        self.output = SafeOutput(
+            self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead
+        )
         self._enabled = True
         self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
         self._forget()
@@ -119,15 +121,16 @@ class FeedforwardCompensator:
     def configure(self, config: CompensatorConfig) -> None:
         """Other settings from the next step on, without a bump; the model and the load estimate stay.
 
-        Raises `InputError`, and changes nothing, for gains for unknown terms.
+        Raises `InputError`, and changes nothing, for gains for unknown terms, and for a slew limit that could not let
+        go in time of what is published.
         """
         check_gains(config.gains)
+        self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead)
         self.config = config
         self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load.configure(config.load, config.load_filter)
         self._needs = self._needed()
-        self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age)
 
     def load_model(self, model: FrictionModel) -> None:
         """Use another model from the next step on, without a bump.
@@ -175,7 +178,10 @@ class FeedforwardCompensator:
             self._turn(sample)
         self._counts["stale"] += not usable
         target = self._target
-        self.output.follow(target.torque, target.envelope, usable, self._enabled, target.reversal, sample.motor_speed)
+        self.output.follow(
+            target.torque, target.envelope, usable, self._enabled, target.reversal, sample.motor_speed,
+            sample.speed_reference,
+        )  # fmt: skip
         self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
 

@@ -4,11 +4,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.options import check, option
+from winch_friction.physics.options import check, limits_of, option
 
 # below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed
 SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s
+# s. A torque that is late by tau has the wrong sign for 2 tau of every wave's period T, and is wrong by 2 F then, not
+# by F as without it: (2 F)^2 2 tau / T = F^2 at tau = T / 8. The shortest waves that heave compensation meets have 4 s
+OLDEST_INPUT = 0.5
+OLDEST_IN_A_LOG = 10.0  # s; nothing is at stake in a replay, and logs are slow
 
 
 @dataclass(frozen=True)
@@ -52,21 +57,27 @@ class CompensatorConfig:
     envelope: float = option(1.3, lower=0.0, upper=2.0, doc="bound of the torque as a multiple of the seed's friction")
     slew_limit: float = option(
         1.5e4, lower=1.0, upper=1e7, unit="N*m/s",
-        doc="bound of the torque's rate; never more than a reversal at the present load needs",
+        doc="bound of the torque's rate; never more than a reversal at the present load needs. The torque stays within "
+        "what this lets go in 0.2 s",
     )  # fmt: skip
     ramp_time: float = option(
         1.0, lower=0.02, upper=60.0, unit="s", doc="time to fade in, out, and over to another model"
     )
-    max_age: float = option(0.1, lower=0.001, upper=10.0, unit="s", doc="age beyond which an input counts as lost")
+    max_age: float = option(
+        0.1, lower=0.001, upper=OLDEST_INPUT, unit="s",
+        doc="age beyond which an input counts as lost; later than 0.5 s friction is better not compensated",
+    )  # fmt: skip
     max_ages: Mapping[str, float] = option(
         {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0},
-        lower=0.001, upper=3600.0, unit="s", doc="the same by input where it differs",
+        lower=0.001, upper=3600.0, unit="s",
+        doc="the same by input where it differs; above 0.5 s for load, oil and wire alone",
     )  # fmt: skip
     seed_range: float = option(0.5, lower=0.0, upper=0.5, doc="how far a model's parameters may lie from the seed's")
     min_displacement: float = option(0.1, lower=0.01, upper=1.0, doc="floor of D/D_max in the pressure feedforward")
 
     def __post_init__(self) -> None:
         check(self)
+        self._check_ages()
         if (
             self.drive == "torque"
             and self.velocity_source == "measured"
@@ -76,3 +87,22 @@ class CompensatorConfig:
                 "velocity_source 'measured' makes a torque-commanded drive cycle at reversal: use the reference speed, "
                 f"or set reversal_speed to at least {SAFE_MEASURED_SPEED_WIDTH:g} rad/s (found {self.reversal_speed:g})"
             )
+
+    def _check_ages(self) -> None:
+        """Speeds, pressures and displacements turn with every wave, whatever their age limit is called."""
+        oldest = limits_of(self.__dataclass_fields__["max_age"]).upper
+        for name, age in self.max_ages.items():
+            if name.rpartition(".")[2] not in SLOW_INPUTS and age > oldest:
+                raise InputError(
+                    f"max_ages.{name} must be at most {oldest:g} s, found {age:g}: only "
+                    f"{', '.join(sorted(SLOW_INPUTS))} may be older"
+                )
+
+
+@dataclass(frozen=True)
+class ReplayConfig(CompensatorConfig):
+    """The same for a recorded run: its inputs may be older than those that a torque is published from."""
+
+    max_age: float = option(
+        0.1, lower=0.001, upper=OLDEST_IN_A_LOG, unit="s", doc="age beyond which an input counts as lost"
+    )

@@ -9,6 +9,7 @@ from typing import Any
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from winch_friction.compensation.config import OLDEST_INPUT
 from winch_friction.estimation import Estimate, EstimatorConfig
 from winch_friction.nodes.base import ERROR, OK, URGENT_PERIOD, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import Inputs
@@ -40,7 +41,9 @@ class EstimatorNodeOptions:
     checkpoint_period: float = option(
         60.0, lower=1.0, upper=86400.0, unit="s", doc="time between checkpoints, besides the one at the end"
     )
-    max_age: float = option(0.1, lower=0.001, upper=10.0, unit="s", doc="age beyond which an input counts as lost")
+    max_age: float = option(
+        0.1, lower=0.001, upper=OLDEST_INPUT, unit="s", doc="age beyond which an input counts as lost"
+    )
 
     def __post_init__(self) -> None:
         check(self)

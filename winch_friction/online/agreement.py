@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
+from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.ranges import ChannelRanges
@@ -11,9 +12,6 @@ from winch_friction.physics.winch.torque_balance import sample_drive_torque
 # the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
 SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed
 SPEED_TIME = 0.5  # s
-# the sign: a winch that turns faster than the first against its command. Over 60 s of each shipped scenario the longest
-# was 0.06 s, at reversals; beyond the second, and the look-ahead that makes up for the actuator's lag, it is no lag
-TURN_SPEED, TURN_TIME = 5.0, 0.1  # rad/s, s
 # the load and the drive: inertia, friction and waves are a third of it at most
 TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
 SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
@@ -27,10 +25,14 @@ BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
 
 @dataclass
 class Doubt:
-    """A contradiction that counts after `patience` s and is over after `calm` s of agreement."""
+    """A contradiction that counts after `patience` s and is over after `calm` s of agreement.
+
+    What was wrong before counts on until it was right for `forgiven` s.
+    """
 
     patience: float
     calm: float = CALM
+    forgiven: float = 0.0
     _wrong: float = field(default=0.0, init=False)
     _right: float = field(default=0.0, init=False)
     stands: bool = field(default=False, init=False)
@@ -40,7 +42,8 @@ class Doubt:
         if wrong:
             self._wrong, self._right = self._wrong + dt, 0.0
         elif wrong is not None:
-            self._wrong, self._right = 0.0, self._right + dt
+            self._right += dt
+            self._wrong = self._wrong if self._right < self.forgiven else 0.0
         self.stands = self._wrong >= self.patience or (self.stands and self._right < self.calm)
         return self.stands
 
@@ -80,7 +83,9 @@ class Agreement:
         self._time = self._now = math.nan
         self._command = self._step = math.nan
         self._jumps: list[float] = []
-        self._speeds, self._torques, self._turns = Doubt(SPEED_TIME), Doubt(TORQUE_TIME), Doubt(TURN_TIME)
+        self._speeds, self._torques = Doubt(SPEED_TIME), Doubt(TORQUE_TIME)
+        # messages in batches: a command that is right in one sample of each is none
+        self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 
     def contradictions(self, sample: Sample, now: float = math.nan) -> tuple[str, ...]:
         """What does not fit, in a few words each.
@@ -90,7 +95,7 @@ class Agreement:
         passed = (sample.time - self._time, now - self._now)
         dt = min(max(0.0, *(each for each in passed if each == each)), 0.1) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
-        self._turns.patience = self.lead + TURN_TIME
+        self._turns.patience = self.lead + LONGEST_LAG
         found = {
             "speed_reference turns against motor_speed": self._turns.step(_turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
@@ -127,6 +132,6 @@ class Agreement:
 
 
 def _turns_against(sample: Sample) -> bool | None:
-    if not (abs(sample.motor_speed) > TURN_SPEED and abs(sample.speed_reference) > 0.0):  # NaN as well
+    if not (abs(sample.motor_speed) > AGAINST_SPEED and abs(sample.speed_reference) > 0.0):  # NaN as well
         return None
     return sample.motor_speed * sample.speed_reference < 0.0

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation import EstimatorConfig
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
@@ -48,7 +49,7 @@ class ReplaySettings:
 
 def settings_for_rate(max_age: float) -> ReplaySettings:
     """The nodes' defaults with another age limit (s), for a log that is slower than they allow."""
-    phase = Phase(config=CompensatorConfig(max_age=max_age))
+    phase = Phase(config=ReplayConfig(max_age=max_age))
     return ReplaySettings((phase,), estimator_max_age=max_age)
 
 
@@ -71,7 +72,7 @@ def _phase(content: Mapping[str, Any], index: int, where: str) -> Phase:
         load_file(terms_file)
     return Phase(
         start=float(content.get("start", "nan" if index else "-inf")),
-        config=from_mapping(CompensatorConfig, parameters, where),
+        config=from_mapping(ReplayConfig, parameters, where),
         enabled=bool(content.get("enabled", True)),
         follow_models=follow,
         name=str(content.get("name", "")),
@@ -93,7 +94,7 @@ def settings_from_file(path: Path) -> ReplaySettings:
     own |= {key: float(compensator[key]) for key in OF_THE_COMPENSATOR if key in compensator}
     if "max_age" in estimator:
         own["estimator_max_age"] = float(estimator["max_age"])
-    config = from_mapping(CompensatorConfig, _of(CompensatorConfig, compensator), f"{path}: compensator")
+    config = from_mapping(ReplayConfig, _of(ReplayConfig, compensator), f"{path}: compensator")
     phase = Phase(config=config, follow_models=bool(compensator.get("follow_model_topic", True)))
     return ReplaySettings((phase,), from_mapping(EstimatorConfig, _of(EstimatorConfig, estimator), str(path)), **own)
 

@@ -224,9 +224,7 @@ IN_RANGE = (
     ("lead", 0.05), ("ramp_time", RAMP), ("ramp_time", 0.02), ("ramp_time", 60.0), ("max_age", 0.5),
     ("reversal_time", 1.0), ("slew_limit", 5000.0),
 )  # fmt: skip
-OUT_OF_RANGE = (
-    ("scale", 99.0), ("ramp_time", 0.0), ("slew_limit", 0.0), ("slew_limit", math.inf), ("max_age", 10.0),
-)  # fmt: skip
+OUT_OF_RANGE = (("scale", 99.0), ("ramp_time", 0.0), ("slew_limit", 0.0), ("slew_limit", math.inf), ("max_age", 10.0))
 
 
 def parameters(probe: Probe, row: Row) -> None:
@@ -244,9 +242,7 @@ def parameters(probe: Probe, row: Row) -> None:
         if taken == ((name, value) in OUT_OF_RANGE):
             row.violations[f"{name} {value:g} was {'taken' if taken else 'refused'}"] += 1
         probe.bench.drive(0.2)
-    node.set(
-        {"scale": 0.9, "lead": 0.0, "ramp_time": RAMP, "max_age": 0.1, "reversal_time": 0.05, "slew_limit": 15000.0}
-    )
+    node.set({"scale": 0.9, "lead": 0.0, "ramp_time": RAMP, "max_age": 0.1, "reversal_time": 0.05, "slew_limit": SLEW})
 
 
 KINDS: dict[str, Callable[[Probe, Row], None]] = {

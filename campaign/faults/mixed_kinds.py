@@ -170,7 +170,19 @@ def clipped(rng: np.random.Generator) -> Fault:
     return Fault("clipped", topic, spoil)
 
 
+def now_and_then(rng: np.random.Generator) -> Fault:
+    """A loose contact, a sender among several: the sign of speed or command is right in one message of so many."""
+    topic, each, batch = one_of(rng, SPEED, REFERENCE), int(rng.integers(2, 9)), int(rng.integers(1, 4))
+
+    def change(message: Any, tick: int, _r: np.random.Generator) -> None:
+        if tick // batch % each:
+            set_value(message, topic, lambda v: -v)
+
+    return Fault("wrong, now and then right", f"{topic}: {batch} of {batch * each}", edited(topic, change))
+
+
 MIXED = (
+    now_and_then,
     frozen_and_step, slow_stamp, groups_swapped, unit_changed, coarse, contradicting_copies, bias, crossed, dead_zero,
     jittered_stamps, clipped,
 )  # fmt: skip

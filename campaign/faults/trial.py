@@ -192,8 +192,12 @@ class Trial:
             changed = CompensatorConfig(
                 ramp_time=RAMP, scale=float(self.rng.uniform(0.0, 1.3)), lead=float(self.rng.uniform(0.0, 0.1)),
                 absolute_limit=float(self.rng.uniform(100.0, 2000.0)),
+                reversal_time=float(self.rng.choice((0.0, 0.05, 0.3, 1.0))),
+                reversal_speed=float(self.rng.choice((1.0, 3.0, 20.0))),
+                slew_limit=float(self.rng.choice((5e3, 1e4, self.config.slew_limit))),
             )  # fmt: skip
-            self.service.configure(changed)
+            with contextlib.suppress(InputError):  # too slow for what is published
+                self.service.configure(changed)
         elif action == 3:
             self._offer(model_to_text(self._model(0.3)))
         elif action == 4:

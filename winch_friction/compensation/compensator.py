@@ -170,8 +170,9 @@ class FeedforwardCompensator:
             self._predictor.reset()
         self._since = sample.time
         sample = self._correct(sample)
-        standing = (f"{name} cannot be taken out" for name in self._correct.standing(sample.time))
-        self._lost = (*self._needs.missing(sample), *distrusted, *standing)
+        self._lost = self._needs.missing(sample) + distrusted
+        if standing := self._correct.standing(sample.time):
+            self._lost += tuple(f"{name} cannot be taken out" for name in standing)
         usable = not self._lost and self._aim(sample, dt)
         if not usable:
             self._predictor.reset()

@@ -26,11 +26,14 @@ class Needs:
         """Columns that the sample does not have, or not within what the crane can show."""
         plausible, drive = self._ranges.plausible, self._crane.drive
         lost = [name for name in self._scalars if not plausible(name, getattr(sample, name))]
-        cells = {"hook_load": sample.hook_load, "rope_force": sample.rope_force}
-        lost += [name for name, value in cells.items() if value == value and not plausible(name, value)]
+        weight, force = sample.hook_load, sample.rope_force
+        if weight == weight and not plausible("hook_load", weight):
+            lost.append("hook_load")
+        if force == force and not plausible("rope_force", force):
+            lost.append("rope_force")
         if not self._crane.drum.has(sample.wire_layer):
             lost.append("wire_layer")
-        if drive.hydraulic or (self._balance_for_load and not any(map(math.isfinite, cells.values()))):
+        if drive.hydraulic or (self._balance_for_load and not (math.isfinite(weight) or math.isfinite(force))):
             lost += drive.lacking(sample, plausible)
         return tuple(lost)
 

@@ -212,7 +212,7 @@ class SampleCorrector:
 
     def standing(self, time: float) -> tuple[str, ...]:
         """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
-        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
+        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time))) if self._over else ()
 
     def __call__(self, sample: Sample) -> Sample:
         """The sample without its errors; the given one is left as it is."""

@@ -103,9 +103,11 @@ class Drive:
             return ("motor groups",)
         lost: tuple[str, ...] = ()
         for name, group in sample.groups.items():
-            for channel, value in zip(GROUP_CHANNELS, _group_values(group), strict=True):
-                if not plausible(channel, value):
-                    lost += (f"{name}.{channel}",)
+            a, b, displacement = _group_values(group)
+            if plausible("pressure_a", a) and plausible("pressure_b", b) and plausible("displacement", displacement):
+                continue
+            values = zip(GROUP_CHANNELS, _group_values(group), strict=True)
+            lost += tuple(f"{name}.{channel}" for channel, value in values if not plausible(channel, value))
         return lost
 
     def _torque(self, read: _Read, crane: "Crane", speed: Any) -> Any:

@@ -36,15 +36,16 @@ def heave_velocity(sample: Sample) -> float:
 
 def usable(sample: Sample, ranges: ChannelRanges) -> bool:
     """Whether the sample has a time, and a speed, drive, wire layer (or none) and load (or none) of this crane's."""
-    if not (math.isfinite(sample.time) and ranges.plausible("motor_speed", sample.motor_speed)):
+    plausible, weight, force = ranges.plausible, sample.hook_load, sample.rope_force
+    if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
         return False
     if not ranges.crane.drum.has(sample.wire_layer):
         return False
-    if sample.hook_load == sample.hook_load and not ranges.plausible("hook_load", sample.hook_load):
+    if weight == weight and not plausible("hook_load", weight):
         return False
-    if sample.rope_force == sample.rope_force and not ranges.plausible("rope_force", sample.rope_force):
+    if force == force and not plausible("rope_force", force):
         return False
-    return not ranges.crane.drive.lacking(sample, ranges.plausible)
+    return not ranges.crane.drive.lacking(sample, plausible)
 
 
 def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:
@@ -52,7 +53,10 @@ def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:
     if not crane.drive.hydraulic:
         return abs(crane.drive.of_sample(sample, crane)) > config.saturation_torque * crane.motor_total(())
     limit = config.saturation_pressure
-    return any(group.pressure_a > limit or group.pressure_b > limit for group in sample.groups.values())
+    for group in sample.groups.values():  # noqa: SIM110 - a generator would be half a microsecond of every step
+        if group.pressure_a > limit or group.pressure_b > limit:
+            return True
+    return False
 
 
 def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> float:

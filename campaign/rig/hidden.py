@@ -9,7 +9,8 @@ class Hidden(NamedTuple):
     viscosity: float = 0.0  # 1: viscous terms follow the oil's viscosity fully
     stribeck: float = 0.0  # extra rise, as a multiple of the crane's own
     stribeck_speed: float = 20.0  # rad/s
-    stribeck_shape: float = 0.0  # 0: exp(-u), 1: exp(-u^2), 2: 1/(1+u^2), 3: (1+u)^-1.5, 4: max(1-u/2, 0)
+    # 0: exp(-u), 1: exp(-u^2), 2: 1/(1+u^2), 3: (1+u)^-1.5, 4: max(1-u/2, 0), 5: exp(-u^0.5)
+    stribeck_shape: float = 0.0
     oil_law: float = 0.0  # which law of campaign.rig.oil the viscosity follows
     oil_reference: float = 40.0  # degC at which the seed's viscous terms hold
     viscosity_power: float = 1.0  # exponent of the relative viscosity in the viscous terms

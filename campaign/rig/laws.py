@@ -202,8 +202,81 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
 }  # fmt: skip
 
+
+def _among(*draws: Draw) -> Draw:
+    """One of several ways, evenly."""
+    return lambda s, rng, f: draws[int(rng.integers(len(draws)))](s, rng, f)
+
+
+def _motor_drawn(amount: float, **ranges: tuple[float, float]) -> Draw:
+    return lambda s, rng, f: _motor(amount, **{k: float(rng.uniform(*v)) for k, v in ranges.items()})(s, rng, f)
+
+
+def _winch_drawn(amount: float, fixed: dict[str, float], **ranges: tuple[float, float]) -> Draw:
+    return lambda s, rng, f: _winch(amount, **fixed, **{k: float(rng.uniform(*v)) for k, v in ranges.items()})(
+        s, rng, f
+    )
+
+
+def _uniform(**ranges: tuple[float, float]) -> Draw:
+    return lambda s, rng, f: {name: s * float(rng.uniform(*limits)) for name, limits in ranges.items()}
+
+
+# one law per cause whose exponents, thresholds and companions are drawn anew for every data set, from what laws of
+# that cause look like: how well a cause is known whatever its law, and nothing that a list of laws could be fitted to
+DRAWN_LAWS: dict[str, Draw] = {
+    "viscosity_temperature": lambda s, rng, f: _oil(
+        float(rng.integers(0, 4)), float(rng.uniform(0, 1)), float(rng.uniform(0.6, 1.2))
+    )(s, rng, f),
+    "stribeck": lambda s, rng, f: _stribeck(float(rng.integers(0, 6)), 0.5, 1.6)(s, rng, f),
+    "presliding": lambda s, rng, f: _presliding(float(rng.uniform(5, 12)), float(rng.integers(0, 3)))(s, rng, f),
+    "dwell_stiction": lambda s, rng, f: _dwell(float(rng.integers(0, 3)), bool(rng.random() < 0.5))(s, rng, f),
+    "gear_asymmetry": _among(
+        _winch_drawn(60.0, {"signed": 1.0}, load=(0.6, 1.8)), _winch_drawn(50.0, {"side": 1.0}, load=(0.8, 1.5)),
+        _winch_drawn(50.0, {"side": -1.0}, load=(0.8, 1.5)),
+    ),
+    "gear_load_loss": _among(_winch_drawn(90.0, {}, load=(0.6, 1.8)), _winch_drawn(140.0, {"load": 1.0}, w=(0.1, 0.5))),
+    "layer_radius": _uniform(radius_step=(-0.06, -0.02), radius_load=(0.0, 0.02)),
+    "sheave_bending": _winch_drawn(100.0, {}, load=(0.5, 1.6), load0=(0.0, 0.2)),
+    "wear_drift": lambda s, rng, f: _drift(float(rng.integers(0, 5)), float(rng.uniform(0.25, 0.5)))(s, rng, f),
+    "low_displacement_loss": _motor_drawn(40.0, p=(0.3, 1.6), rest=(0.8, 3.0)),
+    "port_turbulence": _motor_drawn(22.0, w=(1.4, 2.6), x=(1.2, 3.5)),
+    "notch_loss": _motor_drawn(18.0, p=(0.9, 1.9), w=(0.2, 1.0), fade=(35.0, 120.0), x=(0.5, 1.5)),
+    "churning": _motor_drawn(4.5, w=(1.4, 2.8), viscosity=(0.0, 0.6)),
+    "high_pressure_mixed": _among(
+        _motor_drawn(5.0, p=(1.5, 4.0), viscosity=(-0.4, 0.0)),
+        _motor_drawn(16.0, p=(0.8, 1.5), p0=(60 * BAR, 130 * BAR)),
+    ),
+    "slip_leakage": lambda s, rng, f: _leak(float(rng.uniform(0.5, 2.0)), float(rng.uniform(0.0, 1.2)))(s, rng, f),
+    "line_pressure_drop": lambda s, rng, f: _line(float(rng.uniform(0.8, 2.4)), float(rng.integers(-1, 2)))(s, rng, f),
+    "case_pressure": _uniform(**dict.fromkeys(("case", "case_b", "case_rest"), (0.0, 15 * MAX_DISPLACEMENT / 150))),
+    "accumulator_thermal": lambda s, rng, f: {
+        "gas_time": rng.uniform(30, 150), "gas_warm": -0.03 * s * rng.uniform(), "gas_power": -0.1 * s * rng.uniform()
+    },
+    "inertia_error": _uniform(inertia=(0.0, 0.4), inertia_wire=(0.0, 0.16), inertia_oil=(0.0, 0.3)),
+    "pressure_offset": _among(
+        _uniform(pressure_offset=(1.0 * BAR, 3.0 * BAR), pressure_offset_b=(-1.5 * BAR, 1.5 * BAR)),
+        _uniform(pressure_offset=(0.0, 2.0 * BAR), pressure_warm=(1.0 * BAR, 3.0 * BAR)),
+        _uniform(pressure_offset=(0.0, 2.0 * BAR), pressure_drift=(1.5 * BAR, 4.0 * BAR)),
+    ),
+    "pressure_scale": _uniform(pressure_scale=(-0.012, 0.012), pressure_curve=(-0.012, 0.012)),
+    "signal_delay": _uniform(delay=(0.02, 0.09), speed_filter=(0.0, 0.06)),
+    "swivel_offset": _uniform(
+        swivel=(-1.5 * CM3_PER_REV, 1.5 * CM3_PER_REV), swivel_gain=(-0.01, 0.01),
+        swivel_mid=(-1.0 * CM3_PER_REV, 1.0 * CM3_PER_REV), swivel_warm=(0.0, CM3_PER_REV),
+    ),
+    "entrained_air": _uniform(air=(0.003, 0.03)),
+    "torque_ripple": lambda s, rng, f: _wave(float(rng.integers(0, 3)), bool(rng.random() < 0.5))(s, rng, f),
+    "brake_drag": lambda s, rng, f: {
+        "brake": s * rng.uniform(4, 9), "brake_every": rng.uniform(0.35, 1.0),
+        "brake_fade": rng.uniform(25, 120) * (rng.random() < 0.3),
+    },
+    "tare_load": _uniform(tare=(-800.0, 2500.0), tare_wire=(0.0, 0.5)),
+}  # fmt: skip
+
 LAWS: dict[str, tuple[Law, ...]] = {
-    cause: (Law("catalogue", draw), *OTHER.get(cause, ())) for cause, draw in CATALOGUE.items()
+    cause: (Law("catalogue", draw), *OTHER.get(cause, ()), Law("drawn", DRAWN_LAWS[cause]))
+    for cause, draw in CATALOGUE.items()
 }
 
 

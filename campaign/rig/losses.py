@@ -53,6 +53,8 @@ def _falling(shape, u):
         return (1.0 + u) ** -1.5
     if shape == 4.0:
         return max(1.0 - 0.5 * u, 0.0)
+    if shape == 5.0:
+        return exp(-sqrt(u))
     return exp(-u)
 
 

@@ -28,7 +28,7 @@ def test_the_end_of_the_grid_is_refined_on_both_sides():
     assert max(each.values["tau"] for each in own.refined(last).shapes([])) > last.values["tau"]
 
 
-@pytest.mark.parametrize("name", ["churning", "wear_drift", "inertia_error", "pressure_scale"])
+@pytest.mark.parametrize("name", ["case_pressure", "wear_drift", "inertia_error", "pressure_scale"])
 def test_what_has_no_grid_stays_as_it_is(name):
     own = candidate(name)
     assert own.refined(None) is own

@@ -1,6 +1,6 @@
 """From a search to the result: the repaired model, the proof on locked runs, regions and the next experiment."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -31,6 +31,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.paths import shipped
 
+CATALOGUES = "catalogue's"  # of two laws, the one without a name of its own
 LEFT_AS_GIVEN = "the model is left as it was given: fitted to what nothing explains, it does worse on the locked runs"
 
 
@@ -70,10 +71,11 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
     cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
     found = selection.found if search.explanation is selection.final else ()
     experiment = _experiment(given.crane, search, options) if options.plan else None
-    tied = {each.slot.name: company(search, each) for each in found}
+    first = {each.slot.name: each for each in reversed(found)}  # of a cause with two laws, the one found first
+    tied = {name: company(search, each) for name, each in first.items()}
     kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
     left = [LEFT_AS_GIVEN] if kind == UNEXPLAINED and repaired.model.values == given.model.values else []
-    drift = drift_note((trial.train, trial.holdout), [each.slot.name for each in found], given.crane.drive.unit)
+    drift = drift_note((trial.train, trial.holdout), list(search.explanation.names), given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
@@ -118,7 +120,10 @@ def insufficient(
 def _effects(
     search: Search, found: Sequence[Finding], repaired: Repair, tied: Mapping[str, Company]
 ) -> tuple[Effect, ...]:
-    effects = [_effect(search, each, repaired, tied[each.slot.name]) for each in found]
+    effects = [
+        _effect(search, [each for each in found if each.slot.name == name], repaired, tied[name])
+        for name in dict.fromkeys(each.slot.name for each in found)
+    ]
     if search.reversal is not None:
         effects.append(_reversal_effect(search.reversal, repaired.parameters))
     side = [each.effect for each in (search.ripple, search.leakage) if each is not None]
@@ -134,14 +139,22 @@ def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperi
     return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 
-def _effect(search: Search, found: Finding, repaired: Repair, tied: Company) -> Effect:
-    candidate = found.slot.origin[0]
-    estimates = repaired.parameters.get(candidate.name, {})
+def _effect(search: Search, laws: Sequence[Finding], repaired: Repair, tied: Company) -> Effect:
+    """One cause with its law, or with the two that its law is a mixture of."""
+    found, candidates = laws[0], [each.slot.origin[0] for each in laws]
+    name = candidates[0].name
+    estimates = repaired.parameters.get(name, {})
     return Effect(
-        candidate.name, tied.rivals, found.slot.label, candidate.latex, estimates, found.p_value, found.gain,
-        found.selection_frequency, law_name=candidate.law_name, free=candidate.free,
+        name, tied.rivals, _and(each.slot.label for each in laws), " + ".join(each.latex for each in candidates),
+        estimates, found.p_value, found.gain, found.selection_frequency,
+        law_name=_and(each.law_name or (CATALOGUES if len(laws) > 1 else "") for each in candidates),
+        free=any(each.free for each in candidates),
         combination=known_combination(search, found, estimates, tied.partners, repaired.model),
     )  # fmt: skip
+
+
+def _and(parts: Iterable[str]) -> str:
+    return " and ".join(part for part in parts if part)
 
 
 def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:

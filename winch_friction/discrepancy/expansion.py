@@ -69,6 +69,21 @@ def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
     return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed))
 
 
+def swings(given: Given) -> bool:
+    """Whether the balance takes the wire of any run for one on which the load swings."""
+    return any(run.wire_mode[1] > 0.0 for run in given.prepared)
+
+
+def as_rigid(given: Given) -> Given:
+    """The same runs with a wire that does not give: a late signal or an inertia that is wrong also rings."""
+    prepared = []
+    for run, old in zip(given.runs, given.prepared, strict=True):
+        load = given.loads.get(run.name, NAN)
+        new = prepare(run, given.crane, given.model, load, mode=(old.wire_mode[0], 0.0), spikes=old.spikes)
+        prepared.append(replace(new, corrections=old.corrections) if old.wire_mode[1] > 0.0 else old)
+    return replace(given, prepared=tuple(prepared))
+
+
 def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple[tuple[Run, ...], Crane]:
     pairs = [corrected(run, crane, model) for run in runs]
     return tuple(run for run, _ in pairs), pairs[0][1]

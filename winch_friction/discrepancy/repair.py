@@ -109,7 +109,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     for slot in explanation.slots:
         where = [columns.index(c) for c in slot.columns]
         found = _estimates(slot, value[where], std[where], cross)
-        parameters[slot.name] = found
+        parameters[slot.name] = _together(parameters.get(slot.name, {}), found)
         _add(own, slot, found, sides, seed)
     if search.reversal is not None:
         finding = search.reversal
@@ -129,6 +129,16 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         rate = search.leakage
         own.add_correction(Correction("slip_leakage", rate.leakage, rate.std, source=SOURCE))
     return _model_of(own, seed, search.given.crane, parameters, provenance)
+
+
+def _together(first: Estimates, second: Estimates) -> dict[str, ParameterEstimate]:
+    """The estimates of a cause whose law is a mixture of two: what both of them have adds."""
+    both = {
+        name: ParameterEstimate(first[name].value + each.value, float(np.hypot(first[name].std, each.std)), each.unit)
+        for name, each in second.items()
+        if name in first
+    }
+    return {**first, **second, **both}
 
 
 def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:

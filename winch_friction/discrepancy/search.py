@@ -9,6 +9,7 @@ import numpy as np
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Untestable
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
+from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.detectors import flow_balance, reversals
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
@@ -77,6 +78,7 @@ def search_runs(
     for _ in range(LIMITS.most_expansions):
         shapes = (*selection.final.slots, *near(cross, selection.final))
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
+        candidates = without_delay(given, candidates, shapes, cross, selection.final)
         del cross  # the largest thing there is, and not needed beside the next one
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)

@@ -115,7 +115,7 @@ def outdone(law: Scored | None, cross: CrossFit, selection: Selection) -> str:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
         if any(_could_be(law.law, slot) for slot in rivals if _has_laws(slot, cross)):
             return ""
-    names = " and ".join(slot.name for slot in slots)
+    names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "together " if len(slots) > 1 else ""
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
 

@@ -36,14 +36,14 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     if implausible:
         return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
-    if len([f for f in selection.found if not f.slot.plain]) > LIMITS.most_named:
-        return Verdict(UNEXPLAINED, f"it would take {len(selection.found)} effects at once to imitate it")
+    if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
+        return Verdict(UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it")
     whole, whole_before = excess(cross, selection.final), max(excess(cross, selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)
     if keeps_something(after, before, depends) or elsewhere:
         after, before = max((after, before), (whole, whole_before), key=lambda pair: pair[0] / pair[1])
-        names = ", ".join(f.slot.name for f in selection.found)
+        names = ", ".join(selection.final.names)
         return Verdict(UNEXPLAINED, f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor")
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
 

@@ -9,8 +9,8 @@ from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.answer import GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.expansion import Expansion, expand_around, meet
-from winch_friction.discrepancy.holdout import lock_holdout
+from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
+from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
@@ -18,7 +18,7 @@ from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.seed_claim import try_seed, widened
 from winch_friction.discrepancy.standing import by_surfaces, not_one_law, standing
-from winch_friction.discrepancy.verdict import NOTHING
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -46,7 +46,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model, (given, split))
     options.told("searching")
-    search = search_runs(split, given, options, rng)
+    search = _searched(split, given, options, rng)
     seed = try_seed(search, rng)
     if seed.enough:
         search = search_runs(split, widened(given), options, rng)
@@ -71,6 +71,15 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         return tried(split, crane, options, own, rng)
 
     return replace(result, proposals=propose(trial, split.train, expand, evaluate, rng))
+
+
+def _searched(split: Split, given: Given, options: GapOptions, rng: np.random.Generator) -> Search:
+    """The search, and where it names nothing while the load seems to swing on its wire, another without the swing."""
+    search = search_runs(split, given, options, rng)
+    if search.verdict.kind != UNEXPLAINED or not swings(given):
+        return search
+    other = search_runs(split, as_rigid(given), options, rng)
+    return search if other.verdict.kind not in (MISSING, AMBIGUOUS) else replace(other, given=given)
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

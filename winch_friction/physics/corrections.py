@@ -117,10 +117,10 @@ def _curvature(columns: Columns, run: Run, c: Correction) -> Columns:
     return columns | {name: straight(columns[name], c.value) for name in affected(c, run.groups) if name in columns}
 
 
-def straight(logged: Any, per_pascal: float) -> Any:
+def straight(logged: Any, per_unit: float) -> Any:
     """The true x of logged = x (1 + e x): the root near the logged value, without a division by a small e. Far below
     zero, where no pressure is, the root would end; there it is held."""
-    return 2.0 * logged / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * per_pascal * logged, 0.0)))
+    return 2.0 * logged / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * per_unit * logged, 0.0)))
 
 
 def _delay(columns: Columns, run: Run, c: Correction) -> Columns:

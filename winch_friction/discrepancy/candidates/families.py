@@ -51,7 +51,7 @@ def literature() -> list[Candidate]:
         wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
-        _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3)}, needs=OIL),
+        _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},

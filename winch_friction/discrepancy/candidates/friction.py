@@ -43,7 +43,7 @@ def shipped_friction() -> list[Candidate]:
         _of("low_displacement_loss"),
         _of("port_turbulence", {"n_t": (1.5, 2.0, 2.5)}),
         _of("notch_loss"),
-        _of("churning", {"n_ch": (1.9,)}),
+        _of("churning", {"n_ch": (1.5, 1.9, 2.5)}),
         _of("high_pressure_mixed"),
         _of("line_pressure_drop"),
         _of("case_pressure"),

@@ -27,12 +27,16 @@ from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correc
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR, CM3_PER_REV
 
-DELAYS = (0.05, 0.1)  # s
+DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
+NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
+DELAY = "signal_delay"
 OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
+LARGEST = "max_displacement"  # m^3/rad, of one motor
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
+FEWEST_STROKES = 3  # displacements a tenth of the largest apart: a zero and a bow, and one that could contradict
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
@@ -56,6 +60,10 @@ e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the 
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
 )
+D_b = Parameter(
+    "D_b", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV,
+    doc="bow of the displacement feedback at half stroke, between ends at which it is right",
+)  # fmt: skip
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
 
@@ -112,6 +120,14 @@ def _one_date(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return "runs of several days", "what creeps shows between runs that lie apart"
 
 
+def _few_strokes(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
+    driven = [float(np.median(g.displacement)) for run in runs for g in run.groups if g.balances]
+    if largest > 0.0 and len({round(each / largest, 1) for each in driven}) >= FEWEST_STROKES:
+        return None
+    return "more displacements", "a bow shows between three displacements that lie apart"
+
+
 def _offset(g: GroupSignals) -> FloatArray:
     return g.count * g.displacement
 
@@ -159,6 +175,22 @@ def _swivel(g: GroupSignals) -> FloatArray:
     return g.count * g.pressure
 
 
+def bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the feedback and its bow at half stroke, N m, shape (samples, 2)."""
+    largest = dict(run.constants)[LARGEST]
+
+    def bow(g: GroupSignals) -> FloatArray:
+        stroke = g.displacement / largest
+        return 4.0 * stroke * (1.0 - stroke) * _swivel(g)
+
+    return np.hstack([group_columns(_swivel, run, values), group_columns(bow, run, values)])
+
+
+def warm_bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """The same, and what the oil's warmth adds to the zero, N m, shape (samples, 3)."""
+    return np.column_stack([bowed_columns(run, values), warm_columns(_swivel, run, values)[:, 1]])
+
+
 def delay_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come
     early.
@@ -177,7 +209,7 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     if any("heave_velocity" in run.channels for run in runs):
         shapes.append(Shape("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-0.8, 0.8)))
     for step in DELAYS:
-        near, far = 0.6 * step / tau.typical, 1.6 * step / tau.typical
+        near, far = step / NEXT / tau.typical, NEXT * step / tau.typical
         late = {"ahead": step, "behind": 0.0, "late": SPEED}
         shapes.append(Shape(f"speed late, about {1e3 * step:g} ms", late, (near, far)))
         early = {"ahead": 0.0, "behind": step, "late": PRESSURES}
@@ -227,6 +259,19 @@ def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     return _to_scale(found, shape, sides) + _to_curved(found, shape, sides)
 
 
+def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    """Zero, gain and curvature: what is right at both ends of the stroke has a gain against its bow."""
+    groups, largest = _groups(shape, sides), sides.crane.max_displacement
+    corrections = [
+        correction("displacement_offset", found[D_0.name], groups=groups),
+        correction("displacement_scale", found[D_b.name], 4.0 / largest, groups=groups),
+        correction("displacement_curvature", found[D_b.name], -4.0 / largest**2, groups=groups),
+    ]
+    if D_T.name in found:
+        corrections.append(correction("displacement_thermal_zero", found[D_T.name], groups=groups))
+    return corrections
+
+
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     """A speed that comes late, or pressures that do, which is a speed that comes early."""
     if shape.values["late"] == SPEED:
@@ -255,7 +300,12 @@ def signal_candidates() -> list[Candidate]:
         _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), partial(warm_columns, _swivel),
                    group_shapes, _to(("displacement_offset", D_0), ("displacement_thermal_zero", D_T)),
                    law_name="thermal zero shift of the feedback", needs=OIL),
-        Candidate("signal_delay", r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
+        _in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x))", (D_0, D_b), bowed_columns, group_shapes, _to_bow,
+                   law_name="bows over the stroke", blind=_few_strokes),
+        _in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
+                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
+                   blind=_few_strokes),
+        Candidate(DELAY, r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
                   reversal_rival=True, blind=_too_slow, corrects=_to_delay),
     ]  # fmt: skip
 

@@ -32,8 +32,8 @@ class Explanation:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the effects."""
-        return tuple(slot.name for slot in self.slots)
+        """Names of the effects; one whose law is a mixture of two is one effect."""
+        return tuple(dict.fromkeys(slot.name for slot in self.slots))
 
 
 class CrossFit:

@@ -1,14 +1,14 @@
 """Which effects are missing: forward by held-out loss, checked as a set, each with the rivals that do as well."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.discrepancy.engine.rivals import rivals_of
+from winch_friction.discrepancy.engine.rivals import does_as_well, rivals_of
 from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -62,7 +62,13 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
-    return Selection(base, current, found, tuple(considered))
+    return Selection(base, current, _one_set_each(found), tuple(considered))
+
+
+def _one_set_each(found: Sequence[Finding]) -> tuple[Finding, ...]:
+    """The findings; what could stand for the second law of a cause is no other name for it."""
+    before = [{each.slot.name for each in found[:k]} for k in range(len(found))]
+    return tuple(replace(f, rivals=()) if f.slot.name in b else f for f, b in zip(found, before, strict=True))
 
 
 def _forward(
@@ -170,8 +176,30 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
 
 
 def _whole(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
-    """The set as it is answered: without what is superfluous, with what its members bring along."""
-    return _with_company(cross, _pruned(cross, current, rng))
+    """The set as it is answered: without what is superfluous, of as few causes as do it, with what its members bring
+    along."""
+    return _with_company(cross, _of_fewest_causes(cross, _pruned(cross, current, rng), rng))
+
+
+def _of_fewest_causes(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
+    """The set with another law of one of its causes in the place of a second name, where that does as well: a cause
+    whose law is a mixture of two known ones is one cause."""
+    for own in reversed(current.slots):
+        rest = tuple(slot for slot in current.slots if slot is not own)
+        laws = {(slot.name, slot.law) for slot in rest}
+        if own.plain or own.name in {slot.name for slot in rest} or any(own.name in slot.brings for slot in rest):
+            continue
+        without, others = cross.explain(rest), {slot.name for slot in cross.problem.slots} - {s.name for s in rest}
+        trials = [
+            cross.explain((*rest, slot))
+            for slot in fitted(cross, rest, others)
+            if not slot.free and (slot.name, slot.law) not in laws
+        ]
+        trials = [each for each in trials if does_as_well(each, current, without, rng)]
+        if trials:
+            best = min(trials, key=lambda each: each.loss)
+            current = cross.explain(tuple(best.slots[-1] if slot is own else slot for slot in current.slots))
+    return current
 
 
 def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:

@@ -97,10 +97,11 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:
-    """What else a gap may hold, in columns: friction by speed, and a delay of the speed or of the pressures."""
+    """What else a gap may hold, in columns: friction by speed, an inertia, and a delay of the speed or of the
+    pressures."""
     motion = balancing.motion
     shifts = np.gradient(rigid.predicted - load.heave_torque), np.gradient(rigid.predicted)
-    return np.column_stack([motion.speed, motion.direction * motion.speed**2, *shifts])
+    return np.column_stack([motion.speed, motion.direction * motion.speed**2, motion.acceleration, *shifts])
 
 
 def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:

@@ -122,6 +122,10 @@ _DECLARED = (
     _signal(
         "displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback", "displacement"
     ),
+    _signal(
+        "displacement_curvature", Action.CURVATURE, "rad/m^3", 100.0, 1e4,
+        "gain error of the displacement feedback per displacement", "displacement",
+    ),
     _signal("signal_delay", Action.DELAY, "s", 0.05, 0.5, "how late the speed is logged", *_SPEED, live=False),
     _signal(
         "pressure_delay", Action.DELAY, "s", 0.05, 0.5, "how late the pressures (or the motor torque) are logged",

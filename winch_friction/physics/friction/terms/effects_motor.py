@@ -16,7 +16,7 @@ c_ld = Parameter("c_ld", "m^3/rad", 1.0e-6, upper=1e-4, doc="loss per pressure a
 K_n = Parameter("K_n", "N*m", 14.0, lower=-100.0, upper=1e3, doc="port loss at 2000 rpm and full displacement")
 n_t = Parameter("n_t", "1", 2.0, lower=1.0, upper=3.5, shape=True, doc="exponent of the port flow")
 T_ch = Parameter("T_ch", "N*m", 2.5, upper=100.0, doc="churning loss at 2000 rpm")
-n_ch = Parameter("n_ch", "1", 1.9, lower=1.5, upper=2.5, shape=True, doc="exponent of churning")
+n_ch = Parameter("n_ch", "1", 1.9, lower=1.2, upper=3.5, shape=True, doc="exponent of churning")
 c_nk = Parameter("c_nk", "m^2", 1.0e-6, upper=1e-3, doc="port plate notch loss at full displacement")
 c_case = Parameter("c_case", "m^3/rad", 5.0e-7, lower=-1e-4, upper=1e-4, doc="loss per sum of both port pressures")
 R_line = Parameter("R_line", "Pa*s^2/m^6", 3.0e8, upper=1e11, doc="turbulent resistance between transducer and motor")

@@ -20,7 +20,7 @@ K_pp = Parameter("K_pp", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and 
 n_pp = Parameter("n_pp", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
 m_pp = Parameter("m_pp", "1", 2.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
 T_cv = Parameter("T_cv", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm and 40 degC")
-n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.0, shape=True, doc="exponent of the speed")
+n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.5, shape=True, doc="exponent of the speed")
 K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
 n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")

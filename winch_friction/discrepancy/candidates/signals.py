@@ -262,10 +262,12 @@ def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
 def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     """Zero, gain and curvature: what is right at both ends of the stroke has a gain against its bow."""
     groups, largest = _groups(shape, sides), sides.crane.max_displacement
+    gain = 4.0 / largest  # the curvature bends what the gain has made of the true value
+    curvature = -gain / largest / (1.0 + gain * found[D_b.name].value) ** 2
     corrections = [
         correction("displacement_offset", found[D_0.name], groups=groups),
-        correction("displacement_scale", found[D_b.name], 4.0 / largest, groups=groups),
-        correction("displacement_curvature", found[D_b.name], -4.0 / largest**2, groups=groups),
+        correction("displacement_scale", found[D_b.name], gain, groups=groups),
+        correction("displacement_curvature", found[D_b.name], curvature, groups=groups),
     ]
     if D_T.name in found:
         corrections.append(correction("displacement_thermal_zero", found[D_T.name], groups=groups))

@@ -1,0 +1,87 @@
+"""Causes that no single line of the catalogue says: a mixture of two laws, a long delay, an inertia behind a swing."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from gap_rig import gap_of, names_of, runs_with
+
+from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, bowed_columns, signal_candidates
+from winch_friction.discrepancy.delays import without_delay
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.expansion import as_rigid, meet, swings
+from winch_friction.physics.corrections import corrected
+from winch_friction.physics.friction.correction import Correction
+
+
+def test_a_mixture_of_two_laws_of_a_cause_is_one_name():
+    found = gap_of(910, "quiet", ("layer_radius:one_layer", 1.0), ("layer_radius:rope_sinks_in", 0.7))
+    assert [each.name for each in found.effects] == ["layer_radius"]
+    assert found.effects[0].rivals == ()
+    assert found.holdout.size_after.value < 0.05 * found.holdout.size_before.value
+    assert len(found.effects[0].parameters) > 1  # the step of the layers, and what the load does
+
+
+def test_a_long_delay_is_taken_out_of_the_runs():
+    found = gap_of(911, "elastic_still", ("signal_delay:longer", 1.3))
+    assert names_of(found) == [{"signal_delay"}]
+    assert found.holdout.size_after.value < 0.1 * found.holdout.size_before.value
+    assert found.model.corrections[0].value == pytest.approx(0.117, abs=0.01)
+
+
+def test_a_suspected_delays_column_is_what_the_runs_are_without_it(crane_150t, crane2_model):
+    given = meet(runs_with(912, "quiet", ("signal_delay", 1.0), length=0.3), crane_150t, crane2_model)
+    own = next(each for each in signal_candidates() if each.name == DELAY)
+    late = next(each for each in own.shapes(given.prepared) if each.label == "speed late, about 100 ms")
+    suspect = Slot(DELAY, late.label, (0,), origin=(own, late))
+    other = SimpleNamespace(slots=())
+    (exact,) = without_delay(given, [own], [suspect], None, other)
+    shape = next(each for each in exact.shapes(given.prepared) if each.values.get("delay") == pytest.approx(0.1))
+    assert shape.values["late"] == SPEED
+    model = replace(given.model, corrections=(Correction("signal_delay", 0.1),))
+    after = meet(given.runs, given.crane, model).prepared
+    for old, new in zip(given.prepared, after, strict=True):
+        gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
+        np.testing.assert_allclose(0.1 * exact.columns(old, shape.values)[:, 0], old.gap - gap, atol=1e-9)
+    # a small one is left to its first derivative
+    small = own.shapes(given.prepared)[0]
+    assert without_delay(given, [own], [Slot(DELAY, small.label, (0,), origin=(own, small))], None, other) == [own]
+
+
+def test_an_inertia_that_is_wrong_does_not_hide_the_swing_of_the_load(crane_150t, crane2_model):
+    runs = runs_with(913, "elastic_still", ("inertia_error", 6.0), length=0.4)
+    given = meet(runs, crane_150t, crane2_model)
+    assert swings(given)
+    rigid = as_rigid(given)
+    assert not swings(rigid)
+    assert [run.name for run in rigid.prepared] == [run.name for run in given.prepared]
+
+
+def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, crane2_model):
+    largest, bow = crane_150t.max_displacement, 0.004 * crane_150t.max_displacement
+    run = runs_with(914, "quiet", length=0.3)[0]
+    true = np.linspace(0.0, largest, len(run))
+    x = true / largest
+    logged = replace(run, columns={**run.columns, "main.displacement": true + 4.0 * bow * x * (1.0 - x)})
+    own = next(each for each in signal_candidates() if each.law_name == "bows over the stroke")
+    zero, bent = (
+        bowed_columns(
+            SimpleNamespace(
+                constants=(("max_displacement", largest),),
+                groups=[SimpleNamespace(count=3, displacement=true, pressure=np.full(len(run), 1e7), balances=True)],
+                time=run.time,
+            ),
+            {"groups": 0.0},
+        )
+    ).T
+    np.testing.assert_allclose(zero, 3e7)
+    np.testing.assert_allclose(bent[[0, -1]], 0.0, atol=1e-6)
+    estimates = {
+        p.name: SimpleNamespace(value=v, std=0.0, unit=p.unit) for p, v in zip(own.linear, (0.0, bow), strict=True)
+    }
+    shape = SimpleNamespace(values={"groups": 0.0})
+    sides = SimpleNamespace(crane=crane_150t, balancing=("main",), passive=())
+    corrections = tuple(own.corrects(estimates, shape, sides))
+    right, _ = corrected(logged, crane_150t, replace(crane2_model, corrections=corrections))
+    np.testing.assert_allclose(right.columns["main.displacement"], true, atol=1e-6 * bow)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
-from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, bowed_columns, signal_candidates
+from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
+from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
 from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.expansion import as_rigid, meet, swings
@@ -64,7 +65,7 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
     true = np.linspace(0.0, largest, len(run))
     x = true / largest
     logged = replace(run, columns={**run.columns, "main.displacement": true + 4.0 * bow * x * (1.0 - x)})
-    own = next(each for each in signal_candidates() if each.law_name == "bows over the stroke")
+    own = next(each for each in feedback_candidates() if each.law_name == "bows over the stroke")
     zero, bent = (
         bowed_columns(
             SimpleNamespace(

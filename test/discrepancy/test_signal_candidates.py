@@ -8,9 +8,9 @@ import pytest
 
 from winch_friction.discrepancy.candidates.candidate import machine_sizes
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.candidates.feedback import _swivel
 from winch_friction.discrepancy.candidates.signals import (
     ALL,
-    _swivel,
     bent_columns,
     creeping_columns,
     curved_columns,

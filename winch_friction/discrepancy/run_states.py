@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values
+from winch_friction.discrepancy.candidates.feedback import feedback_candidates
 from winch_friction.discrepancy.candidates.friction import COULOMB, shipped_friction, term_columns
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates
 from winch_friction.discrepancy.candidates.signals import signal_candidates
@@ -58,7 +59,7 @@ def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candid
     """Candidates for what these runs show in two levels and nothing that was logged tells apart."""
     if len(runs) < LIMITS.fewest_levels:
         return []
-    every = [*shipped_friction(), *signal_candidates(), *geometry_candidates()]
+    every = [*shipped_friction(), *signal_candidates(), *feedback_candidates(), *geometry_candidates()]
     known = [each for each in every if each.name in (BRAKE, *SIGNALS) and not each.law_name]
     known = [each for each in known if each.untestable(runs) is None]
     known = [each for each in known if not each.presumes or set(each.presumes) & set(model.term_names)]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, NOWHERE, Candidate, Untestable
 from winch_friction.discrepancy.candidates.families import free_members, literature
+from winch_friction.discrepancy.candidates.feedback import feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
 from winch_friction.discrepancy.candidates.gas import gas_candidates
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates
@@ -35,7 +36,14 @@ DETECTED = (
 
 def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
     """Every candidate, with those that a user's file registers as terms; a clash of names raises `InputError`."""
-    found = [*DETECTED, *shipped_friction(), *signal_candidates(), *gas_candidates(), *geometry_candidates()]
+    found = [
+        *DETECTED,
+        *shipped_friction(),
+        *signal_candidates(),
+        *feedback_candidates(),
+        *gas_candidates(),
+        *geometry_candidates(),
+    ]
     if effects_file is not None:
         found += [replace(friction_candidate(term), own_size=True) for term in load_file(Path(effects_file))]
     found += literature()

@@ -25,7 +25,7 @@ from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, Pr
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter
-from winch_friction.physics.units import BAR, CM3_PER_REV
+from winch_friction.physics.units import BAR
 
 DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
@@ -34,9 +34,7 @@ OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
-LARGEST = "max_displacement"  # m^3/rad, of one motor
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
-FEWEST_STROKES = 3  # displacements a tenth of the largest apart: a zero and a bow, and one that could contradict
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
@@ -48,22 +46,11 @@ p_T = Parameter(
 )
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
 p_d = Parameter("p_d", "Pa", 3.0 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="how far the zero creeps over the runs")
-D_T = Parameter(
-    "D_T", "m^3/rad/K", 0.1 * CM3_PER_REV, lower=-2.0 * CM3_PER_REV, upper=2.0 * CM3_PER_REV,
-    doc="thermal zero shift of the displacement feedback",
-)  # fmt: skip
 c_p = Parameter(
     "c_p", "1/Pa", 0.01 / (200 * BAR), lower=-0.1 / (200 * BAR), upper=0.1 / (200 * BAR),
     doc="gain error of the transducers per pressure",
 )  # fmt: skip
 e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
-D_0 = Parameter(
-    "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
-)
-D_b = Parameter(
-    "D_b", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV,
-    doc="bow of the displacement feedback at half stroke, between ends at which it is right",
-)  # fmt: skip
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
 
@@ -120,14 +107,6 @@ def _one_date(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return "runs of several days", "what creeps shows between runs that lie apart"
 
 
-def _few_strokes(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
-    driven = [float(np.median(g.displacement)) for run in runs for g in run.groups if g.balances]
-    if largest > 0.0 and len({round(each / largest, 1) for each in driven}) >= FEWEST_STROKES:
-        return None
-    return "more displacements", "a bow shows between three displacements that lie apart"
-
-
 def _offset(g: GroupSignals) -> FloatArray:
     return g.count * g.displacement
 
@@ -171,26 +150,6 @@ def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     ]
 
 
-def _swivel(g: GroupSignals) -> FloatArray:
-    return g.count * g.pressure
-
-
-def bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Zero error of the feedback and its bow at half stroke, N m, shape (samples, 2)."""
-    largest = dict(run.constants)[LARGEST]
-
-    def bow(g: GroupSignals) -> FloatArray:
-        stroke = g.displacement / largest
-        return 4.0 * stroke * (1.0 - stroke) * _swivel(g)
-
-    return np.hstack([group_columns(_swivel, run, values), group_columns(bow, run, values)])
-
-
-def warm_bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """The same, and what the oil's warmth adds to the zero, N m, shape (samples, 3)."""
-    return np.column_stack([bowed_columns(run, values), warm_columns(_swivel, run, values)[:, 1]])
-
-
 def delay_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Change of the predicted drive torque per second of delay, N m/s: a speed that comes late makes pressures come
     early.
@@ -223,22 +182,22 @@ def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is less than one sample; log at 20 Hz or more"
 
 
-def _groups(shape: Shape, sides: Sides) -> tuple[str, ...]:
+def groups_of(shape: Shape, sides: Sides) -> tuple[str, ...]:
     """Names of the motor groups that a shape speaks of; none stands for all."""
     return {ALL: (), BALANCING: sides.balancing, OTHER: sides.passive}[shape.values["groups"]]
 
 
-def _to(*found_as: tuple[str, Parameter]) -> Corrects:
+def to(*found_as: tuple[str, Parameter]) -> Corrects:
     """To one correction for each estimate: its name, and the parameter."""
 
     def corrects(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-        return [correction(name, found[p.name], groups=_groups(shape, sides)) for name, p in found_as]
+        return [correction(name, found[p.name], groups=groups_of(shape, sides)) for name, p in found_as]
 
     return corrects
 
 
 def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    groups, during = _groups(shape, sides), ((shape.values["from"], shape.values["to"]),)
+    groups, during = groups_of(shape, sides), ((shape.values["from"], shape.values["to"]),)
     return [
         correction("pressure_offset", found[p_0.name], groups=groups),
         correction("pressure_creep", found[p_d.name], groups=groups, during=during),
@@ -247,31 +206,16 @@ def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
 
 def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_scale_a" if shape.values["port_a"] else "pressure_scale"
-    return [correction(name, found[e_p.name], groups=_groups(shape, sides))]
+    return [correction(name, found[e_p.name], groups=groups_of(shape, sides))]
 
 
 def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_curvature_a" if shape.values["port_a"] else "pressure_curvature"
-    return [correction(name, found[c_p.name], groups=_groups(shape, sides))]
+    return [correction(name, found[c_p.name], groups=groups_of(shape, sides))]
 
 
 def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     return _to_scale(found, shape, sides) + _to_curved(found, shape, sides)
-
-
-def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    """Zero, gain and curvature: what is right at both ends of the stroke has a gain against its bow."""
-    groups, largest = _groups(shape, sides), sides.crane.max_displacement
-    gain = 4.0 / largest  # the curvature bends what the gain has made of the true value
-    curvature = -gain / largest / (1.0 + gain * found[D_b.name].value) ** 2
-    corrections = [
-        correction("displacement_offset", found[D_0.name], groups=groups),
-        correction("displacement_scale", found[D_b.name], gain, groups=groups),
-        correction("displacement_curvature", found[D_b.name], curvature, groups=groups),
-    ]
-    if D_T.name in found:
-        corrections.append(correction("displacement_thermal_zero", found[D_T.name], groups=groups))
-    return corrections
 
 
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
@@ -282,37 +226,27 @@ def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
 
 
 def signal_candidates() -> list[Candidate]:
-    """Offset, gain, delay, displacement feedback, and the passive side's gas."""
-    offset, swivel = r"\sum_g n_g D_g\,", r"\sum_g n_g\,\Delta p_g\,"
+    """Offset, gain and delay; the feedback of the displacement stands in a file of its own."""
+    offset = r"\sum_g n_g D_g\,"
     return [
-        _in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
-                   _to(("pressure_offset", p_0))),
-        _in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
-                   group_shapes, _to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
+        in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
+                   to(("pressure_offset", p_0))),
+        in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
+                   group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
                    law_name="thermal zero shift", needs=OIL),
-        _in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
+        in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                    _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
-        _in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
-        _in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
+        in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
+        in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
                    law_name="grows with the pressure"),
-        _in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
+        in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
                    _scale_shapes, _to_bent, law_name="bends with the pressure"),
-        _in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
-                   _to(("displacement_offset", D_0))),
-        _in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), partial(warm_columns, _swivel),
-                   group_shapes, _to(("displacement_offset", D_0), ("displacement_thermal_zero", D_T)),
-                   law_name="thermal zero shift of the feedback", needs=OIL),
-        _in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x))", (D_0, D_b), bowed_columns, group_shapes, _to_bow,
-                   law_name="bows over the stroke", blind=_few_strokes),
-        _in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
-                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
-                   blind=_few_strokes),
         Candidate(DELAY, r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
                   reversal_rival=True, blind=_too_slow, corrects=_to_delay),
     ]  # fmt: skip
 
 
-def _in_groups(
+def in_groups(
     name: str, law: str, linear: tuple[Parameter, ...], columns: Columns, shapes: Shapes, to: Corrects, **more: Any
 ) -> Candidate:
     return Candidate(name, law, linear, columns, shapes, kind="signal", hydraulic=True, corrects=to, **more)

@@ -159,3 +159,21 @@ def test_a_slew_limit_that_is_too_low_for_what_is_published_is_refused_in_one_li
 def test_an_input_that_turns_with_the_waves_cannot_be_declared_fresh_for_long(ages: dict) -> None:
     with pytest.raises(InputError, match=r"max_age.* 0\.5"):
         CompensatorConfig(**ages)
+
+
+def test_slow_stamps_do_not_hold_up_what_pushes_against_the_motion_where_a_reversal_is_spread() -> None:
+    """Its 0.2 s were counted by stamps that went at 0.3 of the clock's pace: 0.5 s against the motion."""
+    fed = Fed()
+    fed.run(REVERSAL - 0.6 - fed.now)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, reversal_time=1.0))
+    began, longest = math.nan, 0.0
+    for _ in range(80):
+        fed.shift -= 0.7 * PERIOD
+        late = fed.now > REVERSAL - 0.3
+        fed.run(PERIOD, skip=("winch/reference", "winch/active/pressure_a") if late else ())
+        speed = swell(fed.now).motor_speed
+        opposed = fed.torque * speed < 0.0 and abs(fed.torque) > 5.0 and abs(speed) > 5.0
+        began = math.nan if not opposed else fed.now if math.isnan(began) else began
+        longest = max(longest, fed.now - began if opposed else 0.0)
+    assert longest <= 0.3
+    check_invariants(fed)

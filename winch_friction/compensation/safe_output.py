@@ -184,6 +184,8 @@ class SafeOutput:
         self._pushing = max(self._pushing, abs(self.torque)) if self._opposed(self.torque) else 0.0
         passed = min(self._dt, self._gap)  # by the stamps as well: they go out with the torque
         let_go = self._pushing if carried else max(self._pushing, self._size)
+        if passed > 0.0:  # in time by the clock, however slowly the stamps go
+            let_go *= max(1.0, self._passed / passed)
         self.torque = self.limits.slewed(wanted, self.torque, passed, self._fast(let_go)) + 0.0  # never -0.0
         self.sequence += 1
         self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()

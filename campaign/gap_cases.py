@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from campaign.rig import CATALOGUE, DRAWN, FLAVOURS, LAWS, OUTSIDE, suitable_flavours
+from campaign.rig import CATALOGUE, DRAWN, DRAWN_LAW, FLAVOURS, LAWS, OUTSIDE, suitable_flavours
 
 FAR = (2.0, 3.0)  # sigma
 # structurally the same trace (docs/physics.md §3), so not a pair of two
@@ -17,7 +17,8 @@ _TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"},
 class Case:
     """One data set to be diagnosed."""
 
-    kind: str  # null, single, pair, outside; over drawn cranes: drawn_null, law, held_out, far_seed, drawn_outside
+    # null, single, pair, outside; over drawn cranes: drawn_null, law, held_out, drawn_law, far_seed, drawn_outside
+    kind: str
     effects: tuple[tuple[str, float], ...]
     flavour: str
     seed: int
@@ -46,12 +47,13 @@ class Counts:
     far_seeds: int = 40  # nulls whose seed model is 2 to 3 sigma off in every parameter
     law_seeds: int = 2  # of every law that the package has
     held_seeds: int = 3  # of every law that it has not
+    drawn_seeds: int = 5  # of a law per cause whose exponents are drawn as well
     drawn_outside: int = 5
 
 
 QUICK = Counts(
     nulls=2, seeds=1, small_seeds=0, tiny_seeds=0, pairs=1, pair_seeds=1, outside_seeds=0,
-    drawn_nulls=1, far_seeds=1, law_seeds=0, held_seeds=0, drawn_outside=0,
+    drawn_nulls=1, far_seeds=1, law_seeds=0, held_seeds=0, drawn_seeds=0, drawn_outside=0,
 )  # fmt: skip
 
 
@@ -78,6 +80,7 @@ def _drawn(counts: Counts, seeds: Iterator[int]) -> list[Case]:
         for law in laws:
             effects = ((f"{cause}:{law.name}", 1.0),)
             kind, count = ("held_out", counts.held_seeds) if law.held_out else ("law", counts.law_seeds)
+            kind, count = ("drawn_law", counts.drawn_seeds) if law.name == DRAWN_LAW else (kind, count)
             cases += [Case(kind, effects, DRAWN, next(seeds)) for _ in range(count)]
     for effect in OUTSIDE:
         cases += [Case("drawn_outside", ((effect, 1.0),), DRAWN, next(seeds)) for _ in range(counts.drawn_outside)]

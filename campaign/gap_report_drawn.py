@@ -18,13 +18,15 @@ def drawn_worlds(good: Sequence[Row], share: Share) -> str:
     for row in rows:
         kinds[row["kind"]].append(row)
     laws, held, outside = kinds["law"], kinds["held_out"], kinds["drawn_outside"]
+    exponents = kinds["drawn_law"]
     proposed = [row for row in outside if row["proposed"]]
     closed = [row["closed"] for row in proposed]
     lines = [
         "## Over drawn cranes",
         "",
         "Gear, drum, rope, motors, groups, seed model, test plan, sensors, noise and rate (10 to 200 Hz) are drawn per",
-        "data set. A held-out law is one of which the package has no member (a test enforces it).",
+        "data set. A held-out law is one of which the package has no member (a test enforces it); of every cause one",
+        "more law has exponents, thresholds and companions drawn per data set (`cause:drawn`).",
         "",
         "| what | bar | measured |",
         "|---|---|---|",
@@ -36,13 +38,16 @@ def drawn_worlds(good: Sequence[Row], share: Share) -> str:
         f"| held-out laws: detected | ≥ 90 % | {share(held, 'detected')} |",
         f"| held-out laws: right or in a set of at most 3 | ≥ 85 % | {share(held, 'right')} |",
         f"| held-out laws: wrong single name | ≤ 2 % | {share(held, 'wrong_single')} |",
+        f"| laws with drawn exponents: detected | ≥ 90 % | {share(exponents, 'detected')} |",
+        f"| laws with drawn exponents: right or in a set of at most 3 | ≥ 85 % | {share(exponents, 'right')} |",
+        f"| laws with drawn exponents: wrong single name | ≤ 2 % | {share(exponents, 'wrong_single')} |",
         f"| outside effects: named | ≤ 5 % | {share(outside, 'named')} |",
         f"| outside effects: a proposal | ≥ 70 % | {share(outside, 'proposed')} |",
         f"| of these, the first on the right signals | ≥ 80 % | {share(proposed, 'proposed_right')} |",
         f"| of these, share of the locked gap closed, median | ≥ 80 % | {_percent(closed)} |",
         "",
     ]
-    return "\n".join([*lines, *_every_law(laws, held), "", *_every_outside(outside)])
+    return "\n".join([*lines, *_every_law([*laws, *exponents], held), "", *_every_outside(outside)])
 
 
 def _percent(values: Sequence[float]) -> str:

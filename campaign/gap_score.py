@@ -6,7 +6,7 @@ from campaign.gap_cases import Case
 from campaign.rig import OUTSIDE_SIGNAL, cause_of
 
 LARGEST_SET = 3
-ONE_CAUSE = ("single", "law", "held_out")
+ONE_CAUSE = ("single", "law", "held_out", "drawn_law")
 # a law of a cause that the package has another name for: a gain of the displacement's feedback is no offset
 OWN_NAME = {"swivel_offset:gain": "displacement_scale"}
 

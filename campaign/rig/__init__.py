@@ -7,10 +7,10 @@ from campaign.rig.dataset import DRAWN, make_dataset, suitable_flavours, world_o
 from campaign.rig.effects import CATALOGUE, OUTSIDE, OUTSIDE_SIGNAL
 from campaign.rig.files import write_csv
 from campaign.rig.flavour import FLAVOURS
-from campaign.rig.laws import LAWS, cause_of
+from campaign.rig.laws import DRAWN_LAW, LAWS, cause_of
 from campaign.rig.package_files import write_world
 
 __all__ = [
-    "CATALOGUE", "DRAWN", "FLAVOURS", "LAWS", "OUTSIDE", "OUTSIDE_SIGNAL", "cause_of", "make_dataset",
+    "CATALOGUE", "DRAWN", "DRAWN_LAW", "FLAVOURS", "LAWS", "OUTSIDE", "OUTSIDE_SIGNAL", "cause_of", "make_dataset",
     "suitable_flavours", "world_of", "write_csv", "write_world",
 ]  # fmt: skip

@@ -115,6 +115,7 @@ def make_dataset(
     own = np.random.default_rng([seed, 7, 7])
     hidden = Hidden(**strengths(list(effects), own, truth, world))
     hangs = own.permutation(12) < round(12 * min(hidden.brake_every, hidden.delay_every))
+    hangs = hangs * (own.uniform(0.0, 2.0, 12) if hidden.brake_spread > 0.0 else 1.0)
     return [
         _run(plan, style, world, truth, hidden, length, float(hangs[k]), rng)
         for k, plan in enumerate(_plans(style, rng))
@@ -246,6 +247,7 @@ def _swash(
     noise = rng.normal(0, 0.15, size) * CM3_PER_REV * world.motor_size
     x = true / world.max_displacement
     bow = 4.0 * hidden.swivel_mid * x * (1.0 - x)
+    bow += hidden.swivel_s * np.sin(2.0 * np.pi * x)
     return true * (1.0 + hidden.swivel_gain) + hidden.swivel + bow + play + noise
 
 

@@ -78,7 +78,7 @@ class Hidden(NamedTuple):
     ripple_still: float = 0.0  # N m, amplitude whatever the load
     brake: float = 0.0  # N m per motor
     brake_every: float = 1.0  # share of the runs in which it hangs
-    brake_fade: float = 0.0  # s after which it has let go, 0: never
+    brake_spread: float = 0.0  # 1: every run has another share of it, between nothing and twice
     tare: float = 0.0  # kg that the load signal does not contain
     tare_wire: float = 0.0  # share of the wire's weight that the load signal does not contain
     tare_beyond: float = 0.0  # m of wire from which on it counts
@@ -100,6 +100,7 @@ class Hidden(NamedTuple):
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative
     swivel_mid: float = 0.0  # m^3/rad at half stroke, nothing at its ends
+    swivel_s: float = 0.0  # m^3/rad at a quarter of the stroke, the opposite at three quarters, nothing at its ends
     swivel_warm: float = 0.0  # m^3/rad per 15 K above 40 degC
     swivel_play: float = 0.0  # m^3/rad, to the side on which the run's adjustment ended
     # outside any catalogue

@@ -13,6 +13,7 @@ from campaign.rig.effects import CATALOGUE, OUTSIDE, Strengths
 from campaign.rig.truth import BAR, CM3_PER_REV, MAX_DISPLACEMENT, RPM, Friction
 
 Draw = Callable[[float, np.random.Generator, Friction], Strengths]
+DRAWN_LAW = "drawn"  # of every cause the law whose exponents are drawn
 GAUSS, LORENTZ, SLOW, RAMP = 1.0, 2.0, 3.0, 4.0  # stribeck_shape
 VOGEL, REYNOLDS, ANDRADE = 1.0, 2.0, 3.0  # oil_law
 
@@ -183,7 +184,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     "swivel_offset": (
         Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV)),
         Law("warm_electronics", _set(swivel_warm=1.5 * CM3_PER_REV)),
-        Law("mid_stroke", _set(swivel_mid=2.5 * CM3_PER_REV), held_out=True),
+        Law("mid_stroke", _set(swivel_mid=2.5 * CM3_PER_REV)),
+        Law("s_shaped", _set(swivel_s=2.5 * CM3_PER_REV), held_out=True),
     ),
     "entrained_air": (
         Law("more", _set(air=0.02)), Law("little", _set(air=0.005), held_out=True),
@@ -194,7 +196,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "brake_drag": (
         Law("some_runs", lambda s, rng, f: {"brake": 6.0 * s, "brake_every": 0.5}),
-        Law("lets_go_slowly", lambda s, rng, f: {"brake": 9.0 * s, "brake_fade": rng.uniform(25, 60)}, held_out=True),
+        # one that lets go slowly is a friction that fades as the winch warms up: campaign.rig.effects, OUTSIDE
+        Law("differs_by_run", _set(brake=6.0, brake_spread=1.0), held_out=True),
     ),
     "tare_load": (
         Law("rope_paid_out", _set(tare_wire=0.4)), Law("hook_and_rope", _set(tare=1500.0, tare_wire=0.25)),
@@ -267,15 +270,12 @@ DRAWN_LAWS: dict[str, Draw] = {
     ),
     "entrained_air": _uniform(air=(0.003, 0.03)),
     "torque_ripple": lambda s, rng, f: _wave(float(rng.integers(0, 3)), bool(rng.random() < 0.5))(s, rng, f),
-    "brake_drag": lambda s, rng, f: {
-        "brake": s * rng.uniform(4, 9), "brake_every": rng.uniform(0.35, 1.0),
-        "brake_fade": rng.uniform(25, 120) * (rng.random() < 0.3),
-    },
+    "brake_drag": lambda s, rng, f: {"brake": s * rng.uniform(4, 9), "brake_every": rng.uniform(0.35, 1.0)},
     "tare_load": _uniform(tare=(-800.0, 2500.0), tare_wire=(0.0, 0.5)),
 }  # fmt: skip
 
 LAWS: dict[str, tuple[Law, ...]] = {
-    cause: (Law("catalogue", draw), *OTHER.get(cause, ()), Law("drawn", DRAWN_LAWS[cause]))
+    cause: (Law("catalogue", draw), *OTHER.get(cause, ()), Law(DRAWN_LAW, DRAWN_LAWS[cause]))
     for cause, draw in CATALOGUE.items()
 }
 

@@ -81,8 +81,7 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
                 f, h, r, w, abs(dp_passive), r.boost, gas + r.boost, r.passive_displacement, visc, drift
             )
         loss += n_total * system_loss(f, h, w, drum_torque, visc, thick) + (h.load_loss + h.sheave) * static
-        hanging = h.brake * r.brake_hangs
-        loss += n_total * (hanging if h.brake_fade == 0.0 else hanging * exp(-t / h.brake_fade))
+        loss += n_total * h.brake * r.brake_hangs
         extra = extra_loss(h, w, speed, share)
         loss += 0.0 if h.winch_signed != 0.0 else extra
         x = r.drive_displacement / r.max_displacement

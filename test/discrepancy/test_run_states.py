@@ -80,14 +80,20 @@ def test_two_clear_levels_are_told_and_one_is_not():
 
 
 def test_what_a_logged_signal_tells_is_no_state():
-    def run(load, mode=("main",)):
+    def run(load, mode=("main",), swash=2e-5):
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
-        return SimpleNamespace(channels=channels, used=np.ones(5, bool), mode=mode)
+        group = SimpleNamespace(balances=True, displacement=np.full(5, swash), pressure=np.zeros(5))
+        return SimpleNamespace(channels=channels, used=np.ones(5, bool), mode=mode, groups=[group])
 
     there = np.array([True, True, False, False, False])
     assert told_by_a_signal([run(60e3), run(55e3), run(20e3), run(25e3), run(30e3)], there)
     assert not told_by_a_signal([run(60e3), run(20e3), run(20e3), run(25e3), run(70e3)], there)
     two, one = ("active", "passive"), ("main",)
+    # the drive's group has another name in heave compensation: its displacement tells all the same
+    full = [run(load, mode, swash) for load, mode, swash in zip(
+        (60e3, 20e3, 20e3, 25e3, 70e3), (two, one, one, two, one), (3e-5, 3.2e-5, 2e-5, 2.1e-5, 2e-5), strict=True
+    )]  # fmt: skip
+    assert told_by_a_signal(full, there)
     same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
     assert told_by_a_signal(same, there)
 

@@ -80,4 +80,5 @@ def _shapes(candidate: Candidate, exact: Sequence[Shape], runs: Sequence[Prepare
 def _columns(
     candidate: Candidate, exact: Mapping[tuple[str, float], FloatArray], run: PreparedRun, values: Values
 ) -> FloatArray:
-    return exact[run.name, values["delay"]] if "delay" in values else candidate.columns(run, values)
+    own = exact.get((run.name, values.get("delay", 0.0)))
+    return candidate.columns(run, values) if own is None else own

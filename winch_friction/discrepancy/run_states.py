@@ -199,14 +199,23 @@ def two_levels(levels: FloatArray, deviations: FloatArray) -> np.ndarray | None:
     return there
 
 
+def _of_the_drive(run: PreparedRun) -> dict[str, FloatArray]:
+    """What the driving group does, whatever its name: it is another one in heave compensation."""
+    driving = [group for group in run.groups if group.balances]
+    return {"displacement": driving[0].displacement, "pressure": driving[0].pressure} if driving else {}
+
+
 def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
     """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
     may hang on it."""
-    names = set.intersection(*(set(run.channels) for run in runs)) - set(NO_SIGNAL)
+    known = [run.channels | _of_the_drive(run) for run in runs]
+    names = set.intersection(*map(set, known)) - set(NO_SIGNAL)
     if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
         return len({run.mode for run in runs}) > 1
     for name in names:
-        medians = np.array([np.median(run.channels[name][run.used]) if run.used.any() else np.nan for run in runs])
+        medians = np.array(
+            [np.median(own[name][run.used]) if run.used.any() else np.nan for run, own in zip(runs, known, strict=True)]
+        )
         yes, no = medians[there], medians[~there]
         if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
             return True

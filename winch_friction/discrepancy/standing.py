@@ -88,27 +88,28 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     slots = [slot for slot in search.explanation.slots if not slot.plain]
     left = excess(search.cross, search.explanation)
     asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
-    without = PICKING if len(slots) == 1 and at_the_floor(trial.holdout) else ()
-    law = best_law(search, split.train, rng, without) if asked else None
-    why = outdone(law, search.cross, search.selection)
+    closed = len(slots) == 1 and at_the_floor(trial.holdout)
+    law = best_law(search, split.train, rng, PICKING if closed else ()) if asked else None
+    why = outdone(law, search.cross, search.selection, closed)
     if not why:
         return trial
     refit = tried(split, crane, options, _nameless(search), rng)
     return replace(refit, search=_unexplained(refit.search, why, rng))
 
 
-def outdone(law: Scored | None, cross: CrossFit, selection: Selection) -> str:
+def outdone(law: Scored | None, cross: CrossFit, selection: Selection, closed: bool = False) -> str:
     """Why names do not stand beside a law of the grammar; empty where they do.
 
-    Several names, and a curve, fall where one law does as much; one name of a given law only where the other takes
-    half of what it leaves. A law that a name's own could be speaks for it.
+    Several names, and a curve, fall where one law does as much; one name of a given law, or one that has `closed` the
+    locked gap down to its floor, only where the other takes half of what it leaves. A law that a name's own could be
+    speaks for it.
     """
     named = selection.final
     slots = [slot for slot in named.slots if not slot.plain]
     if law is None or not slots:
         return ""
     given = len(slots) == 1 and not slots[0].free
-    share = LIMITS.outdone if given else 1.0
+    share = LIMITS.outdone if given or closed else 1.0
     if law.loss - cross.floor > share * (named.loss - cross.floor):
         return ""
     if len(slots) == 1:

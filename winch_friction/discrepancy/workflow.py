@@ -46,7 +46,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model, (given, split))
     options.told("searching")
-    search = _searched(split, given, options, rng)
+    search = search_runs(split, given, options, rng)
     seed = try_seed(search, rng)
     if seed.enough:
         search = search_runs(split, widened(given), options, rng)
@@ -55,6 +55,9 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if trial.search.verdict.kind != NOTHING and not options.candidates:
         options.told("drawing surfaces")
         trial = by_surfaces(split, crane, options, trial, rng)
+    if trial.search.verdict.kind == UNEXPLAINED and swings(given):
+        options.told("searching without a swing of the load")
+        trial = _without_swing(split, crane, given, options, trial, rng)
     options.told("planning")
     result = assemble(split, options, trial)
     result = replace(
@@ -73,13 +76,20 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     return replace(result, proposals=propose(trial, split.train, expand, evaluate, rng))
 
 
-def _searched(split: Split, given: Given, options: GapOptions, rng: np.random.Generator) -> Search:
-    """The search, and where it names nothing while the load seems to swing on its wire, another without the swing."""
-    search = search_runs(split, given, options, rng)
-    if search.verdict.kind != UNEXPLAINED or not swings(given):
-        return search
-    other = search_runs(split, as_rigid(given), options, rng)
-    return search if other.verdict.kind not in (MISSING, AMBIGUOUS) else replace(other, given=given)
+def _without_swing(
+    split: Split, crane: Crane, given: Given, options: GapOptions, trial: Trial, rng: np.random.Generator
+) -> Trial:
+    """What nothing explains, once more with a wire that does not give: a late signal rings like a load that swings.
+
+    The trial as it is unless names stand whose file leaves no swing in any run.
+    """
+    search = search_runs(split, as_rigid(given), options, rng)
+    if search.verdict.kind not in (MISSING, AMBIGUOUS):
+        return trial
+    search = replace(search, given=given)
+    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
+    return other if named and not swings(meet(split.runs, crane, other.repaired.model)) else trial
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

@@ -156,6 +156,7 @@ SURFACES = (
     Free("low_displacement_loss", (SWASH, PRESSURE), (), Scope.MOTOR, "falling rising", "high low"),
     Free("high_pressure_mixed", (PRESSURE, SPEED), (), Scope.MOTOR, "rising falling", "low none"),
     Free("notch_loss", (PRESSURE, SPEED), (SWASH,), Scope.MOTOR, "rising falling", "low high"),
+    Free("notch_loss", (PRESSURE, SPEED), (), Scope.MOTOR, "rising falling", "low high"),
     Free("port_turbulence", (SPEED, SWASH), (), Scope.MOTOR, "convex_rising rising", "low low"),
     Free("churning", (SPEED, "oil_temperature"), (), Scope.SYSTEM, "convex_rising falling", "low none", needs=OIL),
     Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="hoisting"),

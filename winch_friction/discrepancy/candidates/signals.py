@@ -247,7 +247,13 @@ def signal_candidates() -> list[Candidate]:
 
 
 def in_groups(
-    name: str, law: str, linear: tuple[Parameter, ...], columns: Columns, shapes: Shapes, corrects: Corrects, **more: Any
+    name: str,
+    law: str,
+    linear: tuple[Parameter, ...],
+    columns: Columns,
+    shapes: Shapes,
+    corrects: Corrects,
+    **more: Any,
 ) -> Candidate:
     """A candidate in the signals of motor groups."""
     return Candidate(name, law, linear, columns, shapes, kind="signal", hydraulic=True, corrects=corrects, **more)

@@ -208,7 +208,7 @@ def _of_the_drive(run: PreparedRun) -> dict[str, FloatArray]:
 def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
     """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
     may hang on it."""
-    known = [run.channels | _of_the_drive(run) for run in runs]
+    known = [{**run.channels, **_of_the_drive(run)} for run in runs]
     names = set.intersection(*map(set, known)) - set(NO_SIGNAL)
     if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
         return len({run.mode for run in runs}) > 1

@@ -11,7 +11,7 @@ from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedba
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
 from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.expansion import as_rigid, meet, swings
+from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
 
@@ -86,3 +86,13 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
     corrections = tuple(own.corrects(estimates, shape, sides))
     right, _ = corrected(logged, crane_150t, replace(crane2_model, corrections=corrections))
     np.testing.assert_allclose(right.columns["main.displacement"], true, atol=1e-6 * bow)
+
+
+def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at_odds():
+    def run(groups, ratio):
+        return SimpleNamespace(groups=[None] * groups, wire_mode=(8.0, ratio), load=np.full(3, 5e4), dt=0.05)
+
+    sea, cycles = [run(2, ratio) for ratio in (0.05, 0.07, 0.1, 0.4)], [run(1, 0.06) for _ in range(6)]
+    assert [each[1] for each in _agreed_modes(sea)] == [0.0] * 4
+    assert [each[1] for each in _agreed_modes([*sea, *cycles])] == pytest.approx([0.06] * 10)
+    assert [each[1] for each in _agreed_modes([*sea[:1], run(2, 0.0), run(2, 0.0), *cycles])] == [0.0] * 9

@@ -121,10 +121,14 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
     Heave compensation excites the mode throughout, so its runs decide where there are any; all share what damps it.
+    Where a sparse log leaves those at odds about that, the kicks of the other runs, which ring down, have a say.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     swinging = [(*run.wire_mode, _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
-    ratio = agreed_damping(swinging) if 2 * len(swinging) > max(3, len(compensating)) else None
+    ratio = None
+    if 2 * len(swinging) > max(3, len(compensating)):
+        every = [(*run.wire_mode, _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
+        ratio = agreed_damping(swinging) or agreed_damping(every)
     return [
         (run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0) for run in prepared
     ]

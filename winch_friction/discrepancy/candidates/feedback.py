@@ -85,13 +85,13 @@ def feedback_candidates() -> list[Candidate]:
     swivel = r"\sum_g n_g\,\Delta p_g\,"
     return [
         in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
-                   to(("displacement_offset", D_0))),
+                  to(("displacement_offset", D_0))),
         in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), partial(warm_columns, _swivel),
-                   group_shapes, to(("displacement_offset", D_0), ("displacement_thermal_zero", D_T)),
-                   law_name="thermal zero shift of the feedback", needs=OIL),
+                  group_shapes, to(("displacement_offset", D_0), ("displacement_thermal_zero", D_T)),
+                  law_name="thermal zero shift of the feedback", needs=OIL),
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x))", (D_0, D_b), bowed_columns, group_shapes, _to_bow,
-                   law_name="bows over the stroke", blind=_few_strokes),
+                  law_name="bows over the stroke", blind=_few_strokes),
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
-                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
-                   blind=_few_strokes),
+                  warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
+                  blind=_few_strokes),
     ]  # fmt: skip

@@ -230,17 +230,17 @@ def signal_candidates() -> list[Candidate]:
     offset = r"\sum_g n_g D_g\,"
     return [
         in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
-                   to(("pressure_offset", p_0))),
+                  to(("pressure_offset", p_0))),
         in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
-                   group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
-                   law_name="thermal zero shift", needs=OIL),
+                  group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
+                  law_name="thermal zero shift", needs=OIL),
         in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
-                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
+                  _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
         in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
-                   law_name="grows with the pressure"),
+                  law_name="grows with the pressure"),
         in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
-                   _scale_shapes, _to_bent, law_name="bends with the pressure"),
+                  _scale_shapes, _to_bent, law_name="bends with the pressure"),
         Candidate(DELAY, r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
                   reversal_rival=True, blind=_too_slow, corrects=_to_delay),
     ]  # fmt: skip

@@ -88,20 +88,24 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
         return 0.0, 0.0
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
-    swing = swinging_load(
-        rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
-        _other_causes(balancing, load, rigid),
-    )  # fmt: skip
+    causes, own = _other_causes(balancing, load, rigid), motion.acceleration[:, None]
+    moving = np.flatnonzero(motion.used)
+    # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
+    for beside in (causes, np.hstack([causes, own])):
+        swing = swinging_load(
+            rigid.gap, moving, load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses, beside
+        )
+        if swing.damping > 0.0:
+            break
     known = float(np.sqrt(stiffnesses[0] / mass)) if "wire_out" in columns else swing.frequency
     return known, swing.damping
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:
-    """What else a gap may hold, in columns: friction by speed, an inertia, and a delay of the speed or of the
-    pressures."""
+    """What else a gap may hold, in columns: friction by speed, and a delay of the speed or of the pressures."""
     motion = balancing.motion
     shifts = np.gradient(rigid.predicted - load.heave_torque), np.gradient(rigid.predicted)
-    return np.column_stack([motion.speed, motion.direction * motion.speed**2, motion.acceleration, *shifts])
+    return np.column_stack([motion.speed, motion.direction * motion.speed**2, *shifts])
 
 
 def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:

@@ -1,5 +1,6 @@
 """The declarations. Sizes are those of docs/discrepancy.md; each changes the physics where it arises."""
 
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.simulation.hidden.catalogue import DEGREE, MONTH, WEAR_EPOCH, Target, effect
 
@@ -136,7 +137,13 @@ def _air(t: Target, size: float) -> None:
 @effect("tare_load", "2 t: 0.8 t of hook and the wire's weight")
 def _tare(t: Target, size: float) -> None:
     t.plant["wire_mass"] = 24.5 * size
-    t.plant["mass"] += (800.0 + 24.5 * t.plant["wire_out"]) * size
+    more = (800.0 + 24.5 * float(t.plant["wire_out"])) * size
+    if float(t.plant["mass"]) + more <= 0.0:
+        raise InputError(
+            f"effect 'tare_load': size {size:g} takes {-more:.0f} kg from a load of {float(t.plant['mass']):.0f} kg; "
+            "take a smaller size or a larger load"
+        )
+    t.plant["mass"] += more
 
 
 # -- the sensors

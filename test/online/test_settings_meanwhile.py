@@ -1,6 +1,7 @@
 """Settings that change while the torque is on its way: it moves no faster than before or after, and gets to zero."""
 
 import math
+from dataclasses import dataclass
 
 import pytest
 from sea import PERIOD, Fed, check_invariants, swell
@@ -17,6 +18,20 @@ def sailing(until: float) -> Fed:
     fed.run(until - fed.now)
     assert abs(fed.torque) > 100.0
     return fed
+
+
+@dataclass
+class Against:
+    """How long the torque has pushed against the motion at a stretch, s."""
+
+    longest: float = 0.0
+    since: float = math.nan
+
+    def look(self, fed: Fed) -> None:
+        speed = swell(fed.now).motor_speed
+        opposed = fed.torque * speed < 0.0 and abs(fed.torque) > 5.0 and abs(speed) > 5.0
+        self.since = math.nan if not opposed else fed.now if math.isnan(self.since) else self.since
+        self.longest = max(self.longest, fed.now - self.since if opposed else 0.0)
 
 
 def test_another_slew_limit_in_the_middle_of_the_ramp_moves_it_no_faster_than_that() -> None:
@@ -80,14 +95,11 @@ def test_a_reversal_that_is_spread_further_does_not_hold_up_what_pushes_against_
     """The slew that such a reversal needs, 560 N m/s, was all that what is published got as well."""
     fed = sailing(REVERSAL - 0.1)
     fed.service.configure(CompensatorConfig(ramp_time=0.5, reversal_time=1.0))
-    longest, began = 0.0, math.nan
+    against = Against()
     for _ in range(60):
         fed.run(PERIOD)
-        speed = swell(fed.now).motor_speed
-        opposed = fed.torque * speed < 0.0 and abs(fed.torque) > 5.0 and abs(speed) > 5.0
-        began = math.nan if not opposed else fed.now if math.isnan(began) else began
-        longest = max(longest, fed.now - began if opposed else 0.0)
-    assert longest <= 0.35
+        against.look(fed)
+    assert against.longest <= 0.35
     check_invariants(fed)
 
 
@@ -166,14 +178,11 @@ def test_slow_stamps_do_not_hold_up_what_pushes_against_the_motion_where_a_rever
     fed = Fed()
     fed.run(REVERSAL - 0.6 - fed.now)
     fed.service.configure(CompensatorConfig(ramp_time=0.5, reversal_time=1.0))
-    began, longest = math.nan, 0.0
+    against = Against()
     for _ in range(80):
         fed.shift -= 0.7 * PERIOD
         late = fed.now > REVERSAL - 0.3
         fed.run(PERIOD, skip=("winch/reference", "winch/active/pressure_a") if late else ())
-        speed = swell(fed.now).motor_speed
-        opposed = fed.torque * speed < 0.0 and abs(fed.torque) > 5.0 and abs(speed) > 5.0
-        began = math.nan if not opposed else fed.now if math.isnan(began) else began
-        longest = max(longest, fed.now - began if opposed else 0.0)
-    assert longest <= 0.3
+        against.look(fed)
+    assert against.longest <= 0.3
     check_invariants(fed)

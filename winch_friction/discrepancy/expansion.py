@@ -76,12 +76,14 @@ def swings(given: Given) -> bool:
 
 def as_rigid(given: Given) -> Given:
     """The same runs with a wire that does not give: a late signal or an inertia that is wrong also rings."""
-    prepared = []
-    for run, old in zip(given.runs, given.prepared, strict=True):
+
+    def rigid(run: Run, old: PreparedRun) -> PreparedRun:
         load = given.loads.get(run.name, NAN)
         new = prepare(run, given.crane, given.model, load, mode=(old.wire_mode[0], 0.0), spikes=old.spikes)
-        prepared.append(replace(new, corrections=old.corrections) if old.wire_mode[1] > 0.0 else old)
-    return replace(given, prepared=tuple(prepared))
+        return replace(new, corrections=old.corrections)
+
+    pairs = zip(given.runs, given.prepared, strict=True)
+    return replace(given, prepared=tuple(rigid(run, old) if old.wire_mode[1] > 0.0 else old for run, old in pairs))
 
 
 def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple[tuple[Run, ...], Crane]:

@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.rivals import does_as_well, near
-from winch_friction.discrepancy.engine.selection import Finding, Selection, _significant, select
+from winch_friction.discrepancy.engine.selection import Finding, Selection, _one_set_each, _significant, select
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -384,6 +384,21 @@ def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
     scored = law and Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
     assert bool(outdone(scored, cross, Selection(named, named, found))) is falls
+
+
+@pytest.mark.parametrize(("share", "falls"), [(0.9, False), (0.4, True)])
+def test_a_curve_that_closes_the_locked_gap_falls_only_to_a_law_that_leaves_half(share, falls):
+    cross = crossfit(noise())
+    noise_alone = float(cross.problem.grams.count.sum())
+    named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(CURVE,))
+    scored = Scored(LAG, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
+    selection = Selection(named, named, (Finding(CURVE, (), 0.0, 0.1, 1.0),))
+    assert bool(outdone(scored, cross, selection, closed=True)) is falls
+
+
+def test_a_second_law_of_a_cause_brings_no_other_names():
+    first, second = (Finding(slot, (SLOTS[1],), 0.0, 0.1, 1.0) for slot in (SLOTS[0], replace(SLOTS[0], law="bent")))
+    assert [each.rivals for each in _one_set_each((first, second))] == [(SLOTS[1],), ()]
 
 
 def test_what_comes_near_is_looked_at_closer():

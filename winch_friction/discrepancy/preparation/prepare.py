@@ -88,15 +88,11 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
         return 0.0, 0.0
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
-    causes, own = _other_causes(balancing, load, rigid), motion.acceleration[:, None]
-    moving = np.flatnonzero(motion.used)
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
-    for beside in (causes, np.hstack([causes, own])):
-        swing = swinging_load(
-            rigid.gap, moving, load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses, beside
-        )
-        if swing.damping > 0.0:
-            break
+    swing = swinging_load(
+        rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
+        friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
+    )  # fmt: skip
     known = float(np.sqrt(stiffnesses[0] / mass)) if "wire_out" in columns else swing.frequency
     return known, swing.damping
 

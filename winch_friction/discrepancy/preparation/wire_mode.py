@@ -21,6 +21,7 @@ LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; 
 # where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
 SETTLED = 4.0  # decay times, down to 2 %
+NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
 MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
 
 
@@ -42,29 +43,39 @@ def swinging_load(
     lever: FloatArray,
     stiffnesses: Sequence[float],
     friction: FloatArray | None = None,
+    hiding: FloatArray | None = None,
 ) -> Swing:
     """The wire's mode that leaves least swinging in the gap.
 
     `gap` N m was made with the `rigid` acceleration m/s^2 of the load; `counts` marks the samples to judge by; `lever`
     m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft. `friction`, shape
     (samples, columns), is what a missing effect may look like: its steps at reversals must not count as swinging.
+    What is `hiding` a swing, columns as well, is beside it where nothing swings without.
     """
-    judge = _Judge(gap, counts, friction)
-    before = judge.variance(0.0)
 
-    def left(frequency: float, ratio: float) -> float:
-        return judge.variance(mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio))) / before
+    def change(frequency: float, ratio: float) -> FloatArray:
+        return mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio))
 
-    tried = [(*_best_ratio(partial(left, frequency)), frequency) for frequency in _frequencies(stiffnesses, mass, dt)]
+    besides = [each for each in (friction, hiding) if each is not None]
+    judge = _Judge(gap, counts, change, besides)
+    frequencies = tuple(_frequencies(stiffnesses, mass, dt))
+    for parts in range(min(len(besides), 1), len(besides) + 1):
+        frequency, ratio = _mode(partial(judge.left, parts), frequencies)
+        if ratio > 0.0:
+            return Swing(on_the_wire(rigid, dt, frequency, ratio), frequency, ratio)
+    return Swing(rigid, 0.0, 0.0)
+
+
+def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
+    """Frequency rad/s and damping ratio that leave least of the swinging; 0 and 0 where that is not little enough."""
+    tried = [(*_best_ratio(partial(left, frequency)), frequency) for frequency in frequencies]
     value, ratio, frequency = min(tried, default=(1.0, 0.0, 0.0))
     if len(tried) > 1:
-        inside = min(each[-1] for each in tried) < frequency < max(each[-1] for each in tried)
+        inside = min(frequencies) < frequency < max(frequencies)
         frequency = _best_frequency(left, frequency, ratio)
         value, ratio = _best_ratio(partial(left, frequency))
         value = value if inside and ratio < MOST_DAMPED and value < MOST_LEFT else 1.0
-    if value > 1.0 - LEAST_GAIN:
-        return Swing(rigid, 0.0, 0.0)
-    return Swing(on_the_wire(rigid, dt, frequency, ratio), frequency, ratio)
+    return (frequency, ratio) if value <= 1.0 - LEAST_GAIN else (0.0, 0.0)
 
 
 def _best_ratio(left: Callable[[float], float]) -> tuple[float, float]:
@@ -87,25 +98,58 @@ def _best_frequency(left: Callable[[float, float], float], frequency: float, rat
 
 
 class _Judge:
-    """How much of a gap swings: what friction may add and a level of its own in each stretch of motion left out."""
+    """How much of a gap swings beside what other causes may add, a level of its own in each stretch of motion left out.
 
-    def __init__(self, gap: FloatArray, counts: np.ndarray, friction: FloatArray | None) -> None:
+    `change` makes the torque N m that a mode's frequency and damping ratio put into the gap. The causes come in parts
+    of columns, one after the other: of what a mode leaves, its square and its components along the causes are kept, so
+    that a part more costs nothing.
+    """
+
+    def __init__(
+        self,
+        gap: FloatArray,
+        counts: np.ndarray,
+        change: Callable[[float, float], FloatArray],
+        besides: Sequence[FloatArray],
+    ) -> None:
         self._samples = np.flatnonzero(counts) if counts.dtype == bool else counts
         self._stretch = np.concatenate([[0], np.cumsum(np.diff(self._samples) > 1)])
         self._size = np.bincount(self._stretch)
-        self._gap = gap[self._samples]
-        friction = np.zeros((len(gap), 1)) if friction is None else friction
-        self._friction = np.column_stack([self._levelled(each) for each in friction[self._samples].T])
-        self._solve = np.linalg.pinv(self._friction)
+        self._gap = self._levelled(gap)
+        self._change = change
+        self._widths = np.cumsum([0] + [each.shape[1] for each in besides])
+        self._axes = self._orthonormal([column for each in besides for column in each.T])
+        self._rigid = self._components(self._gap)
+        self._seen: dict[tuple[float, float], tuple[float, FloatArray]] = {}
 
-    def variance(self, change: FloatArray | float) -> float:
-        """Variance of gap + change over the counted samples."""
-        whole = self._levelled(self._gap + (change[self._samples] if isinstance(change, np.ndarray) else change))
-        return float(np.var(whole - self._friction @ (self._solve @ whole))) + 1e-12
+    def left(self, parts: int, frequency: float, ratio: float) -> float:
+        """The share of the swinging's variance that a mode leaves beside the first so many parts."""
+        if (frequency, ratio) not in self._seen:
+            changed = self._gap + self._levelled(self._change(frequency, ratio))
+            self._seen[frequency, ratio] = self._components(changed)
+        return self._variance(parts, self._seen[frequency, ratio]) / self._variance(parts, self._rigid)
+
+    def _variance(self, parts: int, components: tuple[float, FloatArray]) -> float:
+        square, along = components
+        return max(square - float(np.sum(along[: self._widths[parts]] ** 2)), 0.0) / len(self._samples) + 1e-12
+
+    def _components(self, values: FloatArray) -> tuple[float, FloatArray]:
+        return float(values @ values), values @ self._axes
+
+    def _orthonormal(self, columns: Sequence[FloatArray]) -> FloatArray:
+        """A unit axis for each column, at right angles to those before; nothing for one that they make up."""
+        if not columns:
+            return np.empty((len(self._samples), 0))
+        levelled = np.column_stack([self._levelled(each) for each in columns])
+        axes, upper = np.linalg.qr(levelled)
+        sizes = np.array([np.linalg.norm(each[self._samples]) for each in columns])
+        axes[:, np.abs(np.diag(upper)) <= NOTHING_OWN * sizes] = 0.0
+        return np.asarray(axes)
 
     def _levelled(self, values: FloatArray) -> FloatArray:
-        means = np.bincount(self._stretch, weights=values) / self._size
-        return np.asarray(values - means[self._stretch])
+        own = values[self._samples]
+        means = np.bincount(self._stretch, weights=own) / self._size
+        return np.asarray(own - means[self._stretch])
 
 
 def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) -> FloatArray:

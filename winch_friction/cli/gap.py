@@ -87,6 +87,7 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
+    from winch_friction.cli.allocation import keep_freed_memory
     from winch_friction.cli.inputs import crane_of, read_all, refuse_copies, refuse_implausible, run_paths
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.discrepancy.options import STEPS, GapOptions
@@ -100,6 +101,7 @@ def run_gap(
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
+    keep_freed_memory()
     paths = run_paths(paths)
     for name in ("model.yaml", "gap.json", "addition.csv"):
         refuse_input_as_output(out / name, [model, *paths])

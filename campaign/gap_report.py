@@ -20,7 +20,7 @@ READING = """## Reading the table
 * At 0.3 of the size some effects are inside what is ordinary, and are rightly not called missing: `brake_drag`,
   `high_pressure_mixed` and `port_turbulence` move a base parameter (K4, K5, K2) by less than two standard deviations of
   its prior, as the nulls do; `slip_leakage` is then within a motor's ordinary leakage.
-* `entrained_air` (1 %) leaves the torque balance closed and changes only the transient between command and speed;
+* `entrained_air` (1 %) leaves the torque balance closed and is found in the flow, against the commanded speed;
   `dwell_stiction` shows for a radian of travel after a rest, where friction at rest is undetermined.
 * The drives of the elastic cranes: one has a rope's light damping, one is damped as strongly as 0.2 MN s/m."""
 

@@ -17,7 +17,8 @@ FRESH = 0.75  # of a campaign's length: the same plant and the same plan in anot
 CASES = [
     ("tare_load", "quiet"), ("pressure_offset", "rough"), ("stribeck", "si_files"), ("churning", "paper"),
     ("inertia_error", "elastic_still"), ("swivel_offset", "quiet"), ("slip_leakage", "slow_log"),
-    ("accumulator_thermal", "si_files"), ("torque_ripple", "rough"), ("presliding", "quiet"),
+    ("entrained_air", "quiet"), ("accumulator_thermal", "si_files"), ("torque_ripple", "rough"),
+    ("presliding", "quiet"),
 ]  # fmt: skip
 # the workflow once more over the same runs, for a signal, a load and a term: in the others the written
 # file is measured on them

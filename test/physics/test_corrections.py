@@ -96,6 +96,11 @@ def spoiled(run, correction):
                 drop = columns["active.pressure_a"] - columns["active.pressure_b"]
                 thin = 1.0 / relative_viscosity(columns["oil_temperature"])
                 columns[name] = true + e * drop / columns["active.displacement"] * thin
+            elif action is Action.AIR:  # the compliance of the air, V/1.4 (p_0/p)^(1/1.4)/p, times the pressure's rate
+                high = columns["active.pressure_a"]
+                softness = e / 1.4 * (BAR / high) ** (1.0 / 1.4) / high
+                swept = 3 * columns["active.displacement"]  # of three motors, crane_150t
+                columns[name] = true + softness * np.gradient(high, time) / swept
     return replace(run, columns=columns)
 
 

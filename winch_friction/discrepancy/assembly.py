@@ -126,8 +126,8 @@ def _effects(
     ]
     if search.reversal is not None:
         effects.append(_reversal_effect(search.reversal, repaired.parameters))
-    side = [each.effect for each in (search.ripple, search.leakage) if each is not None]
-    return (*effects, *side)
+    side = [search.ripple.effect] if search.ripple else []
+    return (*effects, *side, *(each.effect for each in search.flow))
 
 
 def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperiment | None:

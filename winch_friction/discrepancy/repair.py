@@ -10,7 +10,6 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import (
     CUT,
-    SOURCE,
     Candidate,
     Estimates,
     ParameterEstimate,
@@ -125,9 +124,8 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         and (wave := _common_wave(search, search.ripple)) is not None
     ):
         own.add_term(None, term_named(angle.TERM), wave)
-    if search.leakage is not None:
-        rate = search.leakage
-        own.add_correction(Correction("slip_leakage", rate.leakage, rate.std, source=SOURCE))
+    for lost in search.flow:
+        own.add_correction(lost.correction)
     return _model_of(own, seed, search.given.crane, parameters, provenance)
 
 

@@ -10,11 +10,12 @@ from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, U
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.delays import without_delay
-from winch_friction.discrepancy.detectors import flow_balance, reversals
+from winch_friction.discrepancy.detectors import flow_balance, reversals, soft_oil
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import Ripple
+from winch_friction.discrepancy.detectors.soft_oil import FreeAir
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -44,7 +45,7 @@ class Search:
     verdict: Verdict
     reversal: ReversalFinding | None
     ripple: Ripple | None
-    leakage: Leakage | None
+    flow: tuple[Leakage | FreeAir, ...]
     untestable: tuple[Untestable, ...]
 
     @property
@@ -96,8 +97,11 @@ def search_runs(
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
         reversal = reversals.detect(given, expansion, selection.final, usable, split.train, rng, cleaned)
-    leakage = flow_balance.detect(own_runs, own_prepared)
-    if verdict.kind == NOTHING and (reversal or ripple or leakage):
+    leakage, air = flow_balance.detect(own_runs, own_prepared), soft_oil.free_air(own_runs, own_prepared)
+    flow = tuple(each for each in (leakage, air) if each is not None and each.found)
+    if any(each.name == soft_oil.NAME for each in usable):
+        blind += soft_oil.untestable(air)
+    if verdict.kind == NOTHING and (reversal or ripple or flow):
         verdict = Verdict(MISSING)
     return Search(
         given,
@@ -110,7 +114,7 @@ def search_runs(
         verdict,
         reversal,
         ripple,
-        leakage,
+        flow,
         tuple(blind),
     )
 

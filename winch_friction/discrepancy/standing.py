@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
-from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit
@@ -43,8 +42,8 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
         if full is not None:
             return _each_proven(full, refit, trial_of, rng)
         whys.append(why)
-    beside = replace(_nameless(search), ripple=search.ripple, leakage=search.leakage)
-    if search.ripple or search.leakage:
+    beside = replace(_nameless(search), ripple=search.ripple, flow=search.flow)
+    if search.ripple or search.flow:
         trial = trial_of(beside)
         if not worse_runs(trial.holdout, rng):
             refit = trial
@@ -174,14 +173,13 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
     given = search.given
     locked = [(run, p) for run, p in zip(given.runs, given.prepared, strict=True) if run.name in split.holdout]
     runs, prepared = [run for run, _ in locked], [p for _, p in locked]
-    ripple, leakage, reversal = search.ripple, search.leakage, search.reversal
+    ripple, reversal = search.ripple, search.reversal
     if ripple and not angle.holds_on(ripple, runs, prepared, given.crane, given.model):
         ripple = None
-    if leakage and not flow_balance.holds_on(leakage, runs, prepared):
-        leakage = None
+    flow = tuple(each for each in search.flow if each.holds_on(runs, prepared))
     if reversal and not reversal.holds_on(split.holdout, rng):
         reversal = None
-    return replace(search, ripple=ripple, leakage=leakage, reversal=reversal)
+    return replace(search, ripple=ripple, flow=flow, reversal=reversal)
 
 
 def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
@@ -216,14 +214,14 @@ def _without(search: Search, slot: Slot) -> Search:
 def _nameless(search: Search) -> Search:
     """The search without any name."""
     selection = replace(search.selection, final=search.selection.base, found=())
-    return replace(search, selection=selection, reversal=None, ripple=None, leakage=None)
+    return replace(search, selection=selection, reversal=None, ripple=None, flow=())
 
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise."""
     search = trial.search
     if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout):
-        found = search.ripple or search.leakage
+        found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
     after, noise = trial.holdout.size_after.value, trial.holdout.noise_floor
     kept = f"the locked runs keep {after:.3g} where their noise is {noise:.3g}"

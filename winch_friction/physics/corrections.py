@@ -22,7 +22,7 @@ from winch_friction.physics.friction.correction import (
     declared_correction,
 )
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.gas import relaxed_compression
+from winch_friction.physics.gas import air_compressed, relaxed_compression
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, GroupSample, Run, Sample
 from winch_friction.physics.viscosity import relative_viscosity
 from winch_friction.physics.winch.crane import Crane, Drum
@@ -36,6 +36,7 @@ __all__ = [
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
     Action.OFFSET, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP,
+    Action.AIR,
 )  # fmt: skip
 
 
@@ -57,7 +58,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     for action in SIGNAL_ORDER:
         for each in there:
             if each.declared.action is action:
-                columns = _ON_RUNS[action](columns, run, each)
+                columns = _ON_RUNS[action](columns, run, each, right)
     names = tuple(dict.fromkeys(each.name for each in there))
     return replace(run, columns=columns, metadata={**run.metadata, "corrections": names}), right
 
@@ -104,16 +105,16 @@ def _missing(correction: Correction, run: Run) -> list[str]:
 
 
 # -- whole runs
-def _offset(columns: Columns, run: Run, c: Correction) -> Columns:
+def _offset(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     error = c.error(columns["time"], columns.get("oil_temperature"))
     return columns | {name: columns[name] - error for name in affected(c, run.groups) if name in columns}
 
 
-def _scale(columns: Columns, run: Run, c: Correction) -> Columns:
+def _scale(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     return columns | {name: columns[name] / (1.0 + c.value) for name in affected(c, run.groups) if name in columns}
 
 
-def _curvature(columns: Columns, run: Run, c: Correction) -> Columns:
+def _curvature(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     return columns | {name: straight(columns[name], c.value) for name in affected(c, run.groups) if name in columns}
 
 
@@ -123,7 +124,7 @@ def straight(logged: Any, per_unit: float) -> Any:
     return 2.0 * logged / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * per_unit * logged, 0.0)))
 
 
-def _delay(columns: Columns, run: Run, c: Correction) -> Columns:
+def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
     time = columns["time"]
     late = [name for name in affected(c, run.groups) if name in columns]
@@ -138,17 +139,17 @@ def _delay(columns: Columns, run: Run, c: Correction) -> Columns:
     return {name: values[inside] for name, values in (columns | shifted).items()}
 
 
-def _mass(columns: Columns, run: Run, c: Correction) -> Columns:
+def _mass(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     length = columns["wire_out"] if "wire_out" in c.declared.reads else 1.0
     return columns | {"hook_load": columns["hook_load"] + c.value * length}
 
 
-def _warmth(columns: Columns, run: Run, c: Correction) -> Columns:
+def _warmth(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     fading = np.exp(-(columns["time"] - run.time[0]) / c.time_constant)
     return columns | {name: columns[name] * (1.0 + c.value * fading) for name in affected(c, run.groups)}
 
 
-def _heat(columns: Columns, run: Run, c: Correction) -> Columns:
+def _heat(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     assert c.time_constant is not None
     changed = {
         name: columns[name] * (1.0 - c.value * relaxed_compression(columns["time"], columns[name], c.time_constant))
@@ -157,7 +158,7 @@ def _heat(columns: Columns, run: Run, c: Correction) -> Columns:
     return columns | changed
 
 
-def _slip(columns: Columns, run: Run, c: Correction) -> Columns:
+def _slip(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     groups = [g for g in run.groups if not c.groups or g in c.groups]
     if not groups:
         return columns
@@ -168,7 +169,18 @@ def _slip(columns: Columns, run: Run, c: Correction) -> Columns:
     return columns | {"speed_reference": columns["speed_reference"] - lost}
 
 
-_ON_RUNS: dict[Action, Callable[[Columns, Run, Correction], Columns]] = {
+def _air(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
+    groups = [g for g in run.groups if not c.groups or g in c.groups]
+    if not groups or len(run.time) < 2:
+        return columns
+    driving = driving_group(groups)
+    taken = air_compressed(columns[f"{driving}.pressure_a"], columns[f"{driving}.pressure_b"])
+    swept = crane.groups[driving] * columns[f"{driving}.displacement"]
+    lost = c.value * np.gradient(taken, columns["time"]) / swept
+    return columns | {"speed_reference": columns["speed_reference"] - lost}
+
+
+_ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {
     Action.OFFSET: _offset,
     Action.SCALE: _scale,
     Action.CURVATURE: _curvature,
@@ -177,6 +189,7 @@ _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction], Columns]] = {
     Action.WARMTH: _warmth,
     Action.HEAT: _heat,
     Action.SLIP: _slip,
+    Action.AIR: _air,
 }
 
 

@@ -15,6 +15,7 @@ _OF_THE_PLANT = {
     Action.WARMTH: "accumulator_thermal",
     Action.HEAT: "accumulator_thermal",
     Action.SLIP: "slip_leakage",
+    Action.AIR: "entrained_air",
 }
 
 

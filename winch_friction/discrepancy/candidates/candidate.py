@@ -23,9 +23,9 @@ Values = Mapping[str, float]
 Columns = Callable[[PreparedRun, Values], FloatArray]
 Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
-# where an effect shows: in moving samples, just after reversals, over the shaft's angle, in the flow, or nowhere
+# where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow
 SOURCE, CUT = "winch-friction gap", "cut at its bound from"
-MOVING, REVERSALS, ANGLE, FLOW, NOWHERE = "moving", "just after reversals", "angle", "flow", "nowhere"
+MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flow"
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
 LINE = "line_pressure_drop"

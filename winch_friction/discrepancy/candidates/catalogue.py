@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, NOWHERE, Candidate, Untestable
+from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Untestable
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
@@ -22,13 +22,9 @@ def _no_command(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return None if known else ("speed_reference", "lost flow shows only against a commanded speed")
 
 
-def _never(_: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    return "pump flow", "a softer oil column changes the flow, not the torque"
-
-
 # these leave the torque balance at the motor shaft closed, whatever their size, or vanish in its block means
 DETECTED = (
-    Candidate("entrained_air", r"K(p)", regime=NOWHERE, kind="flow", hydraulic=True, blind=_never),
+    Candidate("entrained_air", r"V\,p^{-1/1.4}", regime=FLOW, kind="flow", hydraulic=True, blind=_no_command),
     Candidate("slip_leakage", r"C\,p/\mu", regime=FLOW, kind="flow", hydraulic=True, blind=_no_command),
     Candidate("torque_ripple", term=None, regime=ANGLE),
 )

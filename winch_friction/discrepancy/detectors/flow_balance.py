@@ -12,10 +12,11 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from winch_friction.discrepancy.answer import Effect
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import viscosity
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import FloatArray, Run
 
 REFERENCE = "speed_reference"
@@ -67,6 +68,21 @@ class Leakage:
             self.parameters, self.p_value, self.gain, 1.0, "commanded against reached speed",
         )  # fmt: skip
 
+    @property
+    def correction(self) -> Correction:
+        """The leakage as an entry of the model."""
+        return Correction("slip_leakage", self.leakage, self.std, source=SOURCE)
+
+    def holds_on(self, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
+        """Whether the leakage also explains the speed that other runs lose."""
+        table = _tables(runs, prepared)
+        if not len(table):
+            return False
+        lost, speed, rate = table[:, 0], table[:, 1], table[:, 2]
+        before = lost - self.scale_alone * speed
+        after = lost - self.scale * speed - self.leakage * rate
+        return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
+
 
 def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
     """Speed lost in proportion to pressure over viscosity, where a command is logged."""
@@ -84,20 +100,9 @@ def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage 
     before, after = _held_out(lost, x, of_run)
     alone = float((x[:, 0] @ lost) / max((x[:, 0] ** 2).sum(), 1e-300))
     return Leakage(
-        float(coefficients[1]), float(std), _p_value(before**2 - after**2), _rms(before), _rms(after),
+        float(coefficients[1]), float(std), sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after),
         float(coefficients[0]), alone,
     )  # fmt: skip
-
-
-def holds_on(found: Leakage, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
-    """Whether the leakage also explains the speed that other runs lose."""
-    table = _tables(runs, prepared)
-    if not len(table):
-        return False
-    lost, speed, rate = table[:, 0], table[:, 1], table[:, 2]
-    before = lost - found.scale_alone * speed
-    after = lost - found.scale * speed - found.leakage * rate
-    return _p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
 
 
 def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FloatArray:
@@ -163,7 +168,7 @@ def _held_out(lost: FloatArray, x: FloatArray, of_run: FloatArray) -> tuple[Floa
     return before, after
 
 
-def _p_value(gains: FloatArray, flips: int = 2000) -> float:
+def sign_flip_p_value(gains: FloatArray, flips: int = 2000) -> float:
     """Sign-flip p-value of a positive mean gain over segments."""
     signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(flips, len(gains)))
     return float((1 + (signs @ gains >= gains.sum()).sum()) / (1 + flips))

@@ -32,6 +32,7 @@ class Action(Enum):
     WARMTH = "warmth"  # true gas pressure = calculated (1 + e exp(-t/tau)), tau the correction's time constant
     HEAT = "heat"  # true gas pressure = calculated (1 - e <ln p>_tau), what has relaxed of ln p since the start
     SLIP = "slip"  # speed_reference = true + e dp/D times mu_40/mu: what leaks away is not reached
+    AIR = "air"  # speed_reference = true + e dv/dt/D, v what a unit of free air gives way to under the pressures
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,12 @@ _DECLARED = (
         "slip_leakage",
         Parameter("slip_leakage", "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, doc="leakage per motor at 40 degC that slows it"),
         "signal", Action.SLIP, ("speed_reference",), reads=("pressure_a", "pressure_b", "displacement"),
+        by_group=True, live=False,
+    ),
+    DeclaredCorrection(
+        "entrained_air",
+        Parameter("entrained_air", "m^3", 6e-4, 0.0, 0.1, doc="free air of one line, at 1 bar"),
+        "signal", Action.AIR, ("speed_reference",), reads=("pressure_a", "pressure_b", "displacement"),
         by_group=True, live=False,
     ),
 )  # fmt: skip

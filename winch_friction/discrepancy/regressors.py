@@ -150,7 +150,9 @@ def regressors(run: PreparedRun, layout: Layout) -> Iterator[FloatArray]:
 def _scaled(columns: FloatArray, scales: FloatArray, unit: float) -> Iterator[FloatArray]:
     """A few columns at a time: a surface has as many as all laws together."""
     for at in range(0, columns.shape[1], AT_ONCE):
-        yield columns[:, at : at + AT_ONCE] * scales[at : at + AT_ONCE] / unit
+        some = columns[:, at : at + AT_ONCE] * scales[at : at + AT_ONCE]
+        some /= unit
+        yield some
 
 
 def block_size(run: PreparedRun) -> int:

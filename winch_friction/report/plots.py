@@ -5,7 +5,6 @@ reader downloads. The page's one script draws plots when they come into view, in
 """
 
 import base64
-import gzip
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -19,6 +18,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
+from winch_friction.report.packed import packed
 
 MOST_POINTS = 1500  # per line on a page; a screen has no more columns, and a dozen runs stay below a megabyte
 ROLES = ("measured", "before", "after", "noise", "truth", "plain", "other")
@@ -125,7 +125,7 @@ def packed_plotly() -> str:
     except ModuleNotFoundError as error:
         raise InputError("reports need the library 'plotly': pip install 'winch_friction[desk]'") from error
     source = (Path(plotly.__file__).parent / "package_data" / "plotly.min.js").read_bytes()
-    return base64.b64encode(gzip.compress(source, 9, mtime=0)).decode()
+    return packed(source)
 
 
 def plotly_figure(plot: Plot) -> Any:

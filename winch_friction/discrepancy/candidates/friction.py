@@ -148,7 +148,8 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
             x, own = _part(run.point, some), _part(z, some)
             for k, unit in enumerate(units):
                 columns[some, k] = functions.vector_torque(x, unit, own)
-    return np.nan_to_num(columns, copy=False)
+        whole = np.isfinite(columns.sum())
+    return columns if whole else np.nan_to_num(columns, copy=False)
 
 
 def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:

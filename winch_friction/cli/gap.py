@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.allocation import search_at_hand
 from winch_friction.cli.console import progress, show_json, show_table, show_warnings, stepping
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
@@ -72,6 +73,7 @@ def command(
         show_result(content, out)
 
 
+@search_at_hand()
 def run_gap(
     paths: list[Path],
     crane: str,
@@ -87,7 +89,6 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.cli.allocation import keep_freed_memory
     from winch_friction.cli.inputs import crane_of, read_all, refuse_copies, refuse_implausible, run_paths
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.discrepancy.options import STEPS, GapOptions
@@ -101,7 +102,6 @@ def run_gap(
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
-    keep_freed_memory()
     paths = run_paths(paths)
     for name in ("model.yaml", "gap.json", "addition.csv"):
         refuse_input_as_output(out / name, [model, *paths])

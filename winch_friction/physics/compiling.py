@@ -4,6 +4,7 @@ Numba itself notices changes of the file that a function stands in, not of the f
 imported on use: a node runs without it.
 """
 
+import gc
 import hashlib
 import os
 import tempfile
@@ -18,10 +19,24 @@ def compiled_in(directory: str, function: Callable[..., Any], signature: str | N
 
     With a `signature` it is compiled (or read) here and now. Raises `RuntimeError` where nothing can be written.
     """
-    import numba
+    with uncollected():
+        import numba
 
-    with _cache_directory(directory):
-        return numba.njit(signature, cache=True, error_model="numpy")(function)
+        with _cache_directory(directory):
+            return numba.njit(signature, cache=True, error_model="numpy")(function)
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """No look for garbage while modules and compiled code are loaded: numba's are hundreds, none of it is garbage, and
+    every look goes through all that SymPy holds."""
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from typing import Any
 
 import numba
 
-from winch_friction.physics.compiling import cache_root
+from winch_friction.physics.compiling import cache_root, uncollected
 from winch_friction.records.atomic import write_text
 
 _HEADER = """from math import *
@@ -54,5 +54,6 @@ def _imported(name: str, path: str) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # numba looks its functions' module up when it loads them
-    spec.loader.exec_module(module)
+    with uncollected():
+        spec.loader.exec_module(module)
     return module

@@ -20,6 +20,7 @@ $(READY): setup.py constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check "pip>=24" "setuptools>=65,<80" wheel
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[all]'
+	$(BIN)/python -m winch_friction.cli.warming
 	@touch $(READY)
 
 demo: $(READY)

@@ -87,7 +87,8 @@ def test_a_run_is_drawn(tmp_path, capsys):
 def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys):
     assert run(["doctor", "--no-dds", "--json"]) == 0
     findings = json.loads(capsys.readouterr().out)
-    assert {"environment", "libraries", "configuration", "permissions", "clock"} <= {each["area"] for each in findings}
+    areas = {"environment", "libraries", "configuration", "permissions", "compiled code", "clock"}
+    assert areas <= {each["area"] for each in findings}
 
 
 def test_the_doctor_reports_a_domain_that_cannot_be(capsys, monkeypatch):

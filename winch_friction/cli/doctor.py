@@ -68,7 +68,7 @@ def command(
 
 
 def _checks(dds: bool) -> list[Callable[[], Iterator[Finding]]]:
-    return [_python, _libraries, _configuration, _permissions, _clock, _ros, *([_talk] if dds else [])]
+    return [_python, _libraries, _configuration, _permissions, _compiled_code, _clock, _ros, *([_talk] if dds else [])]
 
 
 def _python() -> Iterator[Finding]:
@@ -107,6 +107,17 @@ def _configuration() -> Iterator[Finding]:
             yield Finding("configuration", kind, GOOD, f"{len(KINDS[kind].rows())} can be read")
         except InputError as error:
             yield Finding("configuration", kind, BAD, str(error), "repair the file, or reinstall the package")
+
+
+def _compiled_code() -> Iterator[Finding]:
+    from winch_friction.cli.warming import warmed
+
+    try:
+        for name, seconds in warmed():
+            yield Finding("compiled code", name, GOOD, f"ready after {seconds:.1f} s; it is kept for the next start")
+    except (ImportError, OSError, RuntimeError) as error:
+        do = "pip install 'winch_friction[desk]', or set XDG_CACHE_HOME to a folder of yours"
+        yield Finding("compiled code", "cache", NOTE, f"works without, slower: {error}", do)
 
 
 def _permissions() -> Iterator[Finding]:

@@ -60,6 +60,13 @@ def test_a_hole_in_the_log_is_not_bridged():
     assert free_air(holed, prepared).volume == pytest.approx(whole.volume, rel=0.1)
 
 
+@pytest.mark.parametrize(("std", "p_value", "after", "found"), [
+    (1e-5, 0.001, 0.09, True), (4e-5, 0.001, 0.09, False), (1e-5, 0.1, 0.09, False), (1e-5, 0.001, 0.099, False),
+])  # fmt: skip
+def test_air_is_named_where_it_is_sure_and_explains_something(std, p_value, after, found):
+    assert soft_oil.FreeAir(2e-4, std, p_value, 0.1, after).found is found
+
+
 def test_what_would_not_have_shown_is_said():
     runs, prepared = _data("quiet", 17)
     sure = free_air(runs, prepared)

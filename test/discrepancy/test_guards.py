@@ -359,6 +359,7 @@ ROOT, SQUARE = Law((Factor("root", "motor_speed"),), True), Law((Factor("square"
 DATED = replace(CURVE, origin=(friction_candidate(tabulated(Table("aged", (("time", (0.0, 1e5, 1e6)),)))), None))
 WARMS = Law((Factor("fade", "run_time", (("c", 45.0),)),), True)
 LAG = Law((Factor("lag", "pressure", (("c", 30.0),)),), True)
+WAVE_OF_IT = Law((Factor("wave", "pressure", (("c", 5e6),)),), True)
 
 
 @pytest.mark.parametrize(("slots", "law", "share", "falls", "laws"), [
@@ -386,12 +387,17 @@ def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law
     assert bool(outdone(scored, cross, Selection(named, named, found))) is falls
 
 
-@pytest.mark.parametrize(("share", "falls"), [(0.9, False), (0.4, True)])
-def test_a_curve_that_closes_the_locked_gap_falls_only_to_a_law_that_leaves_half(share, falls):
+@pytest.mark.parametrize(("law", "share", "falls"), [
+    (ROOT, 0.9, False),
+    (ROOT, 0.4, True),
+    (LAG, 0.4, False),  # a memory of what it reads says how its law is inexact
+    (WAVE_OF_IT, 0.4, True),
+])  # fmt: skip
+def test_a_curve_that_closes_the_locked_gap_falls_only_to_a_law_that_leaves_half(law, share, falls):
     cross = crossfit(noise())
     noise_alone = float(cross.problem.grams.count.sum())
     named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(CURVE,))
-    scored = Scored(LAG, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
+    scored = Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
     selection = Selection(named, named, (Finding(CURVE, (), 0.0, 0.1, 1.0),))
     assert bool(outdone(scored, cross, selection, closed=True)) is falls
 

@@ -113,18 +113,22 @@ def outdone(law: Scored | None, cross: CrossFit, selection: Selection, closed: b
         return ""
     if len(slots) == 1:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
-        if any(_could_be(law.law, slot) for slot in rivals if _has_laws(slot, cross)):
+        if any(_could_be(law.law, slot, closed) for slot in rivals if _has_laws(slot, cross)):
             return ""
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "together " if len(slots) > 1 else ""
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
 
 
-def _could_be(law: Law, slot: Slot) -> bool:
-    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value."""
+def _could_be(law: Law, slot: Slot, closed: bool) -> bool:
+    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value.
+
+    Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
+    """
     term = slot.origin[0].term
     own = {_SAME.get(name, name) for name in term.reads} if term is not None else set()
-    return set(law.signals) <= own and not any(factor.kind in UNLIKE_A_CURVE for factor in law.factors)
+    unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
+    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set())
 
 
 def _has_laws(slot: Slot, cross: CrossFit) -> bool:

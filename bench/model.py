@@ -10,7 +10,7 @@ from bench.measuring import Row, paired
 from winch_friction.records.model_file import load_model
 
 SAMPLES = 1_000_000
-NOTE = "SymPy's common subexpressions share no sums over the motor groups; its squares and cubes are made products"
+NOTE = "what a parameter multiplies is one bracket, which torque and derivatives share; squares and cubes are products"
 
 
 def by_hand(lib: Any) -> Any:

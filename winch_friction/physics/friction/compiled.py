@@ -86,7 +86,18 @@ class CompiledTerms:
     @cached_property
     def total_and_derivatives(self) -> list[sp.Expr]:
         """The torque, its derivative by speed and those by the parameters."""
-        return [self.total, self.speed_derivative, *self.gradient]
+        return [self._by_parameter(self.total), self._by_parameter(self.speed_derivative), *self.gradient]
+
+    def _by_parameter(self, expression: sp.Expr) -> sp.Expr:
+        """The same, with all that a parameter multiplies in one bracket: that is its derivative, whose sums over the
+        motor groups SymPy's common subexpressions then share."""
+        brackets, rest = [], expression
+        for symbol in (parameter.symbol for parameter in self.parameters):
+            slope = sp.diff(rest, symbol)
+            if slope != 0 and not slope.has(symbol):
+                brackets.append(symbol * slope)
+                rest = rest.xreplace({symbol: sp.Integer(0)})
+        return sp.Add(*brackets, rest)
 
     @cached_property
     def _key(self) -> str:

@@ -66,13 +66,15 @@ def plan_experiment(
     rivals: Sequence[Slot],
     seed: int,
 ) -> NextExperiment | None:
-    """The scenario in which the nearest rival of `own` stays farthest away; None where none of them can be run."""
+    """The scenario that takes most rivals off the set of `own`, and of several the one in which the nearest of them
+    stays farthest away; None where none of them can be run."""
     others = tuple(slot for slot in fitted.slots if slot is not own)
     imitating = [cross.explain((*others, rival)) for rival in rivals]
     names = {own.name, *(rival.name for rival in rivals)}
     # of the hundreds of columns only what is there and what may imitate it
     asked = [slot for slot in cross.problem.slots if slot in fitted.slots or slot.name in names]
     separation: dict[str, tuple[float, Slot]] = {}
+    count: dict[str, int] = {}
     for name in EXPERIMENTS:
         try:
             g = cross.total_g + _simulated(name, crane, expansion, seed, asked)
@@ -81,10 +83,11 @@ def plan_experiment(
         z = [
             (_apart(cross, g, fitted, own, other, rival), rival) for rival, other in zip(rivals, imitating, strict=True)
         ]
-        separation[name] = min(z, key=lambda pair: pair[0])
+        parted = [pair for pair in z if pair[0] >= LIMITS.enough_separation]
+        count[name], separation[name] = len(parted), min(parted or z, key=lambda pair: pair[0])
     if not separation:
         return None
-    best = max(separation, key=lambda name: separation[name][0])
+    best = max(separation, key=lambda name: (count[name], separation[name][0]))
     z_best, rival = separation[best]
     text = shipped("scenarios", best).read_text(encoding="utf-8")
     return NextExperiment(
@@ -113,19 +116,25 @@ def _apart(cross: CrossFit, g: FloatArray, one: Explanation, own: Slot, other: E
     found = []
     for truth, imitator in ((one, rival), (other, own)):
         family = [slot for slot in cross.problem.slots if slot.name == imitator.name]
-        found += [_separation(cross, g, truth, (*others, slot)) for slot in family]
+        found += [_separation(cross, g, truth, others, slot) for slot in family]
     return min(found)
 
 
-def _separation(cross: CrossFit, g: FloatArray, truth: Explanation, rival: Sequence[Slot]) -> float:
-    """Sigma by which the rival's best fit to old and new runs, of Gram matrix `g`, misses what the truth predicts."""
-    true_columns = np.asarray(cross.problem.columns(truth.slots))
-    columns = np.asarray(cross.problem.columns(rival))
+def _separation(cross: CrossFit, g: FloatArray, truth: Explanation, others: Sequence[Slot], rival: Slot) -> float:
+    """Sigma by which the rival's best fit to old and new runs, of Gram matrix `g`, misses what the truth predicts.
+
+    Less where it misses so little of what the truth explains that the answer would still call it a rival.
+    """
+    missed = _missed(cross, g, truth, (*others, rival))
+    share = missed / max(LIMITS.rival_share * _missed(cross, g, truth, others), 1e-300)
+    sigma = float(np.sqrt(missed / LIMITS.prior_weight))
+    return sigma if share >= 1.0 else min(sigma, LIMITS.enough_separation * share)
+
+
+def _missed(cross: CrossFit, g: FloatArray, truth: Explanation, slots: Sequence[Slot]) -> float:
+    """Squared error of the best fit of these effects to what the truth predicts."""
+    true_columns, columns = (np.asarray(cross.problem.columns(each)) for each in (truth.slots, slots))
     b = g[:, true_columns] @ truth.beta
     y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
     beta = cross.problem.fit(g, b, columns.tolist())
-    return float(np.sqrt(max(_loss(g, b, y2, columns, beta), 0.0) / LIMITS.prior_weight))
-
-
-def _loss(g: FloatArray, b: FloatArray, y2: float, columns: np.ndarray, beta: FloatArray) -> float:
-    return float(y2 - 2.0 * b[columns] @ beta + beta @ g[np.ix_(columns, columns)] @ beta)
+    return max(float(y2 - 2.0 * b[columns] @ beta + beta @ g[np.ix_(columns, columns)] @ beta), 0.0)

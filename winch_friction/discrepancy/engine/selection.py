@@ -13,6 +13,8 @@ from winch_friction.discrepancy.engine.trials import candidate_trials, charged, 
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
+NO_BETTER = 1e-3  # of the held-out loss: a tenth of the least gain
+THE_SAME = 1e-5  # of the held-out loss: a thousand times its rounding; laws that are one over these runs
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def _forward(
         worthy = (
             _significant(p, relative) & (relative >= LEAST_GAIN) & (inside >= LIMITS.least_inside) & (worth >= least)
         )
-        order = np.argsort([charged(current.loss, each.loss, each.slots[-1]) for each in trials])
+        order = _in_order(cross, current, trials)
         best = next((int(k) for k in order if worthy[k]), -1)
         considered += [_considered(trials[k], relative[k], inside[k], p[k], stage, worthy[k], k == best) for k in order]
         if not worthy.any():
@@ -99,6 +101,19 @@ def _forward(
         p_values[trials[best].slots[-1].name] = float(p[best])
         current = _exchanged(cross, trials[best])
     return current
+
+
+def _in_order(cross: CrossFit, current: Explanation, trials: Sequence[Explanation]) -> list[int]:
+    """Trials from the least charged loss on; of those that come to the same the one that is listed first leads, which
+    is a cause's own law before its others: rounding is no reason for a name.
+    """
+    losses = [charged(current.loss, each.loss, each.slots[-1]) for each in trials]
+    listed = {id(slot): k for k, slot in enumerate(cross.problem.slots)}
+    first = [listed.get(id(each.slots[-1]), len(listed)) for each in trials]
+    order = sorted(range(len(trials)), key=lambda k: (losses[k], first[k]))
+    level = losses[order[0]] * (1.0 + THE_SAME)
+    ties = [k for k in order if losses[k] <= level]
+    return sorted(ties, key=lambda k: first[k]) + order[len(ties) :]
 
 
 def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator) -> Explanation:
@@ -164,7 +179,7 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
             without, own = cross.explain(rest), current.slots[k]
-            least = charged(without.loss, current.loss, own) * (1.0 - 1e-3)
+            least = charged(without.loss, current.loss, own) * (1.0 - NO_BETTER)
             others = [each for each in fitted(cross, rest, {slot.name for slot in rest}) if each is not own]
             trials = [cross.explain((*rest, slot)) for slot in others]
             best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]), default=current)

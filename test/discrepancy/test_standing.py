@@ -25,6 +25,14 @@ def _answer(kind, seed, *effects):
     return find_gap(runs, crane, model, GapOptions(plan=False, proposals=False)), model
 
 
+@pytest.mark.parametrize("seed", [10_000_074, 10_000_088, 10_000_096])
+def test_a_slow_log_and_a_swinging_load_are_not_an_effect(seed):
+    """Nothing is hidden: an irregular sea at 10 Hz, where inertia's torque bends between samples, a swing of six
+    samples at 20 Hz, and one at 50 Hz that heave compensation blurs and the other runs agree on."""
+    result, _ = _answer("drawn_null", seed)
+    assert result.verdict == "nothing_missing"
+
+
 @pytest.mark.parametrize("seed", [1800051, 2200048])
 def test_the_blur_of_a_reversal_is_not_presliding(seed):
     """Nothing is hidden; 20 Hz, where three samples after a reversal are a travel, and 166 Hz, where the smoothing
@@ -34,7 +42,7 @@ def test_the_blur_of_a_reversal_is_not_presliding(seed):
 
 
 def test_a_refit_that_harms_the_locked_runs_is_not_written():
-    result, given = _answer("drawn_outside", 1800112, ("cold_load_grip", 1.0))
+    result, given = _answer("drawn_outside", 9_400_007, ("cold_load_grip", 1.0))
     assert result.verdict == "unexplained"
     assert result.model.values == given.values
     assert result.model.name == given.name

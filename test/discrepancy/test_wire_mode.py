@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 from winch_friction.discrepancy.preparation.wire_mode import (
     agreed_damping,
     on_the_wire,
+    shared_damping,
     swinging_load,
     wire_stiffnesses,
 )
@@ -86,3 +87,16 @@ def test_runs_agree_on_a_ratio_or_on_a_damper_or_not_at_all(ratios, expected):
         assert found is None
     else:
         assert found(np.sqrt(1.6e6 / 55e3), 55e3) == pytest.approx(expected, rel=0.1)
+
+
+@pytest.mark.parametrize(("ratios", "expected"), [
+    ([0.059, 0.063, 0.0, 0.061, 0.06, 0.257, 0.33], 0.06),  # four of seven, and what heave compensation blurs
+    ([0.059, 0.063, 0.0, 0.0, 0.0, 0.06, 0.061, 0.0], None),  # not most of them
+    ([0.06, 0.061, 0.059], None),  # three may be chance
+    ([0.03, 0.06, 0.12, 0.24, 0.45], None),  # each another one
+    ([0.45, 0.46, 0.44, 0.45, 0.46], None),  # so damped that anything slow looks like it
+])  # fmt: skip
+def test_most_runs_tell_the_damping_of_their_wire(ratios, expected):
+    modes = [(5.0 + 2.0 * k, ratio, 2e4) for k, ratio in enumerate(ratios)]
+    found = shared_damping(modes)
+    assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.05)

@@ -12,7 +12,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_mode import agreed_damping
+from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, agreed_damping, shared_damping
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
@@ -122,13 +122,17 @@ def _moved(one: Correction) -> tuple[float, Correction]:
 def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
-    Heave compensation excites the mode throughout, so its runs decide where there are any; all share what damps it.
-    Where a sparse log leaves those at odds about that, the kicks of the other runs, which ring down, have a say.
+    All share what damps it. If most runs that can follow their mode agree on that closely, it is that; friction at
+    reversals blurs it in heave compensation, but does not take it away. If not, heave compensation decides, which
+    excites the mode throughout; and where a sparse log leaves those runs at odds, the kicks of the others, which ring
+    down, have a say.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
+    still = [run.wire_mode[1] <= 0.0 for run in compensating if _slow(run, TOLD)]
+    able = [(*run.wire_mode, _mass(run)) for run in prepared if _slow(run, TOLD)]
+    ratio = shared_damping(able) if 2 * sum(still) <= len(still) else None
     swinging = [(*run.wire_mode, _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
-    ratio = None
-    if 2 * len(swinging) > max(3, len(compensating)):
+    if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode, _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
         ratio = agreed_damping(swinging) or agreed_damping(every)
     return [
@@ -136,9 +140,9 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     ]
 
 
-def _slow(run: PreparedRun) -> bool:
-    """Whether the samples can follow the wire's mode."""
-    return 0.0 < run.wire_mode[0] * run.dt < 1.0
+def _slow(run: PreparedRun, turn: float = FOLLOWED) -> bool:
+    """Whether the wire's mode turns by less than so much, rad, in a sample."""
+    return 0.0 < run.wire_mode[0] * run.dt < turn
 
 
 def _mass(run: PreparedRun) -> float:

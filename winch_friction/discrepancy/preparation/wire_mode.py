@@ -22,6 +22,9 @@ LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; 
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
 SETTLED = 4.0  # decay times, down to 2 %
 NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
+# rad a sample: a mode of four samples is still told from none, and one of six has its damping told
+FOLLOWED, TOLD = 1.5, 1.0
+ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
 MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
 
 
@@ -171,7 +174,7 @@ def settling_time(frequency: float, ratio: float) -> float:
 def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterable[float]:
     for stiffness in stiffnesses:
         frequency = float(np.sqrt(stiffness / mass)) if mass > 0.0 and np.isfinite(stiffness) else np.inf
-        if frequency * dt < 1.0:  # slower than the samples can follow is rigid to them
+        if frequency * dt < FOLLOWED:  # faster than the samples can follow is rigid to them
             yield frequency
 
 
@@ -197,3 +200,19 @@ def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[flo
         return lambda own, load: min(shared / (2.0 * own * load), 1.0)
     steady = float(np.median(ratio))
     return lambda _own, _load: steady
+
+
+def shared_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
+    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if most of them agree closely.
+
+    What else rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs
+    would not find one damping.
+    """
+    swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
+    if len(swinging) < FEWEST_ALIKE:
+        return None
+    frequency, ratio, mass = swinging.T
+    off = [np.abs(np.log(each / np.median(each))) for each in (2.0 * ratio * frequency * mass, ratio)]
+    alike = max((each <= ALIKE for each in off), key=np.sum)
+    enough = 2 * alike.sum() > len(modes) and alike.sum() >= FEWEST_ALIKE
+    return agreed_damping(swinging[alike].tolist()) if enough and np.median(ratio[alike]) < MOST_DAMPED / 2.0 else None

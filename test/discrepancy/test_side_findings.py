@@ -9,7 +9,7 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.detectors.ripple import angle_ripple
+from winch_friction.discrepancy.detectors.ripple import Ripple, angle_ripple
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
@@ -103,3 +103,11 @@ def test_a_comb_is_counted_one_line_after_the_other(seed):
         if all(abs(ratio - round(ratio)) > SAME_ORDER for ratio in ratios):
             seen.append(order)
     assert one_of_a_comb(orders, power, best, 9) == (len(seen) > COMB_LINES)
+
+
+@pytest.mark.parametrize(("order", "p_value", "found"), [
+    (9.01, 1e-9, True), (0.165, 1e-9, True), (13.2, 1e-11, False), (13.2, 1e-20, True), (1.0, 1e-4, False),
+])  # fmt: skip
+def test_a_line_between_whole_orders_must_be_surer(order, p_value, found):
+    """Nothing on the shaft has 13.2 periods a turn; an encoder that beats with the sampling may."""
+    assert Ripple(order, 0.01, 1e-4, p_value, 100.0).found is found

@@ -149,10 +149,12 @@ def measure(smoke: bool = False) -> list[Row]:
     samples, driver = there_and_back(sea(20.0)[2]), Driver()
     try:
         driver.first_answer("empty", samples)  # what only the first process on a machine waits for
-        first = {
-            name: median(driver.first_answer(name, samples) for _ in range(1 if smoke else REPEATS))
+        times = {
+            name: [driver.first_answer(name, samples) for _ in range(1 if smoke else REPEATS)]
             for name in ("empty", *NODES)
         }
+        # an empty node that waited for its discovery would make any node quick: the quickest of them counts
+        first = {name: min(each) if name == "empty" else median(each) for name, each in times.items()}
         sent, answered, pauses = driver.soak(samples, 2.0 if smoke else SOAK)
     finally:
         driver.close()

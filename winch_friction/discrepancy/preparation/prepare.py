@@ -120,15 +120,16 @@ def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:
 def _followed(
     grid: Grid, motion: Motion, load: SuspendedLoad, balance: Balance, crane: Crane, mode: tuple[float, float]
 ) -> np.ndarray:
-    """Samples in which a slow log can follow what inertia takes: between two of them it bends by less than shows."""
+    """Samples in which a slow log can follow what inertia takes: between two of them it bends by less than shows.
+
+    Of a drive without pressures all of them: what its current or power tells is rougher than what is lost.
+    """
     rings = mode[1] > 0.0 and mode[0] * grid.dt > TURNS
-    if grid.dt <= SPARSEST and not rings:
+    if not crane.drive.hydraulic or (grid.dt <= SPARSEST and not rings):
         return np.ones(len(grid.time), bool)
     torque = np.pad(crane.inertia * motion.acceleration + load.inertial_torque, 1, mode="edge")
     bend = maximum_filter1d(np.abs(np.diff(torque, 2)), 3)
-    top = float(np.percentile(np.abs(balance.measured), 95))
-    shows = LIMITS.least_noise * balance.unit_torque if crane.drive.hydraulic else LIMITS.least_share_of_torque * top
-    return np.asarray(BENT_AWAY * bend <= SHOWS * shows)
+    return np.asarray(BENT_AWAY * bend <= SHOWS * LIMITS.least_noise * balance.unit_torque)
 
 
 def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:

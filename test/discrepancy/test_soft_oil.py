@@ -60,6 +60,15 @@ def test_a_hole_in_the_log_is_not_bridged():
     assert free_air(holed, prepared).volume == pytest.approx(whole.volume, rel=0.1)
 
 
+def test_a_run_with_holes_in_its_values_spoils_no_other():
+    runs, prepared = _data("quiet", 17, ("entrained_air", 1.0))
+    columns = dict(runs[9].columns)
+    columns["speed_reference"] = np.where(np.arange(len(runs[9])) == 700, np.nan, columns["speed_reference"])
+    found = free_air([*runs[:9], Run("gap", columns), *runs[10:]], prepared)
+    assert found.found
+    assert found.volume == pytest.approx(free_air(runs, prepared).volume, rel=0.1)
+
+
 @pytest.mark.parametrize(("std", "p_value", "after", "found"), [
     (1e-5, 0.001, 0.09, True), (4e-5, 0.001, 0.09, False), (1e-5, 0.1, 0.09, False), (1e-5, 0.001, 0.099, False),
 ])  # fmt: skip

@@ -175,7 +175,7 @@ def _air(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
         return columns
     driving = driving_group(groups)
     taken = air_compressed(columns[f"{driving}.pressure_a"], columns[f"{driving}.pressure_b"])
-    swept = crane.groups[driving] * columns[f"{driving}.displacement"]
+    swept = crane.motor_count(driving) * columns[f"{driving}.displacement"]
     lost = c.value * np.gradient(taken, columns["time"]) / swept
     return columns | {"speed_reference": columns["speed_reference"] - lost}
 

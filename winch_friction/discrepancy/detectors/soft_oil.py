@@ -133,8 +133,9 @@ def _sums(run: Run, prepared: PreparedRun, number: int, piece: slice) -> FloatAr
         return np.empty((0, 5))
     time = run.time[piece]
     speed, pressure_a, pressure_b, displacement = (run[name][piece] for name in needed)
+    known = np.isfinite([run[name][piece] for name in (*needed, REFERENCE)]).all()
     middle = float(np.median(displacement))
-    if middle <= 0.0 or float(np.std(displacement)) > STEADY_DISPLACEMENT * middle:
+    if not known or middle <= 0.0 or float(np.std(displacement)) > STEADY_DISPLACEMENT * middle:
         return np.empty((0, 5))
     swept = count * middle
     dt = max(float(np.median(np.diff(time))), FINEST)

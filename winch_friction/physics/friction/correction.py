@@ -32,7 +32,7 @@ class Action(Enum):
     WARMTH = "warmth"  # true gas pressure = calculated (1 + e exp(-t/tau)), tau the correction's time constant
     HEAT = "heat"  # true gas pressure = calculated (1 - e <ln p>_tau), what has relaxed of ln p since the start
     SLIP = "slip"  # speed_reference = true + e dp/D times mu_40/mu: what leaks away is not reached
-    AIR = "air"  # speed_reference = true + e dv/dt/D, v what a unit of free air gives way to under the pressures
+    AIR = "air"  # speed_reference = true + e dv/dt/(n D), v what a unit of free air gives way to under the pressures
 
 
 @dataclass(frozen=True)

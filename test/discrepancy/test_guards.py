@@ -17,7 +17,14 @@ from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.rivals import does_as_well, near
-from winch_friction.discrepancy.engine.selection import Finding, Selection, _one_set_each, _significant, select
+from winch_friction.discrepancy.engine.selection import (
+    Finding,
+    Selection,
+    _in_order,
+    _one_set_each,
+    _significant,
+    select,
+)
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -67,6 +74,16 @@ def answer(y, seed=1):
 
 
 # -- selection and verdict
+@pytest.mark.parametrize(("better", "leads"), [(1e-9, "wave"), (-1e-9, "wave"), (0.05, "other")])
+def test_of_laws_that_are_one_over_the_runs_the_first_listed_leads(better, leads):
+    """By rounding alone the second would be the better one as often as not."""
+    cross = crossfit(noise())
+    current, first = explanation(np.full(40, 10.0)), replace(explanation(np.full(40, 1.0)), slots=SLOTS[:1])
+    second = replace(explanation(np.full(40, 1.0 - better)), slots=SLOTS[1:])
+    trials = [second, first]
+    assert trials[_in_order(cross, current, trials)[0]].slots[-1].name == leads
+
+
 def test_what_is_there_is_selected_alone():
     selection, verdict = answer(2.0 * WAVE + noise())
     assert [each.slot.name for each in selection.found] == ["wave"]

@@ -5,6 +5,7 @@ import pytest
 
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
+from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.physics.signals import Run
 
 
@@ -32,3 +33,34 @@ def test_a_shaft_that_waits_for_its_start_has_not_just_reversed(crane_150t):
     assert motion.speed[rests].min() < -0.5, "the swing is there"
     assert not motion.used[rests].any()
     assert motion.used[start].any()
+
+
+def _weighed(crane, added, wire_logged=True):
+    """What is made of a load cell at 20 t whose reading has `added(length m, acceleration of the load m/s^2)` in kg."""
+    time = np.arange(0.0, 180.0, 0.02)
+    speed = 100.0 * np.clip(2.0 * np.sin(2.0 * np.pi * time / 60.0), -1.0, 1.0)
+    lever = 1.136 / 250.0
+    length = 100.0 - np.cumsum(speed) * 0.02 * lever
+    mass = 20e3 + added(length, np.gradient(lever * speed, 0.02))
+    noise = 60.0 * np.random.default_rng(3).standard_normal(len(time))
+    columns = {"time": time, "motor_speed": speed, "hook_load": np.round((mass + noise) / 50.0) * 50.0}
+    grid = uniform(Run("run", columns | ({"wire_out": length} if wire_logged else {})))
+    return load_of(grid, motion_of(grid, crane, "run", turning=False), crane, float("nan")).mass, mass
+
+
+@pytest.mark.parametrize("wire_logged", [True, False])
+def test_the_weight_of_the_wire_below_the_cell_is_followed(crane_150t, wire_logged):
+    """Ten metres of wire are 1 % of 20 t, far above what a balance closes to: not a cell's noise."""
+    found, true = _weighed(crane_150t, lambda length, _: crane_150t.wire_mass * (length - 100.0), wire_logged)
+    assert np.ptp(true) > 150.0
+    assert np.abs(found - true).max() < 30.0
+
+
+def test_a_cell_that_feels_the_load_accelerate_does_not_weigh_the_wire(crane_150t):
+    found, _ = _weighed(crane_150t, lambda _, acceleration: 20e3 / 9.81 * acceleration)
+    assert np.ptp(found) == 0.0
+
+
+def test_a_cell_with_noise_alone_weighs_one_mass(crane_150t):
+    found, _ = _weighed(crane_150t, lambda length, _: 0.0 * length)
+    assert np.ptp(found) == 0.0

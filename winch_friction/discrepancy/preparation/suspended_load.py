@@ -15,7 +15,11 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
 
-CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant
+CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant ...
+# ... but for the wire paid out, where the cell hangs below it: of the variance that the smoothed mass has beside the
+# load's acceleration, the share that a straight line over the length must explain, and what a metre may weigh, times
+# what the crane file says or in kg/m
+FOLLOWS_WIRE, HEAVIEST_WIRE, HEAVIEST_UNKNOWN = 0.5, 1.5, 200.0
 
 
 @dataclass(frozen=True)
@@ -60,14 +64,45 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
     if tension is not None:
         mass = smooth(tension, motion.window) / GRAVITY
         return SuspendedLoad(mass, radius, radius / crane.gear_ratio, np.zeros(size), heave, tension_measured=True)
-    mass = columns.get("hook_load", np.full(size, 0.0 if np.isnan(known) else known))
-    steady = np.median(mass)
-    is_constant = np.std(mass) <= CONSTANT * abs(steady)
-    mass = np.full(size, steady) if is_constant else smooth(mass, 5 * motion.window)
     if "heave_velocity" in columns:
         heave = np.gradient(smooth(columns["heave_velocity"], motion.window), grid.dt)
     lever = radius / crane.gear_ratio
-    return SuspendedLoad(mass, radius, lever, lever * motion.acceleration + heave, heave)
+    acceleration = lever * motion.acceleration + heave
+    if "hook_load" in columns:
+        length = columns.get("wire_out", -motion.angle * lever)
+        mass = _weighed(columns["hook_load"], length, acceleration, 5 * motion.window, crane)
+    else:
+        mass = np.full(size, 0.0 if np.isnan(known) else known)
+    return SuspendedLoad(mass, radius, lever, acceleration, heave)
+
+
+def _weighed(cell: FloatArray, wire_out: FloatArray, acceleration: FloatArray, window: int, crane: Crane) -> FloatArray:
+    """The hanging mass in kg behind what a load cell says: constant, with the wire's weight where the cell has it."""
+    slow = smooth(cell, window)
+    if np.std(cell) > CONSTANT * abs(np.median(cell)):
+        return slow
+    wire = _wire_weight(slow, wire_out - np.mean(wire_out), smooth(acceleration, window), crane)
+    return np.asarray(np.median(cell - wire) + wire)
+
+
+def _wire_weight(mass: FloatArray, paid_out: FloatArray, acceleration: FloatArray, crane: Crane) -> FloatArray:
+    """What the wire paid out (m, about its mean) adds to a mass, kg; zeros where the mass does not follow it.
+
+    A cell that feels the load accelerate goes with the length as well, for in a cycle the one follows the other.
+    """
+    beside = [np.ones(len(mass)), acceleration]
+    left = [_left(beside, each) for each in (mass, paid_out)]
+    spread = float(left[1] @ left[1])
+    slope = float(left[1] @ left[0]) / spread if spread > 1e-12 * float(paid_out @ paid_out) else 0.0
+    heaviest = HEAVIEST_WIRE * crane.wire_mass if crane.wire_mass > 0.0 else HEAVIEST_UNKNOWN
+    follows = slope**2 * spread >= FOLLOWS_WIRE * float(left[0] @ left[0])
+    return slope * paid_out if follows and 0.0 < slope <= heaviest else np.zeros(len(mass))
+
+
+def _left(columns: list[FloatArray], values: FloatArray) -> FloatArray:
+    """Values without what a sum of the columns makes of them."""
+    matrix = np.column_stack(columns)
+    return np.asarray(values - matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0])
 
 
 def _tension(grid: Grid, radius: FloatArray, crane: Crane) -> FloatArray | None:

@@ -49,6 +49,28 @@ def test_the_swing_is_found_and_taken_out(length):
     assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
 
 
+@pytest.mark.parametrize("share", [0.55, 0.8, 1.0, 1.25])
+def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
+    """Twenty metres between drum and tip beside fifty paid out, a modulus from a catalogue."""
+    stated, frequency = 3e8 / 50.0, np.sqrt(share * 3e8 / 50.0 / MASS)
+    load = on_the_wire(motion(TIME), DT, frequency, 0.06)
+    gap = MASS * LEVER * (load - motion(TIME)) + 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, (stated,))
+    assert swing.frequency == pytest.approx(frequency, rel=0.02)
+    assert swing.damping == pytest.approx(0.06, rel=0.2)
+
+
+def test_noise_alone_does_not_move_the_stated_stiffness():
+    stated = 3e8 / 50.0
+    load = on_the_wire(motion(TIME), DT, np.sqrt(stated / MASS), 0.06)
+    swinging = MASS * LEVER * (load - motion(TIME))
+    gap = swinging + 0.7 * swinging.std() * np.random.default_rng(1).standard_normal(len(TIME))
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, (stated,))
+    assert swing.frequency == np.sqrt(stated / MASS)
+
+
 def test_a_rigid_wire_stays_rigid():
     gap = 5.0 * np.random.default_rng(2).standard_normal(len(TIME))
     rigid = motion(TIME)

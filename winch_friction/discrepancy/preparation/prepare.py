@@ -100,8 +100,8 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
         rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
         friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
     )  # fmt: skip
-    known = float(np.sqrt(stiffnesses[0] / mass)) if "wire_out" in columns else swing.frequency
-    return known, swing.damping
+    stated = "wire_out" in columns and swing.damping <= 0.0
+    return float(np.sqrt(stiffnesses[0] / mass)) if stated else swing.frequency, swing.damping
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:

@@ -17,6 +17,9 @@ DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65
 # m, tried where the log lacks it
 WIRE_LENGTHS = (15.0, 22.0, 33.0, 50.0, 75.0, 110.0, 165.0, 250.0, 370.0, 550.0, 830.0, 1250.0)
 FREQUENCY_STEPS = (1.1, 1.05, 1.025, 1.012, 1.006)
+# of the stated stiffness, tried beside it: a rope's modulus is known to a tenth or two, `wire_out` does not count what
+# hangs between drum and tip, and the crane itself gives. Taken where it leaves so much of what the stated one leaves
+STIFFNESSES_NEARBY, CLEARLY_LESS = (0.42, 0.5, 0.6, 0.72, 0.85, 1.2, 1.4), 0.5
 LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
 # where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
@@ -73,12 +76,27 @@ def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -
     """Frequency rad/s and damping ratio that leave least of the swinging; 0 and 0 where that is not little enough."""
     tried = [(*_best_ratio(partial(left, frequency)), frequency) for frequency in frequencies]
     value, ratio, frequency = min(tried, default=(1.0, 0.0, 0.0))
-    if len(tried) > 1:
+    if len(tried) == 1:
+        value, ratio, frequency = _nearby(left, *tried[0])
+    elif len(tried) > 1:
         inside = min(frequencies) < frequency < max(frequencies)
         frequency = _best_frequency(left, frequency, ratio)
         value, ratio = _best_ratio(partial(left, frequency))
         value = value if inside and ratio < MOST_DAMPED and value < MOST_LEFT else 1.0
     return (frequency, ratio) if value <= 1.0 - LEAST_GAIN else (0.0, 0.0)
+
+
+def _nearby(
+    left: Callable[[float, float], float], value: float, ratio: float, stated: float
+) -> tuple[float, float, float]:
+    """What is left, damping ratio and frequency rad/s of a mode near the stated one, where it clearly leaves less."""
+    around = [stated * float(np.sqrt(share)) for share in STIFFNESSES_NEARBY]
+    *_, first = min((*_best_ratio(partial(left, frequency)), frequency) for frequency in around)
+    if not around[0] < first < around[-1]:
+        return value, ratio, stated
+    found = _best_frequency(left, first, _best_ratio(partial(left, first))[1])
+    less, damped = _best_ratio(partial(left, found))
+    return (less, damped, found) if less < CLEARLY_LESS * value and damped < MOST_DAMPED else (value, ratio, stated)
 
 
 def _best_ratio(left: Callable[[float], float]) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.preparation.balance import measured_groups
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.suspended_load import load_of
@@ -64,3 +65,29 @@ def test_a_cell_that_feels_the_load_accelerate_does_not_weigh_the_wire(crane_150
 def test_a_cell_with_noise_alone_weighs_one_mass(crane_150t):
     found, _ = _weighed(crane_150t, lambda length, _: 0.0 * length)
     assert np.ptp(found) == 0.0
+
+
+def _fed_back(crane, displacement):
+    """What is made of a displacement feedback with its noise and its steps, in cm^3/rev."""
+    cm3 = 1e-6 / (2.0 * np.pi)
+    noise = 0.15 * np.random.default_rng(5).standard_normal(len(displacement))
+    size = len(displacement)
+    columns = {
+        "main.pressure_a": np.full(size, 150e5), "main.pressure_b": np.full(size, 25e5),
+        "main.displacement": np.round((displacement + noise) / 0.05) * 0.05 * cm3,
+    }  # fmt: skip
+    (group,) = measured_groups(columns, Run("run", {"time": np.arange(size) * 0.02, **columns}), crane, 15)
+    return group.displacement / cm3
+
+
+def test_motors_that_are_swung_by_a_little_are_followed(crane_150t):
+    """A droop of 3 % is 4 bar of 130: not a feedback's noise."""
+    time = np.arange(0.0, 120.0, 0.02)
+    set_to = 150.0 * (1.0 - 0.015 * (1.0 - np.cos(2.0 * np.pi * time / 60.0)))
+    assert np.abs(_fed_back(crane_150t, set_to) - set_to).max() < 0.15
+
+
+def test_the_noise_of_a_feedback_does_not_swing_the_motors(crane_150t):
+    found = _fed_back(crane_150t, np.full(6000, 150.0))
+    assert np.ptp(found) == 0.0
+    assert found[0] == pytest.approx(150.0, abs=0.05)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, dilated, smooth
+from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
@@ -51,9 +51,10 @@ def _measured(
         if f"{name}.{channel}" not in columns:
             raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
     a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
-    displacement = smooth(columns[f"{name}.displacement"], 5 * window)
+    fed_back = columns[f"{name}.displacement"]
+    displacement = smooth(fed_back, 5 * window)
     steady = float(np.median(displacement))
-    if np.std(displacement) <= 0.02 * steady:
+    if np.std(displacement) <= noise_level(fed_back):  # the feedback's noise alone: the motors are set and stay
         displacement = np.full(len(displacement), steady)
     if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
         raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")

@@ -21,7 +21,8 @@ FREQUENCY_STEPS = (1.1, 1.05, 1.025, 1.012, 1.006)
 # hangs between drum and tip, and the crane itself gives. Taken where it leaves so much of what the stated one leaves
 STIFFNESSES_NEARBY, CLEARLY_LESS = (0.42, 0.5, 0.6, 0.72, 0.85, 1.2, 1.4), 0.5
 LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
-# where the wire's length is unknown: a delay or a wrong inertia looks like a wire that is damped more or leaves more
+# no rope is damped more: a mode that is takes a motion sensor's noise out of the acceleration; and where the wire's
+# length is unknown, a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
 SETTLED = 4.0  # decay times, down to 2 %
 NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
@@ -206,9 +207,12 @@ def wire_stiffnesses(elastic_modulus_area: float, wire_out: FloatArray | None) -
 def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
     """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass).
 
-    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither.
+    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither, or if what
+    they agree on is damped like no wire.
     """
     frequency, ratio, mass = np.array(modes).T
+    if np.median(ratio) >= MOST_DAMPED:
+        return None
     damper = 2.0 * ratio * frequency * mass  # N s/m
     spreads = [float(np.std(np.log(each))) for each in (damper, ratio)]
     if min(spreads) > MOST_SPREAD:

@@ -220,6 +220,7 @@ def _log(
     offset += hidden.pressure_settles * (1.0 - np.exp(-SETTLES * plant.date))
     gain = hidden.pressure_scale + hidden.pressure_curve * p_a[at] / (200 * BAR)
     gain += hidden.pressure_bend * np.maximum(1.0 - 150 * BAR / np.maximum(p_a[at], BAR), 0.0)
+    gain += hidden.pressure_s * np.sin(2.0 * np.pi * p_a[at] / (320 * BAR))
     shown = instruments.filtered(angle, hidden.speed_filter) if hidden.speed_filter > 0.0 else angle
     play = hidden.swivel_play * (1.0 if (plan.start // 60) % 2 else -1.0) + hidden.swivel_warm * warm
     columns: Columns = {

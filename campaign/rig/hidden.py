@@ -93,6 +93,7 @@ class Hidden(NamedTuple):
     pressure_scale_passive: float = 0.0  # relative, port A of the passive motors
     pressure_curve: float = 0.0  # relative at 200 bar, growing with pressure, port A of the driving motors
     pressure_bend: float = 0.0  # relative of what is above 150 bar, port A of the driving motors
+    pressure_s: float = 0.0  # gain error at 80 bar, the opposite at 240, nothing at 160, port A of the driving motors
     delay: float = 0.0  # s, of the speed signal
     delay_every: float = 1.0  # share of the runs that it is in
     delay_swing: float = 0.0  # s, to which a buffer fills every half minute before it is emptied

@@ -141,7 +141,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("foams", _motor(8.0, w=1.5, w0=70.0), held_out=True),
     ),
     "high_pressure_mixed": (
-        Law("cubic", _motor(3.6, p=3.0)), Law("film_builds_up", _motor(14.0, p=2.0, fade=60.0), held_out=True),
+        Law("cubic", _motor(3.6, p=3.0)), Law("film_builds_up", _motor(14.0, p=2.0, fade=60.0)),
+        Law("film_above_a_pressure", _motor(40.0, p=1.0, p0=90 * BAR, fade=60.0), held_out=True),
     ),
     "slip_leakage": (
         Law("cold_and_warm", _leak(1.0, 0.0)), Law("gap_opens", _leak(2.0, 1.0)),
@@ -174,7 +175,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     "pressure_scale": (
         Law("passive_side", _set(pressure_scale_passive=0.012)),
         Law("grows_with_pressure", _set(pressure_curve=0.008)),
-        Law("bends_at_150_bar", _set(pressure_bend=0.04), held_out=True),
+        Law("bends_at_150_bar", _set(pressure_bend=0.04)),
+        Law("s_shaped", _set(pressure_s=0.02), held_out=True),
     ),
     "signal_delay": (
         Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06)),

@@ -14,7 +14,7 @@ from campaign import rig
 from campaign.rig.flavour import ALL, FLAVOURS
 from campaign.rig.truth import CRANE2
 from winch_friction.discrepancy.candidates.candidate import MOVING
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.candidates.catalogue import candidates_for
 from winch_friction.discrepancy.candidates.catalogue import testable as usable_of
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.run_states import run_states
@@ -58,7 +58,9 @@ def share_left(effect: str, crane, model) -> float:
     states = run_states(
         [replace(run, gap=run.gap - null.gap) for run, null in zip(prepared, without, strict=True)], model
     )
-    known = [c for c in (*all_candidates(), *states) if c.name == cause and c.regime == MOVING]
+    known = [
+        c for c in (*candidates_for(prepared, model), *states) if c.name == cause and c.regime == MOVING and not c.free
+    ]
     usable, _ = usable_of(known, prepared, model)
     assert usable, cause
     left = []

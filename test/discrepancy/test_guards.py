@@ -25,6 +25,7 @@ from winch_friction.discrepancy.engine.selection import (
     _significant,
     select,
 )
+from winch_friction.discrepancy.engine.trials import heads
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -459,3 +460,39 @@ def test_a_rival_is_worse_only_where_the_segments_say_so(behind, scatter, rival)
     current, without = explanation(np.ones(40)), explanation(3.0 * np.ones(40))
     trial = explanation(1.0 + behind + scatter * sign)
     assert does_as_well(trial, current, without, np.random.default_rng(0)) is rival
+
+
+# -- which law speaks for a cause
+@pytest.mark.parametrize(
+    ("law", "curve", "speaks"),
+    [
+        (4.0, 1.5, "curve"),  # less than half of what the law leaves
+        (4.0, 2.5, "law"),
+        (0.3, 0.0, "law"),  # what the law leaves is nobody's effect
+    ],
+)
+def test_a_curve_speaks_for_a_cause_that_its_laws_describe_badly(law, curve, speaks):
+    """Beside another cause it would have to give back five per cent of all it explains."""
+    cross = crossfit(noise())
+    blocks = float(cross.problem.grams.count.sum())
+    trials = [
+        _trial(Slot("wear", "", (1,), law="law"), cross.floor + law * blocks),
+        _trial(Slot("wear", "", (2,), law="curve", free=True), cross.floor + curve * blocks),
+    ]
+    (head,) = heads(cross, cross.floor + 200.0 * blocks, trials)
+    assert head.slots[-1].law == speaks
+
+
+def test_a_curve_leads_another_cause_only_by_what_it_gives_back():
+    cross = crossfit(noise())
+    blocks = float(cross.problem.grams.count.sum())
+    trials = [
+        _trial(Slot("wear", "", (1,), law="curve", free=True), cross.floor + 1.5 * blocks),
+        _trial(Slot("brake", "", (2,), law="law"), cross.floor + 4.0 * blocks),
+    ]
+    first, second = heads(cross, cross.floor + 200.0 * blocks, trials)
+    assert (first.slots[-1].name, second.slots[-1].name) == ("brake", "wear")
+
+
+def _trial(slot, loss):
+    return replace(explanation(np.full(40, loss / 40)), slots=(slot,))

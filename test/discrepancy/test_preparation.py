@@ -1,11 +1,14 @@
 """What of a record is used: nothing where the direction of motion, and with it that of friction, is uncertain."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from winch_friction.discrepancy.preparation.balance import measured_groups
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
+from winch_friction.discrepancy.preparation.prepare import _followed
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.physics.signals import Run
 
@@ -91,3 +94,19 @@ def test_the_noise_of_a_feedback_does_not_swing_the_motors(crane_150t):
     found = _fed_back(crane_150t, np.full(6000, 150.0))
     assert np.ptp(found) == 0.0
     assert found[0] == pytest.approx(150.0, abs=0.05)
+
+
+def test_a_slow_log_keeps_no_sample_that_stands_alone_among_what_it_cannot_follow(crane_150t):
+    """A torque of inertia that swings bends between samples; where it turns it does not for a sample or two, and
+    two samples of a run have given a locked gap of 39 bar."""
+    time = np.arange(0.0, 80.0, 0.1)
+    quick = 12000.0 * np.sin(2.0 * np.pi * time / 4.0) * (time < 60.0)  # N m
+    still = SimpleNamespace(acceleration=np.zeros_like(time))
+    kept = _followed(
+        SimpleNamespace(dt=0.1, time=time), still, SimpleNamespace(inertial_torque=quick),
+        SimpleNamespace(unit_torque=33.0), crane_150t, (0.0, 0.0),
+    )  # fmt: skip
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], kept.astype(int), [0]])))
+    assert kept[620:].all()
+    assert kept[:590].mean() < 0.05
+    assert (edges[1::2] - edges[::2]).min() >= 5

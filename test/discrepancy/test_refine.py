@@ -1,10 +1,13 @@
 """Finer shapes around the one that was found."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.candidates.families import CURVES, SURFACES, name_of
+from winch_friction.discrepancy.candidates.families import CURVES, SURFACES, free_members, name_of
+from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 
 
 def candidate(name):
@@ -44,3 +47,29 @@ def test_every_curve_and_surface_has_a_name_of_its_own():
     """By it a slot is found again, and a table in a model file."""
     names = [name_of(row) for row in (*CURVES, *SURFACES)]
     assert sorted(names) == sorted(set(names))
+
+
+def covered():
+    """A run that has seen every speed, load and displacement of a small winch."""
+    n = 600
+    speed = np.linspace(1.0, 200.0, n)
+    index = {each.name: k for k, each in enumerate(WINCH_SIGNALS)}
+    point = [np.ones(n) for _ in WINCH_SIGNALS]
+    point[index["speed_magnitude"]], point[index["drum_torque"]] = speed, 1e3 * speed
+    point[index["time"]] = 1.7e9 + 1e5 * speed
+    return SimpleNamespace(
+        used=np.ones(n, bool), time=speed, point=point, groups=[], drum_torque=1e3 * speed, gear_ratio=100.0,
+        constants=(),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("row", [row for row in CURVES if row.cause in ("gear_load_loss", "wear_drift", "stribeck")])
+def test_a_curve_that_was_found_bends_in_twice_as_many_places(row):
+    """What a coarse curve leaves of its own cause must not pass for a second one."""
+    (coarse,) = free_members([covered()], SimpleNamespace(term_names=()), [row])
+    fine = coarse.refined(coarse.shapes([])[0])
+    (_, few), (_, many) = coarse.term.table.knots[0], fine.term.table.knots[0]
+    assert set(few) < set(many)
+    assert len(many) == 2 * len(few) - 1
+    assert (fine.name, fine.law_name, fine.free) == (coarse.name, coarse.law_name, True)
+    assert fine.refined(fine.shapes([])[0]) is fine

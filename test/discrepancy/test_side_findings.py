@@ -9,8 +9,9 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.detectors.ripple import Ripple, angle_ripple
+from winch_friction.discrepancy.detectors.ripple import TERM, Ripple, _known, angle_ripple
 from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -111,3 +112,20 @@ def test_a_comb_is_counted_one_line_after_the_other(seed):
 def test_a_line_between_whole_orders_must_be_surer(order, p_value, found):
     """Nothing on the shaft has 13.2 periods a turn; an encoder that beats with the sampling may."""
     assert Ripple(order, 0.01, 1e-4, p_value, 100.0).found is found
+
+
+@pytest.mark.parametrize(
+    ("order", "amplitude", "known"), [(2.0, 0.6, True), (2.0, 0.9, False), (1.03, 0.6, False), (2.05, 0.6, True)]
+)
+def test_what_one_amplitude_leaves_of_a_known_ripple_is_no_second_one(order, amplitude, known):
+    """Pressure lines and the sampling take more of it the faster the shaft turns: slow runs keep more than the model's
+    amplitude, fast ones less. One that grew, or of another order, is seen."""
+    crane_model = load_model("a6vm215_crane2")
+    size = {"a_r": 0.004, "b_r": 0.003, "k_r": 2.0}
+    rippled = FrictionModel(
+        "rippled", (*crane_model.terms, term_named(TERM)), (*crane_model.values, *size.values()),
+    )  # fmt: skip
+    found = Ripple(order, amplitude * 0.005, 1e-5, 1e-20, 8.0)
+    assert found.found
+    assert _known(found, rippled) is known
+    assert not _known(found, crane_model)

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.candidates.bends import bends_over, bent_pressure_columns, curve_columns
 from winch_friction.discrepancy.candidates.candidate import machine_sizes
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.feedback import _swivel
@@ -18,7 +19,8 @@ from winch_friction.discrepancy.candidates.signals import (
     warm_columns,
 )
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
-from winch_friction.physics.corrections import straight
+from winch_friction.physics.corrections import straight, unbent
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import CM3_PER_REV
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
@@ -99,3 +101,32 @@ def test_at_20_hz_delays_and_inertias_are_looked_for(name, period, tested):
     )  # fmt: skip
     candidate = next(each for each in all_candidates() if each.name == name and not each.law_name)
     assert (candidate.untestable([log]) is None) is tested
+
+
+@pytest.mark.parametrize("error", [0.02, -0.03])
+def test_the_column_of_a_bend_is_the_torque_that_its_correction_takes_out(error):
+    """Port by port: beyond the pressure alone, and what port B has there counts against port A."""
+    at = 8.0e6
+    bent = Correction("pressure_bend", error, beyond=at)
+    logged = [true + error * np.maximum(true - at, 0.0) for true in (A, B)]
+    for shown, true in zip(logged, (A, B), strict=True):
+        np.testing.assert_allclose(unbent(shown, bent), true, rtol=1e-12)
+    column = bent_pressure_columns(run(), {"groups": ALL, "beyond": at})
+    np.testing.assert_allclose(error * column[:, 1], MOTORS * SWASH * ((logged[0] - logged[1]) - (A - B)), rtol=1e-9)
+    np.testing.assert_allclose(column[:, 0], MOTORS * SWASH * (A - B))
+
+
+def test_the_columns_of_a_feedbacks_curve_are_its_zero_and_its_bends():
+    at = {"beyond_1": 0.5 * SWASH, "beyond_2": 0.75 * SWASH, "beyond_3": 1.5 * SWASH}
+    columns = curve_columns(run(), {"groups": ALL, **at})
+    expected = [1.0, 0.5 * SWASH, 0.25 * SWASH, 0.0]
+    np.testing.assert_allclose(columns, (A - B)[:, None] * MOTORS * np.array(expected))
+
+
+def test_where_a_transducer_may_bend_stays_while_the_pressures_are_reckoned_anew():
+    own = run()
+    own.used, own.constants = np.ones(3, bool), (("max_displacement", 2.0 * SWASH),)
+    (found,) = [each for each in bends_over([own]) if each.name == "pressure_scale"]
+    other = run()
+    other.used, other.constants, other.groups[0] = own.used, own.constants, replace(other.groups[0], pressure_sum=A)
+    assert [each.label for each in found.shapes([other])] == [each.label for each in found.shapes([own])]

@@ -16,7 +16,7 @@ from winch_friction.physics.corrections import (
 )
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.gas import relaxed_compression
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.viscosity import relative_viscosity
 from winch_friction.physics.winch import Drum
@@ -48,11 +48,15 @@ def truth():
     return Run("truth", columns)
 
 
+BENDS_AT = {"Pa": 210.0 * BAR, "m^3/rad": 140.0 * CM3_PER_REV}
+
+
 def ties(name):
     """What a correction of that name has to be given beside its value."""
     own = DECLARED[name]
     more = {"groups": ("active",)} if own.by_group else {}
     more |= {"during": ((-20.0, 30.0),)} if own.grows else {}
+    more |= {"beyond": BENDS_AT[own.bends_in]} if own.bends_in else {}
     return more | ({"time_constant": 60.0} if own.has_time_constant else {})
 
 
@@ -81,6 +85,8 @@ def spoiled(run, correction):
                 columns[name] = true * (1.0 + e)
             elif action is Action.CURVATURE:
                 columns[name] = true * (1.0 + e * true)
+            elif action is Action.BEND:
+                columns[name] = np.where(true > correction.beyond, true + e * (true - correction.beyond), true)
             elif action is Action.DELAY:
                 columns[name] = np.interp(time - e, time, true)
             elif action is Action.MASS:
@@ -350,3 +356,35 @@ def test_what_a_running_node_cannot_take_out_is_accepted_once_it_is_over(truth, 
         else:
             with pytest.raises(InputError, match="signal_delay"):
                 SampleCorrector(crane_150t, model, since=now)
+
+
+def test_several_bends_are_taken_out_in_turn(truth, crane_150t, crane2_model):
+    """Each is put on what those nearer to zero have made of the signal, whatever their order in the file."""
+    bends = [(180.0 * BAR, 0.04), (215.0 * BAR, -0.06), (235.0 * BAR, 0.05)]
+    logged = truth["active.pressure_a"].copy()
+    for beyond, e in bends:
+        logged = logged + e * np.maximum(logged - beyond, 0.0)
+    corrections = tuple(
+        Correction("pressure_bend", e, groups=("active",), beyond=beyond)
+        for beyond, e in (bends[1], bends[0], bends[2])
+    )
+    model = replace(crane2_model, corrections=corrections)
+    log = replace(truth, columns={**truth.columns, "active.pressure_a": logged})
+    right, _ = corrected(log, crane_150t, model)
+    assert np.abs(right["active.pressure_a"] - truth["active.pressure_a"]).max() < 1e-3
+    member = GroupSample(float(logged[70]), 25.0 * BAR, 150.0 * CM3_PER_REV)
+    live = SampleCorrector(crane_150t, model)(Sample(0.0, 1.0, groups={"active": member}))
+    assert live.groups["active"].pressure_a == pytest.approx(truth["active.pressure_a"][70], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "beyond", "says"),
+    [
+        ("pressure_bend", None, "needs beyond, in Pa"),
+        ("displacement_bend", -1.0, "beyond must be above 0 m"),
+        ("pressure_scale", 1e7, "has no beyond"),
+    ],
+)
+def test_a_bend_says_where_it_begins(name, beyond, says):
+    with pytest.raises(InputError, match=says):
+        Correction(name, 0.01, beyond=beyond)

@@ -17,6 +17,7 @@ def every_correction():
     for name, own in DECLARED.items():
         more = {"time_constant": 45.0} if own.has_time_constant else {}
         more |= {"during": ((1.7e9, 1.8e9),)} if own.grows else {}
+        more |= {"beyond": {"Pa": 150 * BAR, "m^3/rad": 100 * CM3_PER_REV}[own.bends_in]} if own.bends_in else {}
         lower = 0.0 if own.parameter.lower == 0.0 else 0.5 * own.parameter.lower
         value = own.parameter.typical / 3.0
         found.append(Correction(name, value, 0.1 * value, lower, 2.0 * own.parameter.typical, "a test", **more))

@@ -8,10 +8,12 @@ from clean_sensors import CLEAN
 
 from winch_friction.physics.corrections import DECLARED, Action, Correction, corrected, corrected_crane
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, GRAVITY
+from winch_friction.physics.units import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.simulation import Simulator, simulate
 
-SIGNALS = [n for n, d in DECLARED.items() if d.action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.DELAY)]
+OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.DELAY)
+SIGNALS = [n for n, d in DECLARED.items() if d.action in OF_SENSORS]
+BENDS_AT = {"Pa": 60.0 * BAR, "m^3/rad": 50.0 * CM3_PER_REV}
 OF_THE_PLANT = [n for n, d in DECLARED.items() if d.action in (Action.WARMTH, Action.HEAT, Action.SLIP)]
 STILL = {**CLEAN, "sea": {"kind": "still"}, "duration": 20.0}
 
@@ -30,6 +32,7 @@ def wrong(model, name, size=1.0, **more):
 def test_a_signal_is_wrong_in_the_log_and_right_again(name, sign, scenario, crane, model):
     plain = simulate(scenario, crane, model).run
     more = {"during": ((-2.0, -1.0),)} if DECLARED[name].grows else {}  # grown long ago
+    more |= {"beyond": BENDS_AT[DECLARED[name].bends_in]} if DECLARED[name].bends_in else {}
     erring = wrong(model, name, sign, groups=("active",) if DECLARED[name].by_group else (), **more)
     log = simulate(scenario, crane, erring).run
     right, same = corrected(log, crane, erring)

@@ -89,6 +89,12 @@ class Side:
         """What is left at best: the noise, and what no balance closes better than."""
         return float(np.hypot(self.noise_floor, self.least_noise))
 
+    @property
+    def left_by_run(self) -> "list[tuple[PreparedRun, FloatArray]]":
+        """Each run with what its blocks keep, in floors."""
+        floor = max(self.floor, 1e-12)
+        return [(run, self.after[self.blocks.run == k] / floor) for k, run in enumerate(self.runs)]
+
 
 @dataclass(frozen=True)
 class GapResult:

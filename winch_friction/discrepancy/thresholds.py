@@ -16,6 +16,9 @@ class Thresholds:
     least_each_way: float = 3.0  # s hoisting and lowering: one way alone, load and friction are one
     least_locked: float = 4.0  # s that move in what is locked: twenty blocks
     least_speed_spread: float = 1.3  # decile ratio; at one speed every loss is a constant
+    # s of one run of heave compensation in which no swing could be told: what it began with has died by then, three
+    # decay times of a rope's lightest damping (ratio 0.02) at the slowest mode (2.5 rad/s)
+    swing_told: float = 60.0
     least_share_moving: float = 0.0  # said, not asked for: a long idle log may hold enough
     # -- blocks and segments
     block_time: float = 0.2  # s: the fast noise averages out, friction does not
@@ -68,7 +71,8 @@ class Thresholds:
     stiffness: float = 0.01  # of what the data know of an interval of a curve, that speaks against a change of slope
     law_accuracy: float = 0.1  # of itself: what the literature's laws of losses are good for on another machine
     near_the_floor: float = 3.0  # times it: what an inexact law may leave; more is seen by whoever looks at the runs
-    outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall
+    outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall; and of what
+    # a law leaves, that a curve of the same cause may leave to speak for it
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
     seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand

@@ -64,6 +64,9 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
         notes=(*notes, *result.notes),
     )  # fmt: skip
+    swing = adequacy.of_swing([*result.train.left_by_run, *result.holdout.left_by_run])
+    if result.verdict == UNEXPLAINED and not swing.met:
+        return insufficient([*checks, swing], notes, crane, model, (given, split))
     if not options.proposals:
         return result
 

@@ -35,8 +35,8 @@ __all__ = [
 
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
-    Action.OFFSET, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP,
-    Action.AIR,
+    Action.OFFSET, Action.BEND, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH,
+    Action.SLIP, Action.AIR,
 )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     right = corrected_crane(crane, model.corrections)
     columns: Columns = dict(run.columns)
     for action in SIGNAL_ORDER:
-        for each in there:
+        for each in _in_turn(there):
             if each.declared.action is action:
                 columns = _ON_RUNS[action](columns, run, each, right)
     names = tuple(dict.fromkeys(each.name for each in there))
@@ -112,6 +112,21 @@ def _offset(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 def _scale(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     return columns | {name: columns[name] / (1.0 + c.value) for name in affected(c, run.groups) if name in columns}
+
+
+def _bend(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
+    return columns | {name: unbent(columns[name], c) for name in affected(c, run.groups) if name in columns}
+
+
+def unbent(logged: Any, c: Correction) -> Any:
+    """The true x of logged = x + e (x - beyond) for what lies beyond, and of logged = x below."""
+    assert c.beyond is not None
+    return logged - c.value / (1.0 + c.value) * np.maximum(logged - c.beyond, 0.0)
+
+
+def _in_turn(corrections: Iterable[Correction]) -> list[Correction]:
+    """Corrections in their order; of several bends the furthest first, for each was put on what is nearer to zero."""
+    return sorted(corrections, key=lambda c: -(c.beyond or 0.0))
 
 
 def _curvature(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
@@ -184,6 +199,7 @@ _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {
     Action.OFFSET: _offset,
     Action.SCALE: _scale,
     Action.CURVATURE: _curvature,
+    Action.BEND: _bend,
     Action.DELAY: _delay,
     Action.MASS: _mass,
     Action.WARMTH: _warmth,
@@ -215,7 +231,7 @@ class SampleCorrector:
             )
         self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
         live = [c for c in model.corrections if c.declared.live]
-        self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
+        self._signals = [c for action in SIGNAL_ORDER for c in _in_turn(live) if c.declared.action is action]
         self._lacking: tuple[str, ...] = ()
 
     @property
@@ -263,6 +279,8 @@ def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
         value: Any = getattr(member, channel)
         if c.declared.action is Action.OFFSET:
             right = value - error
+        elif c.declared.action is Action.BEND:
+            right = unbent(value, c)
         else:
             right = straight(value, error) if c.declared.action is Action.CURVATURE else value / (1.0 + error)
         setattr(member, channel, float(right))

@@ -53,13 +53,15 @@ def _correction(name: str, section: Section) -> Correction:
     value, tau = section.number("value") * factor, section.get("time_constant")
     fields = {key: number(key) for key in ("std", "lower", "upper")}
     groups, layers, source = _names(section, "groups", str), _names(section, "layers", int), section.text("source", "")
-    during = _windows(section)
+    during, beyond = _windows(section), section.get("beyond") if "beyond" in section else None
     section.close()
     time_constant = None if tau is None else as_quantity(tau, "s", f"{section.where}: time_constant")
+    if beyond is not None:
+        beyond = as_quantity(beyond, declared.bends_in or "1", f"{section.where}: beyond")
     try:
         return Correction(
             name, value, source=source, groups=groups, layers=layers, time_constant=time_constant, during=during,
-            **fields,
+            beyond=beyond, **fields,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{section.where}: {error}") from None
@@ -108,6 +110,8 @@ def _entry(c: Correction) -> dict[str, Any]:
         entry["layers"] = list(c.layers)
     if c.time_constant is not None:
         entry["time_constant"] = {"value": float(c.time_constant), "unit": "s"}
+    if c.beyond is not None:
+        entry["beyond"] = {"value": float(c.beyond), "unit": c.declared.bends_in}
     if c.during:
         entry["during"] = [list(window) for window in c.during]
     return entry

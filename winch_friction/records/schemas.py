@@ -58,6 +58,7 @@ _CORRECTION = _object(
         "groups": {"type": "array", "items": TEXT},
         "layers": {"type": "array", "items": {"type": "integer", "minimum": 1}},
         "time_constant": quantity("s"),
+        "beyond": quantity("Pa or m^3/rad"),
         "during": {"type": "array", "items": {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}},
     },
 )

@@ -8,7 +8,7 @@ from winch_friction.physics.friction.correction import Action, Correction
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.scenario import Scenario
-from winch_friction.simulation.sensors.channels import Channels
+from winch_friction.simulation.sensors.channels import MOST_BENDS, Channels
 
 # what the plant makes by itself, and the hidden effect to ask it for
 _OF_THE_PLANT = {
@@ -34,7 +34,7 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
                 f"of the model and use --hide {_OF_THE_PLANT[action]}"
             )
-        if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.DELAY):
+        if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.DELAY):
             _put_signal(each, scenario, channels)
         elif action is Action.MASS:
             _put_mass(each, scenario, plant[0])
@@ -56,8 +56,21 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
             row["scale"] *= 1.0 + correction.value
         elif correction.declared.action is Action.CURVATURE:
             row["curvature"] += correction.value
+        elif correction.declared.action is Action.BEND:
+            _put_bend(correction, row)
         else:
             row["delay"] += correction.value
+
+
+def _put_bend(correction: Correction, row: np.void) -> None:
+    """In order of where they begin, for each is put on what the ones before it have made of the signal."""
+    used = int(np.count_nonzero(row["bend"]))
+    if used == MOST_BENDS:
+        raise InputError(f"correction {correction.name}: a simulated sensor bends in at most {MOST_BENDS} places")
+    row["bend"][used], row["beyond"][used] = correction.value, correction.beyond
+    order = np.argsort(row["beyond"][: used + 1])
+    for name in ("bend", "beyond"):
+        row[name][: used + 1] = row[name][order]
 
 
 def _oil(correction: Correction, scenario: Scenario) -> float:

@@ -149,6 +149,7 @@ class Candidate:
     plain: bool = False  # a base term that a bare model simply lacks, of any size
     brings: tuple[str, ...] = ()  # lower-order effects that belong to it
     continuous: tuple[str, ...] = ()  # shape parameters on a grid over a positive quantity, refined once found
+    finer: "Callable[[], Candidate | None] | None" = None  # the same curve bent at more places, once it is found
     reversal_gain: float | None = None  # share of the error just after reversals that names it there; None: never
     reversal_rival: bool = False  # may explain what happens there
     shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
@@ -189,8 +190,10 @@ class Candidate:
 
     def refined(self, shape: Shape) -> "Candidate":
         """The candidate with more shapes around one of its own: what a coarse grid leaves over must not pass for a
-        second effect. Itself where it has no grid to refine.
+        second effect. Itself where it has no grid to refine; of a curve the same one with more places to bend.
         """
+        if self.finer is not None:
+            return self.finer() or replace(self, finer=None)
         if not self.continuous:
             return self
         return replace(self, shapes=partial(_finer, self, shape), continuous=())

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from winch_friction.discrepancy.candidates.bends import bends_over
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Untestable
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import feedback_candidates
@@ -54,7 +55,7 @@ def candidates_for(
     runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None
 ) -> list[Candidate]:
     """Every candidate, and of each family the free member over what these runs have covered."""
-    return [*all_candidates(effects_file), *free_members(runs, model)]
+    return [*all_candidates(effects_file), *bends_over(runs), *free_members(runs, model)]
 
 
 def testable(

@@ -53,7 +53,10 @@ def literature() -> list[Candidate]:
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
+        # at lower speeds and in proportion to the pressure it is a Stribeck curve
+        _of("high_pressure_mixed", "high_pressure_film", {"n_hf": (1.5, 2.0, 3.0), "w_hf": (20.0, 60.0, 180.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
+        _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
@@ -140,6 +143,7 @@ CURVES = (
     Free("stribeck", (SPEED,), (LOAD,), shape="falling", anchor="high", knots=LIMITS.stribeck_knots),
     Free("wear_drift", ("time",), presumes=COULOMB),
     Free("wear_drift", ("time",), shape="falling", presumes=COULOMB),
+    Free("wear_drift", ("time",), shape="convex_rising", presumes=COULOMB),
     Free("low_displacement_loss", (SWASH,), (PRESSURE,), Scope.MOTOR, "falling", "high"),
     Free("low_displacement_loss", (SWASH,), (), Scope.MOTOR, "falling", "high"),
     Free("low_displacement_loss", (PRESSURE,), (LEFT,), Scope.MOTOR, "convex_rising"),
@@ -174,8 +178,9 @@ def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequen
     return [each for each in found if each is not None and each.term is not None and each.term.name not in present]
 
 
-def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
-    shares = row.knots if len(row.signals) == 1 else LIMITS.surface_knots
+def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candidate | None:
+    curve = len(row.signals) == 1
+    shares = _halved(row.knots) if curve and fine else row.knots if curve else LIMITS.surface_knots
     knots = [_knots(_covered(signal, row.scope, runs), shares) for signal in row.signals]
     if any(len(at) < 3 or np.ptp(at) <= 1e-6 * np.abs(at).max() for at in knots):
         return None
@@ -195,7 +200,7 @@ def _free(row: Free, runs: Sequence[PreparedRun]) -> Candidate | None:
     return Candidate(
         row.cause, "", term.parameters, partial(term_columns, term), term=term, needs=row.needs,
         hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=name, free=True, own_size=True,
-        plausible=FAR,
+        plausible=FAR, finer=partial(_free, row, runs, True) if curve and not fine else None,
     )  # fmt: skip
 
 
@@ -204,7 +209,8 @@ def name_of(row: Free) -> str:
     parts = [f"free_{row.cause}", *row.times[:1]]
     parts += row.signals if len(row.signals) > 1 else ()
     parts += [row.side] if row.side != "both" else []
-    return "_".join([*parts, "falling"] if row.shape == "falling" and not row.times else parts)
+    bent = {"falling": not row.times, "convex_rising": row.cause == "wear_drift"}
+    return "_".join([*parts, row.shape.partition("_")[0]] if bent.get(row.shape) else parts)
 
 
 def bending(table: Table) -> FloatArray | None:
@@ -231,6 +237,12 @@ def _knots(values: FloatArray, shares: Sequence[float]) -> FloatArray:
     if not len(values):
         return values
     return np.unique([float(f"{k:.9g}") for k in np.quantile(values, shares)])
+
+
+def _halved(shares: Sequence[float]) -> tuple[float, ...]:
+    """The same shares with one more in the middle of every two."""
+    between = (0.5 * (a + b) for a, b in itertools.pairwise(shares))
+    return tuple(sorted([*shares, *between]))
 
 
 def _unit(times: tuple[str, ...]) -> str:

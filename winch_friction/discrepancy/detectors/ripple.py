@@ -30,7 +30,9 @@ WINDOW = 0.3  # s; slower than this is friction, not ripple
 SIGNIFICANT = 1e-6  # family-wise, for white noise; encoder steps and friction make real backgrounds lumpier
 # an angle added up from the speed carries the encoder's steps itself
 SIGNIFICANT_WITHOUT_ANGLE = 1e-12
-LEFT_OF_KNOWN = 0.4  # share of the known amplitude that its estimate may leave
+# share of the known amplitude that its estimate may leave: pressure lines and the sampling take more of it the faster
+# the shaft turns, and one amplitude for all speeds leaves up to itself
+LEFT_OF_KNOWN = 0.8
 SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
 FEWEST = 200  # moving samples of a run
 # what turns with the shaft has whole orders, a later gear's mesh has others above 1, and so has an encoder's beat with

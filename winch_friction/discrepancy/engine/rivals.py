@@ -21,7 +21,7 @@ def rivals_of(
     rest = current.slots[:k] + current.slots[k + 1 :]
     own = current.slots[k]
     slots = fitted(cross, rest, current.names)
-    trials = heads(without.loss, [cross.explain((*rest, slot)) for slot in slots])
+    trials = heads(cross, without.loss, [cross.explain((*rest, slot)) for slot in slots])
     equal = []
     for trial in trials:
         alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)

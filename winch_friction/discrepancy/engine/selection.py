@@ -9,7 +9,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.rivals import does_as_well, rivals_of
-from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted
+from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
@@ -179,12 +179,14 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
             without, own = cross.explain(rest), current.slots[k]
+            trials = [cross.explain((*rest, slot)) for slot in fitted(cross, rest, {slot.name for slot in rest})]
+            trials = heads(cross, without.loss, trials)
             least = charged(without.loss, current.loss, own) * (1.0 - NO_BETTER)
-            others = [each for each in fitted(cross, rest, {slot.name for slot in rest}) if each is not own]
-            trials = [cross.explain((*rest, slot)) for slot in others]
-            best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]), default=current)
-            if trials and charged(without.loss, best.loss, best.slots[-1]) < least:
-                current, improved = cross.explain((*rest[:k], best.slots[-1], *rest[k:])), True
+            best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]))
+            new = best.slots[-1]
+            curve = new.name == own.name and new.free and not own.free  # of its own cause, and leaves far less
+            if curve or charged(without.loss, best.loss, new) < least:
+                current, improved = cross.explain((*rest[:k], new, *rest[k:])), True
         if not improved:
             break
     return current

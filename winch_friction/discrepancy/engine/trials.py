@@ -11,7 +11,8 @@ def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str
     """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
     each family the law that does best on held-out runs.
     """
-    return heads(current.loss, [cross.explain((*current.slots, slot)) for slot in fitted(cross, current.slots, taken)])
+    slots = fitted(cross, current.slots, taken)
+    return heads(cross, current.loss, [cross.explain((*current.slots, slot)) for slot in slots])
 
 
 def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list[Slot]:
@@ -27,12 +28,27 @@ def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list
     return [slot for _, slot in best.values()]
 
 
-def heads(before: float, trials: Sequence[Explanation]) -> list[Explanation]:
+def heads(cross: CrossFit, before: float, trials: Sequence[Explanation]) -> list[Explanation]:
     """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
-    heads: dict[str, Explanation] = {}
+    families: dict[str, list[Explanation]] = {}
     for trial in sorted(trials, key=lambda each: charged(before, each.loss, each.slots[-1])):
-        heads.setdefault(trial.slots[-1].name, trial)
-    return list(heads.values())
+        families.setdefault(trial.slots[-1].name, []).append(trial)
+    return [_head(cross, members) for members in families.values()]
+
+
+def _head(cross: CrossFit, members: Sequence[Explanation]) -> Explanation:
+    """Of one cause's laws, the best first, that which speaks for it: the first, or the curve that leaves less than half
+    of what that one leaves above the floor, if this is more than nothing.
+
+    Between two causes flexibility costs a share of what is explained, for it imitates; within one it is how a law
+    differs from the literature's, and what counts is what is left.
+    """
+    first = members[0]
+    left = first.loss - cross.floor
+    if first.slots[-1].free or left <= LIMITS.least_excess * float(cross.problem.grams.count.sum()):
+        return first
+    closer = min((each for each in members if each.slots[-1].free), key=lambda each: each.loss, default=first)
+    return closer if closer.loss - cross.floor < LIMITS.outdone * left else first
 
 
 def charged(before: float, after: float, own: Slot) -> float:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+from scipy.ndimage import binary_opening, maximum_filter1d
 
 from winch_friction.discrepancy.preparation.balance import SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
@@ -29,6 +29,7 @@ READ_AS = {
 # over its period; nulls at 10 Hz, rigid wires in irregular seas, lost 0.06 to 0.08
 BENT_AWAY = 1.0 / 12.0
 TURNS = 0.5  # rad of the wire's mode in a sample, from where on its swing bends between samples at any rate
+FOLLOWED_FOR = 0.5  # s without a bend, for samples to count
 SHOWS = 1.5  # least noises: a step of a 12-bit transducer
 FEWEST_MOVING = 100  # samples in which a swing can be looked for
 MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
@@ -129,7 +130,9 @@ def _followed(
         return np.ones(len(grid.time), bool)
     torque = np.pad(crane.inertia * motion.acceleration + load.inertial_torque, 1, mode="edge")
     bend = maximum_filter1d(np.abs(np.diff(torque, 2)), 3)
-    return np.asarray(BENT_AWAY * bend <= SHOWS * LIMITS.least_noise * balance.unit_torque)
+    followed = BENT_AWAY * bend <= SHOWS * LIMITS.least_noise * balance.unit_torque
+    # a sample or two between many that it cannot follow are turning points, and no place where it can
+    return np.asarray(binary_opening(followed, np.ones(max(round(FOLLOWED_FOR / grid.dt), 1), bool)))
 
 
 def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:

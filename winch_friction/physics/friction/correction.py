@@ -25,6 +25,7 @@ class Action(Enum):
     OFFSET = "offset"  # measured = true + e (times the oil's temperature above 40 degC where it is named)
     SCALE = "scale"  # measured = true (1 + e)
     CURVATURE = "curvature"  # measured = true (1 + e true)
+    BEND = "bend"  # measured = true + e (true - beyond) from `beyond` on, true below
     DELAY = "delay"  # measured(t) = true(t - e)
     MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
     RADIUS = "radius"  # rope radius = crane file's + e
@@ -57,6 +58,7 @@ class DeclaredCorrection:
     has_time_constant: bool = False
     live: bool = True
     grows: bool = False
+    bends_in: str = ""  # unit of `beyond`
 
     @property
     def doc(self) -> str:
@@ -108,6 +110,10 @@ _DECLARED = (
         "gain error of the transducer at port A per pressure", "pressure_a",
     ),
     _signal(
+        "pressure_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the transducers at both ports beyond a pressure",
+        *_PRESSURES, bends_in="Pa",
+    ),
+    _signal(
         "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
         "zero error of the displacement feedback", "displacement",
     ),
@@ -126,6 +132,10 @@ _DECLARED = (
     _signal(
         "displacement_curvature", Action.CURVATURE, "rad/m^3", 100.0, 1e4,
         "gain error of the displacement feedback per displacement", "displacement",
+    ),
+    _signal(
+        "displacement_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the feedback beyond a displacement",
+        "displacement", bends_in="m^3/rad",
     ),
     _signal("signal_delay", Action.DELAY, "s", 0.05, 0.5, "how late the speed is logged", *_SPEED, live=False),
     _signal(
@@ -186,9 +196,8 @@ class Correction:
 
     `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade; `during` the windows of
     absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in which it
-    grew. Bounds that are
-    not given are the declared ones. Raises `InputError` for a value, bounds or ties that the declaration does not
-    allow.
+    grew; `beyond` where a bend begins, in its channel's SI unit. Bounds that are not given are the declared ones.
+    Raises `InputError` for a value, bounds or ties that the declaration does not allow.
     """
 
     name: str
@@ -201,6 +210,7 @@ class Correction:
     layers: tuple[int, ...] = ()
     time_constant: float | None = None
     during: tuple[tuple[float, float], ...] = ()
+    beyond: float | None = None
 
     def __post_init__(self) -> None:
         own = self.declared
@@ -219,6 +229,11 @@ class Correction:
             raise InputError(f"correction '{self.name}' {needs}")
         if self.time_constant is not None and not 0.0 < self.time_constant < float("inf"):
             raise InputError(f"correction '{self.name}': time_constant must be above 0 s, found {self.time_constant:g}")
+        if bool(own.bends_in) != (self.beyond is not None):
+            needs = f"needs beyond, in {own.bends_in}" if own.bends_in else "has no beyond"
+            raise InputError(f"correction '{self.name}' {needs}")
+        if self.beyond is not None and not 0.0 < self.beyond < float("inf"):
+            raise InputError(f"correction '{self.name}': beyond must be above 0 {own.bends_in}, found {self.beyond:g}")
         if self.during and own.kind not in ("signal", "load"):
             raise InputError(f"correction '{self.name}' cannot be tied to a time: the {own.kind} does not change")
         if not all(begin < end for begin, end in self.during):
@@ -237,9 +252,9 @@ class Correction:
         return self.lower, self.upper  # type: ignore[return-value]
 
     @property
-    def ties(self) -> tuple[tuple[str, ...], tuple[int, ...], tuple[tuple[float, float], ...]]:
-        """What it is restricted to: motor groups, wire layers, windows of time."""
-        return self.groups, self.layers, self.during
+    def ties(self) -> tuple[tuple[str, ...], tuple[int, ...], tuple[tuple[float, float], ...], float | None]:
+        """What it is restricted to: motor groups, wire layers, windows of time, what lies beyond a value."""
+        return self.groups, self.layers, self.during, self.beyond
 
     def holds(self, time: float) -> bool:
         """Whether the error is there at that time, s."""
@@ -274,7 +289,7 @@ class Correction:
 
 
 def check_corrections(corrections: tuple[Correction, ...]) -> None:
-    """Raise `InputError` where one correction stands twice for the same groups, layers and times."""
+    """Raise `InputError` where one correction stands twice for the same groups, layers, times and place to bend."""
     seen = [(each.name, each.ties) for each in corrections]
     for name, ties in seen:
         if seen.count((name, ties)) > 1:

@@ -14,9 +14,11 @@ GROUP_SOURCES = {"pressure_a": "pressure_a", "pressure_b": "pressure_b", "displa
 SPEED = "motor_speed"
 OPTIONAL = ("wire_layer",)  # besides the plant's own columns
 
+MOST_BENDS = 8  # of one sensor
 CHANNEL = np.dtype(
     [("source", np.int64)]
     + [(name, np.float64) for name in ("delay", "noise", "relative_noise", "step", "scale", "curvature", "offset")]
+    + [(name, np.float64, (MOST_BENDS,)) for name in ("bend", "beyond")]
 )
 
 

@@ -69,6 +69,10 @@ def scan(history, period, settings, ends, normals, j, row):
             continue
         value = at_time(history, s.source, period, middle - s.delay)
         value *= s.scale * (1.0 + s.curvature * s.scale * value)
+        for k in range(len(s.bend)):
+            if s.bend[k] == 0.0:
+                break
+            value += s.bend[k] * max(value - s.beyond[k], 0.0)
         value = value * (1.0 + s.relative_noise * normals[j, c]) + s.offset + s.noise * normals[j, c]
         row[c + 1] = quantise(value, s.step)
 

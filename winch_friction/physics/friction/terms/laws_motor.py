@@ -23,9 +23,15 @@ T_cv = Parameter("T_cv", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm
 n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.5, shape=True, doc="exponent of the speed")
 K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
 n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
+K_hf = Parameter("K_hf", "N*m", 10.0, upper=500.0, doc="mixed loss at 200 bar and standstill")
+n_hf = Parameter("n_hf", "1", 2.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
+w_hf = Parameter("w_hf", "rad/s", 60.0, lower=1.0, upper=500.0, shape=True, doc="speed over which a film builds up")
 c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")
 w_np = Parameter("w_np", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
 a_np = Parameter("a_np", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
+c_na = Parameter("c_na", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar and its own speed")
+w_na = Parameter("w_na", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
+a_na = Parameter("a_na", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
 p_l = Parameter(  # of a small winch, whose flow never comes near, it is the law carried on to there
     "p_l", "Pa", 2e5, upper=1e9, doc="pressure lost between transducer and motor at 0.02 m^3/s"
 )
@@ -59,10 +65,18 @@ high_pressure_power = _motor(
     (K_hp, n_hp),
     "paper 1 eq 10, C_m, with the exponent left open",
 )
+high_pressure_film = _motor(
+    "high_pressure_film", K_hf.symbol * _p**n_hf.symbol * sp.exp(-w / w_hf.symbol), (K_hf, n_hf, w_hf),
+    "paper 1 eq 10, C_m, which fades as a film builds up with the speed (Stribeck 1902)",
+)  # fmt: skip
 notch_power = _motor(
     "notch_power",
     c_np.symbol * 2 * w * w_np.symbol / (w**2 + w_np.symbol**2) * _p**a_np.symbol * _x, (c_np, w_np, a_np),
     "paper 1 eq 12 (C_k), with speed and exponent left open",
+)  # fmt: skip
+notch_any_stroke = _motor(
+    "notch_any_stroke", c_na.symbol * 2 * w * w_na.symbol / (w**2 + w_na.symbol**2) * _p**a_na.symbol,
+    (c_na, w_na, a_na), "paper 1 eq 12 (C_k), of an area that the stroke does not change",
 )  # fmt: skip
 line_pressure_power = _motor(
     "line_pressure_power", p_l.symbol * D * (n * D * w / FULL_FLOW + _TINY) ** n_l.symbol * (1 + b_l.symbol * s),

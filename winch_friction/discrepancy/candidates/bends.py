@@ -1,0 +1,148 @@
+"""Candidates in what shows a signal unevenly: a transducer whose gain changes at a pressure, a feedback whose curve the
+data draw.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
+from winch_friction.discrepancy.candidates.feedback import D_0, LARGEST
+from winch_friction.discrepancy.candidates.signals import (
+    ALL,
+    BALANCING,
+    e_p,
+    group_columns,
+    group_shapes,
+    groups_of,
+    in_groups,
+)
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.term import Parameter
+
+PRESSURES = (0.2, 0.4, 0.6)  # quantiles of what was covered, at which the gain may change
+STROKES = (0.1, 0.4, 0.7)  # the same of the displacement, at which the feedback's curve bends
+FEWEST_STROKES = 6  # displacements a twentieth of the largest apart: a zero, three bends, and two that could contradict
+
+b_p = Parameter("b_p", "1", 0.02, lower=-0.5, upper=0.5, doc="gain error of the transducers beyond a pressure")
+BENDS = tuple(
+    Parameter(f"b_D{k}", "1", 0.02, lower=-0.5, upper=0.5, doc=f"change {k} of the feedback's gain over the stroke")
+    for k in range(1, len(STROKES) + 1)
+)
+
+_Signal = Callable[[GroupSignals], FloatArray]
+
+
+def _high(g: GroupSignals) -> FloatArray:
+    return 0.5 * (g.pressure_sum + np.abs(g.pressure))
+
+
+def _displacement(g: GroupSignals) -> FloatArray:
+    return g.displacement
+
+
+def _covered(runs: Sequence[PreparedRun], which: float, signal: _Signal) -> FloatArray:
+    """What the moving samples have seen of a signal of the groups that a shape speaks of."""
+    parts = [
+        np.broadcast_to(signal(g), run.time.shape)[run.used] for run in runs for g in run.groups if _chosen(g, which)
+    ]
+    return np.concatenate(parts) if parts else np.array([])
+
+
+def bent_pressure_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """A gain error, and what is added beyond a pressure, N m, shape (samples, 2)."""
+
+    def gain(g: GroupSignals) -> FloatArray:
+        return g.count * g.displacement * g.pressure
+
+    def beyond(g: GroupSignals) -> FloatArray:
+        ports = (0.5 * (g.pressure_sum + sign * g.pressure) for sign in (1.0, -1.0))
+        a, b = (np.maximum(port - values["beyond"], 0.0) for port in ports)
+        return g.count * g.displacement * (a - b)
+
+    return np.hstack([group_columns(gain, run, values), group_columns(beyond, run, values)])
+
+
+def _pressure_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = []
+    for each in group_shapes(runs):
+        covered = _covered(runs, each.values["groups"], _high)
+        for at in np.quantile(covered, PRESSURES) if len(covered) else ():
+            label = f"{each.label}, beyond {at / 1e5:.0f} bar"
+            shapes.append(Shape(label, {**each.values, "beyond": float(at)}, carried=each.carried))
+    return shapes
+
+
+def _to_pressure(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = groups_of(shape, sides)
+    return [
+        correction("pressure_scale", found[e_p.name], groups=groups),
+        correction("pressure_bend", found[b_p.name], groups=groups, beyond=shape.values["beyond"]),
+    ]
+
+
+def curve_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the feedback and its changes of gain over the stroke, N m, shape (samples, 1 + bends)."""
+
+    def column(g: GroupSignals, at: float) -> FloatArray:
+        return g.count * g.pressure * np.maximum(g.displacement - at, 0.0)
+
+    zero = group_columns(lambda g: g.count * g.pressure, run, values)
+    bends = [group_columns(partial(column, at=values[f"beyond_{k}"]), run, values) for k in range(1, len(BENDS) + 1)]
+    return np.hstack([zero, *bends])
+
+
+def _curve_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = []
+    for each in group_shapes(runs):
+        at = np.quantile(_strokes(runs, each.values["groups"]), STROKES)
+        if np.diff(at).min() > 0.0:
+            own = {f"beyond_{k}": float(v) for k, v in enumerate(at, start=1)}
+            shapes.append(Shape(each.label, {**each.values, **own}, carried=each.carried))
+    return shapes
+
+
+def _strokes(runs: Sequence[PreparedRun], which: float) -> FloatArray:
+    """One displacement for every run and group: what a run holds counts once, however long it is."""
+    own = [float(np.median(g.displacement)) for run in runs for g in run.groups if _chosen(g, which)]
+    return np.array(own or [0.0])
+
+
+def _chosen(g: GroupSignals, which: float) -> bool:
+    return which == ALL or g.balances == (which == BALANCING)
+
+
+def _few_strokes(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
+    if largest > 0.0 and len(set(np.round(20.0 * _strokes(runs, BALANCING) / largest))) >= FEWEST_STROKES:
+        return None
+    return "more displacements", "a curve over the stroke shows between many displacements"
+
+
+def _to_curve(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = groups_of(shape, sides)
+    return [
+        correction("displacement_offset", found[D_0.name], groups=groups),
+        *(
+            correction("displacement_bend", found[p.name], groups=groups, beyond=shape.values[f"beyond_{k}"])
+            for k, p in enumerate(BENDS, start=1)
+        ),
+    ]
+
+
+def bends_over(runs: Sequence[PreparedRun]) -> list[Candidate]:
+    """A transducer that bends at a pressure, and a feedback whose curve over the stroke the data draw; where they may
+    bend is what these runs have covered, and stays so while the pressures are reckoned anew around what was found.
+    """
+    pressures, strokes = _pressure_shapes(runs), _curve_shapes(runs)
+    found = [
+        in_groups("pressure_scale", r"\sum_g n_g D_g\,(e_p\,\Delta p_g + b_p\,(p_g - p_b)_+)", (e_p, b_p),
+                  bent_pressure_columns, lambda _: pressures, _to_pressure, law_name="bends at a pressure"),
+        in_groups("swivel_offset", r"\sum_g n_g\,\Delta p_g\,(D_0 + \sum_k b_{Dk}\,(D_g - D_k)_+)", (D_0, *BENDS),
+                  curve_columns, lambda _: strokes, _to_curve, law_name="a curve over the stroke", blind=_few_strokes,
+                  free=True),
+    ]  # fmt: skip
+    return [each for each, shapes in zip(found, (pressures, strokes), strict=True) if shapes]

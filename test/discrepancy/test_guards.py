@@ -16,7 +16,7 @@ from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.rivals import does_as_well, near
+from winch_friction.discrepancy.engine.rivals import _near_curve, does_as_well, near
 from winch_friction.discrepancy.engine.selection import (
     Finding,
     Selection,
@@ -496,3 +496,17 @@ def test_a_curve_leads_another_cause_only_by_what_it_gives_back():
 
 def _trial(slot, loss):
     return replace(explanation(np.full(40, loss / 40)), slots=(slot,))
+
+
+@pytest.mark.parametrize(("left", "curve", "near_it"), [(1.5, True, True), (3.0, True, False), (1.5, False, False)])
+def test_a_law_of_another_cause_stands_beside_a_curve_that_leaves_more_than_half_of_what_it_leaves(
+    left, curve, near_it
+):
+    """Its flexibility makes the law worse in nearly every segment, as it makes those of its own cause."""
+    cross = crossfit(noise())
+    blocks = float(cross.problem.grams.count.sum())
+    own = Slot("stribeck", "", (1,), law="curve", free=curve)
+    current = _trial(own, cross.floor + blocks)
+    other = _trial(Slot("dwell", "", (2,), law="law"), cross.floor + left * blocks)
+    without = _trial(own, cross.floor + 20.0 * blocks)
+    assert _near_curve(cross, other, current, without, 0) is near_it

@@ -64,6 +64,8 @@ def literature() -> list[Candidate]:
             law_name="cracking pressure one way", continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
         _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=no_load),
+        # of shorter films Stribeck's curve speaks
+        _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=no_load, continuous=()),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=no_load),
         # under its tension the rope sinks into the layer below: a torque of the load alone, the same both ways

@@ -7,14 +7,15 @@ import numpy as np
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.discrepancy.engine.trials import fitted, heads
+from winch_friction.discrepancy.engine.trials import charged, fitted, heads
 from winch_friction.discrepancy.thresholds import LIMITS
 
 
 def rivals_of(
     cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator, same: bool = False
 ) -> tuple[tuple[Slot, ...], float]:
-    """Effects that do as well in the place of the k-th, best first; and how often it wins when segments are redrawn.
+    """Effects that do as well in the place of the k-th, the best first and laws before curves; and how often it wins
+    when segments are redrawn.
 
     With `same` only what is the same column in these runs, such as a tare at one load and a torque offset.
     """
@@ -25,11 +26,23 @@ def rivals_of(
     equal = []
     for trial in trials:
         alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)
-        if alike if same else does_as_well(trial, current, without, rng):
-            equal.append((trial.loss, trial.slots[-1]))
+        rival = does_as_well(trial, current, without, rng) or _near_curve(cross, trial, current, without, k)
+        if alike if same else rival:
+            equal.append((charged(without.loss, trial.loss, trial.slots[-1]), trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
     frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
     return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
+
+
+def _near_curve(cross: CrossFit, trial: Explanation, current: Explanation, without: Explanation, k: int) -> bool:
+    """Whether the k-th effect is a curve and a law of another cause leaves less than twice as much above the floor: a
+    curve outdoes laws by its flexibility, of its own cause as well as of others.
+    """
+    if not current.slots[k].free or trial.slots[-1].free:
+        return False
+    if without.loss - trial.loss < LIMITS.rival_worth * (without.loss - current.loss):
+        return False
+    return LIMITS.outdone * (trial.loss - cross.floor) <= current.loss - cross.floor
 
 
 def near(cross: CrossFit, current: Explanation) -> list[Slot]:

@@ -53,6 +53,6 @@ def _head(cross: CrossFit, members: Sequence[Explanation]) -> Explanation:
 
 def charged(before: float, after: float, own: Slot) -> float:
     """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
-    the least share that decides between two that do the same."""
-    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first
+    the least share that decides between two that do the same, for each of its parameters."""
+    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first * len(own.columns)
     return after + share * max(before - after, 0.0)

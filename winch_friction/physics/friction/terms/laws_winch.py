@@ -30,6 +30,8 @@ C_wd = Parameter("C_wd", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of t
 t_wd = Parameter("t_wd", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time at which it changed")
 c_gp = Parameter("c_gp", "N*m", 5.0, upper=200.0, doc="loss per motor at a drum torque of 500 kN m")
 n_gp = Parameter("n_gp", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+c_gf = Parameter("c_gf", "N*m", 5.0, upper=200.0, doc="loss per motor at standstill and a drum torque of 500 kN m")
+w_gf = Parameter("w_gf", "rad/s", 100.0, lower=10.0, upper=1e3, shape=True, doc="speed over which its film builds up")
 c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
@@ -78,6 +80,12 @@ wear_sudden = _system(
 )
 gear_load_power = _system(
     "gear_load_power", c_gp.symbol * _load**n_gp.symbol, (c_gp, n_gp), "a power of the load: Hertzian contacts, bending"
+)
+gear_load_film = _system(
+    "gear_load_film",
+    c_gf.symbol * _load * sp.exp(-w / w_gf.symbol),
+    (c_gf, w_gf),
+    "a mesh in mixed film: its friction coefficient falls as the oil is drawn in (Niemann and Winter 2003)",
 )
 sheave_power = register(
     Term(

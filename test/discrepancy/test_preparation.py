@@ -96,17 +96,29 @@ def test_the_noise_of_a_feedback_does_not_swing_the_motors(crane_150t):
     assert found[0] == pytest.approx(150.0, abs=0.05)
 
 
-def test_a_slow_log_keeps_no_sample_that_stands_alone_among_what_it_cannot_follow(crane_150t):
-    """A torque of inertia that swings bends between samples; where it turns it does not for a sample or two, and
-    two samples of a run have given a locked gap of 39 bar."""
-    time = np.arange(0.0, 80.0, 0.1)
-    quick = 12000.0 * np.sin(2.0 * np.pi * time / 4.0) * (time < 60.0)  # N m
-    still = SimpleNamespace(acceleration=np.zeros_like(time))
-    kept = _followed(
-        SimpleNamespace(dt=0.1, time=time), still, SimpleNamespace(inertial_torque=quick),
-        SimpleNamespace(unit_torque=33.0), crane_150t, (0.0, 0.0),
+def _kept(crane, quick):
+    """Which of a minute and more at 10 Hz count, with this torque of inertia, N m."""
+    time = 0.1 * np.arange(len(quick))
+    motion = SimpleNamespace(acceleration=np.zeros_like(time), used=np.ones(len(time), bool))
+    return _followed(
+        SimpleNamespace(dt=0.1, time=time), motion, SimpleNamespace(inertial_torque=quick),
+        SimpleNamespace(unit_torque=33.0), crane, (0.0, 0.0),
     )  # fmt: skip
+
+
+def test_a_slow_log_keeps_no_sample_that_stands_alone_among_what_it_cannot_follow(crane_150t):
+    """A torque of inertia that swings bends between samples; where it turns it does not for a sample or two, and two
+    samples of a run have given a locked gap of 39 bar."""
+    time = np.arange(0.0, 80.0, 0.1)
+    kept = _kept(crane_150t, 12000.0 * np.sin(2.0 * np.pi * time / 4.0) * (time < 60.0))
     edges = np.flatnonzero(np.diff(np.concatenate([[0], kept.astype(int), [0]])))
     assert kept[620:].all()
     assert kept[:590].mean() < 0.05
     assert (edges[1::2] - edges[::2]).min() >= 5
+
+
+@pytest.mark.parametrize(("seconds", "some"), [(78.0, False), (70.0, True)])
+def test_of_a_run_that_it_can_hardly_follow_a_slow_log_keeps_nothing(crane_150t, seconds, some):
+    """Half a second of a run stood for it, and a null got three names."""
+    time = np.arange(0.0, 80.0, 0.1)
+    assert _kept(crane_150t, 12000.0 * np.sin(2.0 * np.pi * time / 4.0) * (time < seconds)).any() == some

@@ -11,7 +11,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
-from winch_friction.discrepancy.preparation.balance import SPARSEST, Accounted
+from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
@@ -195,8 +195,8 @@ def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
 
 def least_noise_of(run: PreparedRun) -> float:
     """What no balance of a winch closes better than, however quiet its sensors, bar (N m for an electric drive)."""
-    if run.groups:
-        return LIMITS.least_noise
+    if run.groups:  # of a slow log the samples that it follows to so much are used
+        return LIMITS.least_noise * (SHOWS if run.dt > SPARSEST else 1.0)
     return LIMITS.least_share_of_torque * float(np.sqrt(np.mean((run.gap + run.predicted) ** 2))) / run.unit_torque
 
 

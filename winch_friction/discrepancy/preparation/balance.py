@@ -26,6 +26,8 @@ from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
 SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent
+# least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
+SHOWS = 1.5
 MIN_DISPLACEMENT_SHARE = 0.05
 BALANCING = ("active", "main")  # the groups that close the balance where they run
 FIXED_POINT_STEPS = 3

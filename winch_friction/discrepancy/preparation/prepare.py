@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
 
-from winch_friction.discrepancy.preparation.balance import SPARSEST, Accounted, Balance, Balancing, Groups
+from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
 from winch_friction.discrepancy.preparation.motion import Motion, motion_of
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
@@ -30,7 +30,7 @@ READ_AS = {
 BENT_AWAY = 1.0 / 12.0
 TURNS = 0.5  # rad of the wire's mode in a sample, from where on its swing bends between samples at any rate
 FOLLOWED_FOR = 0.5  # s without a bend, for samples to count
-SHOWS = 1.5  # least noises: a step of a 12-bit transducer
+LEAST_FOLLOWED = 0.05  # of a run's moving samples; what is less is no part of the motion, but where it turns
 FEWEST_MOVING = 100  # samples in which a swing can be looked for
 MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
@@ -132,7 +132,8 @@ def _followed(
     bend = maximum_filter1d(np.abs(np.diff(torque, 2)), 3)
     followed = BENT_AWAY * bend <= SHOWS * LIMITS.least_noise * balance.unit_torque
     # a sample or two between many that it cannot follow are turning points, and no place where it can
-    return np.asarray(binary_opening(followed, np.ones(max(round(FOLLOWED_FOR / grid.dt), 1), bool)))
+    followed = binary_opening(followed, np.ones(max(round(FOLLOWED_FOR / grid.dt), 1), bool))
+    return np.asarray(followed & (followed[motion.used].mean() >= LEAST_FOLLOWED if motion.used.any() else True))
 
 
 def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.rivals import _near_curve, does_as_well, near
+from winch_friction.discrepancy.engine.rivals import _near_curve, does_as_well, near, rivals_of
 from winch_friction.discrepancy.engine.selection import (
     Finding,
     Selection,
@@ -510,3 +510,26 @@ def test_a_law_of_another_cause_stands_beside_a_curve_that_leaves_more_than_half
     other = _trial(Slot("dwell", "", (2,), law="law"), cross.floor + left * blocks)
     without = _trial(own, cross.floor + 20.0 * blocks)
     assert _near_curve(cross, other, current, without, 0) is near_it
+
+
+@pytest.mark.parametrize(("free", "rivals"), [(True, ["gear"]), (False, [])])
+def test_a_curve_is_a_rival_of_a_curve_although_another_law_speaks_for_its_cause(free, rivals):
+    """Gear and sheaves lose in proportion to the load alike: where a curve is named for one, the other's is as good."""
+    rng = np.random.default_rng(3)
+    cross = crossfit(2.0 * WAVE + noise())
+    per_block = len(cross.problem.blocks.y) / 40.0
+    own = Slot("sheave", "", (1,), law="curve", free=free)
+    law, curve = Slot("gear", "", (2,), law="law"), Slot("gear", "", (2,), law="curve", free=True)
+    levels = {None: 3.0, "sheave": 1.0, "law": 1.09, "curve": 1.0}
+    jitter = {name: 0.01 * rng.standard_normal(40) for name in levels}
+
+    def explain(slots):
+        key = None if not slots else "sheave" if slots[0] is own else slots[0].law
+        return replace(explanation(per_block * (levels[key] + jitter[key])), slots=tuple(slots))
+
+    stub = SimpleNamespace(
+        explain=explain, floor=0.96 * per_block * 40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        problem=SimpleNamespace(slots=(own, law, curve), grams=cross.problem.grams),
+    )  # fmt: skip
+    found, _ = rivals_of(stub, explain((own,)), explain(()), 0, rng)
+    assert [slot.name for slot in found] == rivals

@@ -22,16 +22,28 @@ def rivals_of(
     rest = current.slots[:k] + current.slots[k + 1 :]
     own = current.slots[k]
     slots = fitted(cross, rest, current.names)
-    trials = heads(cross, without.loss, [cross.explain((*rest, slot)) for slot in slots])
-    equal = []
+    every = [cross.explain((*rest, slot)) for slot in slots]
+    trials = heads(cross, without.loss, every)
+    if own.free:  # of each cause the law that speaks for it, and a curve of its own that leaves less
+        trials += [each for each in _closest(every) if all(each is not head for head in trials)]
+    equal: list[tuple[float, Slot]] = []
     for trial in trials:
         alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)
         rival = does_as_well(trial, current, without, rng) or _near_curve(cross, trial, current, without, k)
-        if alike if same else rival:
+        taken = trial.slots[-1].name in {slot.name for _, slot in equal}
+        if not taken and (alike if same else rival):
             equal.append((charged(without.loss, trial.loss, trial.slots[-1]), trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
     frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
     return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
+
+
+def _closest(trials: Sequence[Explanation]) -> list[Explanation]:
+    """Of each cause's laws the one that leaves least."""
+    found: dict[str, Explanation] = {}
+    for trial in sorted(trials, key=lambda each: each.loss):
+        found.setdefault(trial.slots[-1].name, trial)
+    return list(found.values())
 
 
 def _near_curve(cross: CrossFit, trial: Explanation, current: Explanation, without: Explanation, k: int) -> bool:

@@ -45,6 +45,7 @@ def _summary(rows: Sequence[Row]) -> str:
         _line("nulls: `nothing_missing`", of[NULL], _is("quiet")),
         _line("one effect: right, alone or in a set of at most three", of[EFFECT], _is("right")),
         _line("one effect: left unexplained, without a name", of[EFFECT], _is("unnamed")),
+        _line("one effect: a set of names without it, beside or instead", of[EFFECT], _is("wrong")),
         _line("one effect: missed", of[EFFECT], _is("missed")),
         _line("wrong single names, all sets but those outside", [r for r in rows if r["kind"] != OUTSIDE], _wrong),
         _line("outside the catalogue: named", of[OUTSIDE], _is("named")),

@@ -20,6 +20,7 @@ FREQUENCY_STEPS = (1.1, 1.05, 1.025, 1.012, 1.006)
 # of the stated stiffness, tried beside it: a rope's modulus is known to a tenth or two, `wire_out` does not count what
 # hangs between drum and tip, and the crane itself gives. Taken where it leaves so much of what the stated one leaves
 STIFFNESSES_NEARBY, CLEARLY_LESS = (0.42, 0.5, 0.6, 0.72, 0.85, 1.2, 1.4), 0.5
+RATIOS_NEARBY = (0.035, 0.14, 0.3)  # damping ratios by which one of them is told from the others, at little cost
 LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
 # no rope is damped more: a mode that is takes a motion sensor's noise out of the acceleration; and where the wire's
 # length is unknown, a delay or a wrong inertia looks like a wire that is damped more or leaves more
@@ -92,8 +93,8 @@ def _nearby(
 ) -> tuple[float, float, float]:
     """What is left, damping ratio and frequency rad/s of a mode near the stated one, where it clearly leaves less."""
     around = [stated * float(np.sqrt(share)) for share in STIFFNESSES_NEARBY]
-    *_, first = min((*_best_ratio(partial(left, frequency)), frequency) for frequency in around)
-    if not around[0] < first < around[-1]:
+    some, first = min((min(left(frequency, each) for each in RATIOS_NEARBY), frequency) for frequency in around)
+    if some >= value or not around[0] < first < around[-1]:
         return value, ratio, stated
     found = _best_frequency(left, first, _best_ratio(partial(left, first))[1])
     less, damped = _best_ratio(partial(left, found))

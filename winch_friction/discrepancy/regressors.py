@@ -61,7 +61,7 @@ def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, f
 
 def key_of(correction: Correction) -> str:
     """A correction's name with what it is restricted to, unique in a model."""
-    beyond = () if correction.beyond is None else (f"{correction.beyond:g}",)
+    beyond = () if correction.beyond is None else (correction.beyond,)
     ties = [*correction.groups, *correction.layers, *correction.during, *beyond]
     return " ".join(map(str, [correction.name, *ties]))
 

@@ -49,14 +49,14 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     """
     if not model.corrections:
         return run, crane
-    there = [each for each in model.corrections if each.holds(float(run.time[0]))]
+    there = _in_turn(each for each in model.corrections if each.holds(float(run.time[0])))
     problems = [each for one in there for each in _missing(one, run)]
     if problems:
         raise InputError(f"{run.name}: {'; '.join(problems)} (model '{model.name}')")
     right = corrected_crane(crane, model.corrections)
     columns: Columns = dict(run.columns)
     for action in SIGNAL_ORDER:
-        for each in _in_turn(there):
+        for each in there:
             if each.declared.action is action:
                 columns = _ON_RUNS[action](columns, run, each, right)
     names = tuple(dict.fromkeys(each.name for each in there))

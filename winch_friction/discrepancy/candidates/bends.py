@@ -2,21 +2,22 @@
 data draw.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
-from winch_friction.discrepancy.candidates.feedback import D_0, LARGEST
+from winch_friction.discrepancy.candidates.feedback import D_0, LARGEST, _swivel
 from winch_friction.discrepancy.candidates.signals import (
-    ALL,
     BALANCING,
+    affected_groups,
     e_p,
     group_columns,
     group_shapes,
     groups_of,
     in_groups,
+    scale_columns,
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
@@ -33,43 +34,32 @@ BENDS = tuple(
     for k in range(1, len(STROKES) + 1)
 )
 
-_Signal = Callable[[GroupSignals], FloatArray]
-
 
 def _high(g: GroupSignals) -> FloatArray:
     return 0.5 * (g.pressure_sum + np.abs(g.pressure))
 
 
-def _displacement(g: GroupSignals) -> FloatArray:
-    return g.displacement
-
-
-def _covered(runs: Sequence[PreparedRun], which: float, signal: _Signal) -> FloatArray:
-    """What the moving samples have seen of a signal of the groups that a shape speaks of."""
-    parts = [
-        np.broadcast_to(signal(g), run.time.shape)[run.used] for run in runs for g in run.groups if _chosen(g, which)
-    ]
+def _covered(runs: Sequence[PreparedRun], values: Values) -> FloatArray:
+    """The high pressures that the moving samples of the groups have seen that a shape speaks of."""
+    parts = [np.broadcast_to(_high(g), run.time.shape)[run.used] for run in runs for g in affected_groups(run, values)]
     return np.concatenate(parts) if parts else np.array([])
 
 
 def bent_pressure_columns(run: PreparedRun, values: Values) -> FloatArray:
     """A gain error, and what is added beyond a pressure, N m, shape (samples, 2)."""
 
-    def gain(g: GroupSignals) -> FloatArray:
-        return g.count * g.displacement * g.pressure
-
     def beyond(g: GroupSignals) -> FloatArray:
         ports = (0.5 * (g.pressure_sum + sign * g.pressure) for sign in (1.0, -1.0))
         a, b = (np.maximum(port - values["beyond"], 0.0) for port in ports)
         return g.count * g.displacement * (a - b)
 
-    return np.hstack([group_columns(gain, run, values), group_columns(beyond, run, values)])
+    return np.hstack([scale_columns(run, {**values, "port_a": 0.0}), group_columns(beyond, run, values)])
 
 
 def _pressure_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     shapes = []
     for each in group_shapes(runs):
-        covered = _covered(runs, each.values["groups"], _high)
+        covered = _covered(runs, each.values)
         for at in np.quantile(covered, PRESSURES) if len(covered) else ():
             label = f"{each.label}, beyond {at / 1e5:.0f} bar"
             shapes.append(Shape(label, {**each.values, "beyond": float(at)}, carried=each.carried))
@@ -88,9 +78,9 @@ def curve_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Zero error of the feedback and its changes of gain over the stroke, N m, shape (samples, 1 + bends)."""
 
     def column(g: GroupSignals, at: float) -> FloatArray:
-        return g.count * g.pressure * np.maximum(g.displacement - at, 0.0)
+        return _swivel(g) * np.maximum(g.displacement - at, 0.0)
 
-    zero = group_columns(lambda g: g.count * g.pressure, run, values)
+    zero = group_columns(_swivel, run, values)
     bends = [group_columns(partial(column, at=values[f"beyond_{k}"]), run, values) for k in range(1, len(BENDS) + 1)]
     return np.hstack([zero, *bends])
 
@@ -98,26 +88,22 @@ def curve_columns(run: PreparedRun, values: Values) -> FloatArray:
 def _curve_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     shapes = []
     for each in group_shapes(runs):
-        at = np.quantile(_strokes(runs, each.values["groups"]), STROKES)
+        at = np.quantile(_strokes(runs, each.values), STROKES)
         if np.diff(at).min() > 0.0:
             own = {f"beyond_{k}": float(v) for k, v in enumerate(at, start=1)}
             shapes.append(Shape(each.label, {**each.values, **own}, carried=each.carried))
     return shapes
 
 
-def _strokes(runs: Sequence[PreparedRun], which: float) -> FloatArray:
+def _strokes(runs: Sequence[PreparedRun], values: Values) -> FloatArray:
     """One displacement for every run and group: what a run holds counts once, however long it is."""
-    own = [float(np.median(g.displacement)) for run in runs for g in run.groups if _chosen(g, which)]
+    own = [float(np.median(g.displacement)) for run in runs for g in affected_groups(run, values)]
     return np.array(own or [0.0])
-
-
-def _chosen(g: GroupSignals, which: float) -> bool:
-    return which == ALL or g.balances == (which == BALANCING)
 
 
 def _few_strokes(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
-    if largest > 0.0 and len(set(np.round(20.0 * _strokes(runs, BALANCING) / largest))) >= FEWEST_STROKES:
+    if largest > 0.0 and len(set(np.round(20.0 * _strokes(runs, {"groups": BALANCING}) / largest))) >= FEWEST_STROKES:
         return None
     return "more displacements", "a curve over the stroke shows between many displacements"
 

@@ -54,14 +54,15 @@ e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the 
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
 
-def _which(run: PreparedRun, values: Values) -> list[GroupSignals]:
+def affected_groups(run: PreparedRun, values: Values) -> list[GroupSignals]:
+    """The motor groups whose transducers a shape speaks of."""
     which = values["groups"]
     return [g for g in run.groups if which == ALL or g.balances == (which == BALANCING)]
 
 
 def group_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
     """Sum of a law over the affected motor groups, N m at the shaft, shape (samples, 1)."""
-    return sum((law(g) for g in _which(run, values)), np.zeros(len(run.time)))[:, None]
+    return sum((law(g) for g in affected_groups(run, values)), np.zeros(len(run.time)))[:, None]
 
 
 def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:

@@ -10,6 +10,7 @@ from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.prepare import _followed
 from winch_friction.discrepancy.preparation.suspended_load import load_of
+from winch_friction.discrepancy.regressors import least_noise_of
 from winch_friction.physics.signals import Run
 
 
@@ -122,3 +123,15 @@ def test_of_a_run_that_it_can_hardly_follow_a_slow_log_keeps_nothing(crane_150t,
     """Half a second of a run stood for it, and a null got three names."""
     time = np.arange(0.0, 80.0, 0.1)
     assert _kept(crane_150t, 12000.0 * np.sin(2.0 * np.pi * time / 4.0) * (time < seconds)).any() == some
+
+
+def test_what_weighs_more_than_a_wire_can_is_none(crane_150t):
+    """A cell that creeps with the length by three times what a metre of wire weighs has another fault."""
+    found, _ = _weighed(crane_150t, lambda length, _: 3.0 * crane_150t.wire_mass * (length - 100.0))
+    assert np.ptp(found) == 0.0
+
+
+@pytest.mark.parametrize(("period", "least"), [(0.02, 0.1), (0.1, 0.15)])
+def test_a_slow_log_closes_no_better_than_it_is_followed(period, least):
+    """bar: what of it is used may bend so far between two samples, and nothing smaller is anybody's effect there."""
+    assert least_noise_of(SimpleNamespace(groups=[None], dt=period)) == pytest.approx(least)

@@ -1,0 +1,133 @@
+"""A wire that does not give is asked for last, and its names stand only where their file leaves no swing either."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy import workflow
+from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED
+from winch_friction.physics.signals import Run
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What stands in for runs met with a model."""
+
+    swings: bool
+
+
+ELASTIC, RIGID = Balance(True), Balance(False)
+CLOSED, STILL_SWINGS = "its file leaves no swing", "its file leaves one"
+
+
+@dataclass(frozen=True)
+class Found:
+    """What stands in for a search: a verdict, and the balance that it was read in."""
+
+    kind: str
+    given: Balance = ELASTIC
+
+    @property
+    def verdict(self):
+        return SimpleNamespace(kind=self.kind)
+
+
+@dataclass(frozen=True)
+class Side:
+    """The part of one side of the split that the workflow looks at."""
+
+    left_by_run: tuple = ()
+
+
+@dataclass(frozen=True)
+class Result:
+    """The part of a result that the workflow looks at."""
+
+    verdict: str
+    train: Side = Side()
+    holdout: Side = Side()
+    seed_model: object = None
+    seed_refuted: tuple = ()
+    adequacy: tuple = ()
+    notes: tuple = ()
+
+
+def trial(found, file=CLOSED):
+    return SimpleNamespace(search=found, repaired=SimpleNamespace(model=file))
+
+
+@pytest.fixture
+def answers(monkeypatch):
+    """What the next search and the judgement of its names answer; `asked` tells the balances searched."""
+    own = SimpleNamespace(search=[], judged=[], asked=[])
+
+    def search_runs(split, given, options, rng, surfaces=False):
+        own.asked.append(given)
+        return own.search.pop(0)
+
+    def standing(split, crane, options, search, rng):
+        kind, file = own.judged.pop(0)
+        return trial(replace(search, kind=kind), file)
+
+    monkeypatch.setattr(workflow, "search_runs", search_runs)
+    monkeypatch.setattr(workflow, "standing", standing)
+    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(workflow, "by_surfaces", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(workflow, "as_rigid", lambda given: RIGID)
+    monkeypatch.setattr(workflow, "swings", lambda given: given.swings)
+    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file: ELASTIC if file == STILL_SWINGS else RIGID)
+    return own
+
+
+@pytest.mark.parametrize(
+    ("rigid", "judged", "file", "taken"),
+    [
+        (MISSING, MISSING, CLOSED, True),
+        (AMBIGUOUS, AMBIGUOUS, CLOSED, True),
+        (MISSING, MISSING, STILL_SWINGS, False),  # the load swings, whatever the signals do
+        (MISSING, UNEXPLAINED, CLOSED, False),
+        (UNEXPLAINED, None, None, False),
+        (NOTHING, None, None, False),
+    ],
+)
+def test_only_names_whose_file_leaves_no_swing_are_taken(answers, rigid, judged, file, taken):
+    before = trial(Found(UNEXPLAINED))
+    answers.search, answers.judged = [Found(rigid, RIGID)], [(judged, file)]
+    split, rng = SimpleNamespace(runs=()), np.random.default_rng(0)
+    after = workflow._without_swing(split, None, ELASTIC, GapOptions(), before, rng)
+    assert answers.asked == [RIGID]
+    assert (after is not before) is taken
+    if taken:  # judged, and proposed for, in the balance that the runs were met with
+        assert after.search.given is ELASTIC
+
+
+@pytest.mark.parametrize(
+    ("first", "met", "asked"),
+    [
+        (UNEXPLAINED, ELASTIC, [ELASTIC, RIGID]),
+        (UNEXPLAINED, RIGID, [RIGID]),  # no wire gives
+        (MISSING, ELASTIC, [ELASTIC]),  # a name stands already
+        (NOTHING, ELASTIC, [ELASTIC]),
+    ],
+)
+def test_a_rigid_wire_is_asked_for_where_nothing_explains_and_a_load_swings(answers, monkeypatch, first, met, asked):
+    runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
+    split = SimpleNamespace(runs=runs, train=("run_0",), holdout=("run_1",))
+    fine = SimpleNamespace(met=True)
+    adequacy = SimpleNamespace(
+        long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
+        of_swing=lambda left: fine,
+    )  # fmt: skip
+    monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
+    monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
+    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file: met if file is None else RIGID)
+    monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
+    monkeypatch.setattr(workflow, "assemble", lambda split, options, trial: Result(trial.search.kind))
+    answers.search, answers.judged = [Found(first), Found(MISSING, RIGID)], [(first, CLOSED), (MISSING, CLOSED)]
+    found = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
+    assert answers.asked == asked
+    assert found.verdict == (MISSING if RIGID in asked[1:] else first)

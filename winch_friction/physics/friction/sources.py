@@ -8,10 +8,9 @@ import hashlib
 import inspect
 import linecache
 import math
-import os
 import re
-import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from types import CodeType
@@ -22,6 +21,7 @@ import sympy as sp
 
 from winch_friction.physics.compiling import cache_root
 from winch_friction.physics.friction import symbols
+from winch_friction.physics.kept import keep, read_kept
 
 Function = Callable[..., Any]
 
@@ -37,7 +37,7 @@ _NAMESPACES: dict[str, dict[str, Any]] = {
 def function_of(key: str, dialect: str, make: Callable[[], Function]) -> Function:
     """The function whose equations are `key`, in `dialect` (`math`, `numpy`): read, or else made and kept."""
     path = _path(key)
-    source = None if path is None else _read(path)
+    source = None if path is None else read_kept(path)
     if source is None:
         made = make()
         if not _plain(made, _NAMESPACES[dialect]):
@@ -99,36 +99,10 @@ def _path(key: str) -> Path | None:
     return root / f"{hashlib.sha256(f'{makers} {key}'.encode()).hexdigest()[:32]}.py"
 
 
-def _read(path: Path) -> str | None:
-    """The source of a whole file of our own; None for any other."""
-    try:
-        with path.open(encoding="utf-8") as stream:
-            if os.fstat(stream.fileno()).st_uid != os.getuid():
-                return None
-            first, source = stream.readline(), stream.read()
-    except (OSError, ValueError):
-        return None
-    return source if first == _seal(source) else None
-
-
 def _write(path: Path, source: str) -> None:
-    """In one step, as several processes may make the same; the seal, not a flush to disk, says whether it is whole."""
-    try:
+    with suppress(OSError):  # it works without
         _make_room(path.parent)
-        handle, name = tempfile.mkstemp(dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as stream:
-                stream.write(_seal(source) + source)
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError:
-        pass  # it works without
-
-
-def _seal(source: str) -> str:
-    return f"# {hashlib.sha256(source.encode()).hexdigest()}\n"
+        keep(path, source)
 
 
 @lru_cache(maxsize=1)  # once per process

@@ -5,7 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from winch_friction.discrepancy.preparation.wire_mode import (
+    DAMPING_RATIOS,
     agreed_damping,
+    denies,
     on_the_wire,
     shared_damping,
     swinging_load,
@@ -127,3 +129,27 @@ def test_most_runs_tell_the_damping_of_their_wire(ratios, expected):
     modes = [(5.0 + 2.0 * k, ratio, 2e4) for k, ratio in enumerate(ratios)]
     found = shared_damping(modes)
     assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.05)
+
+
+DENYING, UNTOLD = (3.0,) * len(DAMPING_RATIOS), (1.01,) * len(DAMPING_RATIOS)
+
+
+@pytest.mark.parametrize(("left", "expected"), [
+    ([UNTOLD] * 6, 0.08),  # a load too light to show a swing has no say
+    ([UNTOLD] * 4 + [DENYING] * 2, 0.08),
+    ([DENYING] * 6, None),  # half of those that can tell
+    ([()] * 6, None),  # nothing is known of them
+])  # fmt: skip
+def test_a_run_that_cannot_tell_whether_its_load_swings_has_no_vote(left, expected):
+    modes = [(3.0, 0.08, 1e5)] * 6 + [(8.0, 0.0, 2e4)] * 6
+    found = shared_damping(modes, [()] * 6 + left)
+    assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_light_load_leaves_as_much_with_a_swing_as_without_and_a_heavy_one_on_a_rigid_wire_far_more():
+    rigid = 0.5 * np.sin(0.6 * TIME) + 0.3 * np.sin(1.7 * TIME + 1.0)
+    gap = 100.0 * np.random.default_rng(2).standard_normal(len(TIME))
+    for mass, denied in ((0.02 * MASS, False), (20.0 * MASS, True)):
+        swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, mass, np.full(len(TIME), LEVER), (9.0 * mass,))
+        assert swing.damping == 0.0
+        assert denies(swing.left, 0.08) is denied

@@ -1,6 +1,6 @@
 """Runs prepared around a point: the seed model, or the best explanation so far."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, agreed_damping, shared_damping
+from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, agreed_damping, denies, shared_damping
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
@@ -122,15 +122,17 @@ def _moved(one: Correction) -> tuple[float, Correction]:
 def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
-    All share what damps it. If most runs that can follow their mode agree on that closely, it is that; friction at
-    reversals blurs it in heave compensation, but does not take it away. If not, heave compensation decides, which
-    excites the mode throughout; and where a sparse log leaves those runs at odds, the kicks of the others, which ring
-    down, have a say.
+    All share what damps it. If most runs that can tell agree on that closely, it is that, unless most of heave
+    compensation denies it: friction at reversals blurs a swing there, but does not take it away. A run whose load is
+    too light to show a swing has no vote. If they do not, heave compensation decides, which excites the mode
+    throughout; and where a sparse log leaves those runs at odds, the kicks of the others, which ring down, have a say.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
-    still = [run.wire_mode[1] <= 0.0 for run in compensating if _slow(run, TOLD)]
-    able = [(*run.wire_mode, _mass(run)) for run in prepared if _slow(run, TOLD)]
-    ratio = shared_damping(able) if 2 * sum(still) <= len(still) else None
+    able = [run for run in prepared if _slow(run, TOLD)]
+    ratio = shared_damping([(*run.wire_mode, _mass(run)) for run in able], [run.swing_left for run in able])
+    told = [run for run in compensating if _slow(run, TOLD)]
+    if ratio is not None and 2 * sum(_denied(run, ratio) for run in told) > len(told):
+        ratio = None
     swinging = [(*run.wire_mode, _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode, _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
@@ -138,6 +140,11 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     return [
         (run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0) for run in prepared
     ]
+
+
+def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
+    """Whether a run speaks against a load that swings so damped."""
+    return run.wire_mode[1] <= 0.0 and denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
 
 
 def _slow(run: PreparedRun, turn: float = FOLLOWED) -> bool:

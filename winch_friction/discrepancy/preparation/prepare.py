@@ -57,7 +57,7 @@ def prepare(
     grid = uniform(run)
     motion = motion_of(grid, crane, run.name, turning)
     balancing = Balancing(run, crane, model, grid, motion, accounted or Accounted())
-    mode, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
+    mode, left, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
     used = motion.used & _settled(grid, mode) & balancing.known & _followed(grid, motion, hanging, balance, crane, mode)
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
@@ -66,7 +66,7 @@ def prepare(
         acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
         drum_torque=hanging.drum_torque,
-        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
+        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode, swing_left=left,
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
@@ -79,22 +79,25 @@ def prepare(
 
 def _on_wire(
     balancing: Balancing, load: SuspendedLoad, mode: tuple[float, float] | None
-) -> tuple[tuple[float, float], SuspendedLoad, Balance]:
-    """The wire's mode, looked for unless given, the load behind it and the balance with that."""
+) -> tuple[tuple[float, float], tuple[float, ...], SuspendedLoad, Balance]:
+    """The wire's mode, looked for unless given, what others would leave, the load behind it and the balance with it."""
     if mode is None:
         rigid = balancing.of(load)
-        mode = _wire_mode(balancing, load, rigid)
+        mode, left = _wire_mode(balancing, load, rigid)
         if mode[1] <= 0.0:
-            return mode, load, rigid
+            return mode, left, load, rigid
     hanging = load.on_wire(balancing.grid.dt, mode)
-    return mode, hanging, balancing.of(hanging)
+    return mode, (), hanging, balancing.of(hanging)
 
 
-def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tuple[float, float]:
-    """Frequency and damping of the load's swinging, where the wire's stiffness is known."""
+def _wire_mode(
+    balancing: Balancing, load: SuspendedLoad, rigid: Balance
+) -> tuple[tuple[float, float], tuple[float, ...]]:
+    """Frequency and damping of the load's swinging, where the wire's stiffness is known, and what other dampings would
+    leave where nothing swings."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
-        return 0.0, 0.0
+        return (0.0, 0.0), ()
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
     swing = swinging_load(
@@ -102,7 +105,7 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
         friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
     )  # fmt: skip
     stated = "wire_out" in columns and swing.damping <= 0.0
-    return float(np.sqrt(stiffnesses[0] / mass)) if stated else swing.frequency, swing.damping
+    return (float(np.sqrt(stiffnesses[0] / mass)) if stated else swing.frequency, swing.damping), swing.left
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:

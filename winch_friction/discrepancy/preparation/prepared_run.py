@@ -44,6 +44,7 @@ class PreparedRun:
     point: tuple[Any, ...]
     gap: FloatArray
     wire_mode: tuple[float, float]  # frequency rad/s and damping ratio of the load on its wire; 0: rigid
+    swing_left: tuple[float, ...]  # share of the gap that a swing of each damping ratio would leave, of a rigid wire
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane

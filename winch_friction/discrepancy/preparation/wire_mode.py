@@ -30,16 +30,25 @@ NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is r
 # rad a sample: a mode of four samples is still told from none, and one of six has its damping told
 FOLLOWED, TOLD = 1.5, 1.0
 ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
+# times what a run leaves on a rigid wire, from where on the mode that others agree on is denied by it: less a swing too
+# small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
+# with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
+DENIED = 1.2
 MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
 
 
 @dataclass(frozen=True)
 class Swing:
-    """Load acceleration m/s^2 with the wire's mode, its frequency rad/s and damping ratio (0: rigid)."""
+    """Load acceleration m/s^2 with the wire's mode, its frequency rad/s and damping ratio (0: rigid).
+
+    `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at the stated frequency;
+    empty where none is stated, or the samples cannot follow it.
+    """
 
     acceleration: FloatArray
     frequency: float
     damping: float
+    left: tuple[float, ...] = ()
 
 
 def swinging_load(
@@ -67,11 +76,13 @@ def swinging_load(
     besides = [each for each in (friction, hiding) if each is not None]
     judge = _Judge(gap, counts, change, besides)
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
-    for parts in range(min(len(besides), 1), len(besides) + 1):
+    first = min(len(besides), 1)
+    for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
         if ratio > 0.0:
             return Swing(on_the_wire(rigid, dt, frequency, ratio), frequency, ratio)
-    return Swing(rigid, 0.0, 0.0)
+    stated = frequencies if len(frequencies) == 1 else ()
+    return Swing(rigid, 0.0, 0.0, tuple(judge.left(first, each, ratio) for each in stated for ratio in DAMPING_RATIOS))
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
@@ -225,11 +236,23 @@ def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[flo
     return lambda _own, _load: steady
 
 
-def shared_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
+def denies(left: Sequence[float], ratio: float) -> bool:
+    """Whether a run that rings by no mode speaks against one of this damping ratio: its gap would swing more by it.
+
+    `left` as in `Swing`. A load too light, or a run too short, to show a swing leaves as much with it as without, and
+    has no say; where nothing is known of what a mode leaves, the run stands for a rigid wire.
+    """
+    return not len(left) or float(np.interp(np.log(ratio), np.log(DAMPING_RATIOS), left)) > DENIED
+
+
+def shared_damping(
+    modes: Sequence[tuple[float, float, float]], untold: Sequence[Sequence[float]] = ()
+) -> Callable[[float, float], float] | None:
     """The same from (frequency, ratio, mass) of all runs that can follow their mode, if most of them agree closely.
 
-    What else rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs
-    would not find one damping.
+    `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. What else
+    rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs would not
+    find one damping.
     """
     swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
     if len(swinging) < FEWEST_ALIKE:
@@ -237,5 +260,11 @@ def shared_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[flo
     frequency, ratio, mass = swinging.T
     off = [np.abs(np.log(each / np.median(each))) for each in (2.0 * ratio * frequency * mass, ratio)]
     alike = max((each <= ALIKE for each in off), key=np.sum)
-    enough = 2 * alike.sum() > len(modes) and alike.sum() >= FEWEST_ALIKE
-    return agreed_damping(swinging[alike].tolist()) if enough and np.median(ratio[alike]) < MOST_DAMPED / 2.0 else None
+    if alike.sum() < FEWEST_ALIKE or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
+        return None
+    agreed = agreed_damping(swinging[alike].tolist())
+    if agreed is None:
+        return None
+    rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
+    against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
+    return agreed if 2 * alike.sum() > len(swinging) + against else None

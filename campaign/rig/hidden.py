@@ -55,6 +55,7 @@ class Hidden(NamedTuple):
     mixed: float = 0.0  # N m / Pa^2 per motor
     leakage: float = 0.0  # m^3/s/Pa for the whole loop at 40 degC, beyond what the controller knows
     leakage_power: float = 1.0  # exponent of the pressure
+    leakage_from: float = 0.0  # Pa, below which nothing leaks
     leakage_cold: float = 1.0  # exponent with which it falls as the oil thickens
     line_drop: float = 0.0  # Pa/(m^3/s)^2 between transducer and motors
     line_flow: float = 1.29 / 60  # m^3/s at which every exponent gives the same drop

@@ -62,9 +62,10 @@ def _line(power: float, side: float = 0.0) -> Draw:
     return lambda s, rng, f: {"line_drop": 4 * BAR / (1.29 / 60) ** 2 * s, "line_power": power, "line_side": side}
 
 
-def _leak(power: float, cold: float) -> Draw:
+def _leak(power: float, cold: float, **more: float) -> Draw:
     return lambda s, rng, f: {
-        "leakage": 50 * RPM * 11 * MAX_DISPLACEMENT / (150 * BAR) * s, "leakage_power": power, "leakage_cold": cold
+        "leakage": 50 * RPM * 11 * MAX_DISPLACEMENT / (150 * BAR) * s, "leakage_power": power, "leakage_cold": cold,
+        **more,
     }  # fmt: skip
 
 
@@ -146,7 +147,9 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "slip_leakage": (
         Law("cold_and_warm", _leak(1.0, 0.0)), Law("gap_opens", _leak(2.0, 1.0)),
-        Law("orifice", _leak(0.5, 0.0), held_out=True),
+        Law("orifice", _leak(0.5, 0.0)),
+        # a relief valve that seeps: three times as steep, and nothing below its pressure
+        Law("valve_seeps", lambda s, rng, f: _leak(1.0, 0.0, leakage_from=100 * BAR)(3.0 * s, rng, f), held_out=True),
     ),
     "line_pressure_drop": (
         Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)),

@@ -158,7 +158,9 @@ def lost_flow(h, dp, viscosity):
     """Flow lost beyond what the controller knows, m^3/s."""
     if h.leakage == 0.0:
         return 0.0
-    if h.leakage_power == 1.0:
+    if h.leakage_power == 1.0 and h.leakage_from == 0.0:
         return h.leakage * dp / viscosity**h.leakage_cold
-    lost = h.leakage * 150e5 * (abs(dp) / 150e5) ** h.leakage_power / viscosity**h.leakage_cold
+    lost = (
+        h.leakage * 150e5 * (max(abs(dp) - h.leakage_from, 0.0) / 150e5) ** h.leakage_power / viscosity**h.leakage_cold
+    )
     return lost if dp > 0.0 else -lost

@@ -1,5 +1,6 @@
 """Effects that block means of the torque balance cannot show: ripple over the angle, lost speed, warm gas."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,7 @@ from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
 from winch_friction.discrepancy.detectors.ripple import TERM, Ripple, _known, angle_ripple
+from winch_friction.discrepancy.detectors.soft_oil import free_air
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import Run
@@ -37,14 +39,45 @@ def test_lost_speed_gives_the_leakage():
     found = lost_speed(runs, prepared)
     truth = 50 * 2 * np.pi / 60 * 215e-6 / (2 * np.pi) / 150e5  # 50 rpm at 150 bar and 40 degC
     assert found.found
-    assert found.leakage == pytest.approx(truth, rel=0.02)
+    assert list(found.leakage) == ["slip_leakage"]
+    assert found.leakage["slip_leakage"][0] == pytest.approx(truth, rel=0.02)
     assert found.gain > 0.9
+
+
+@pytest.mark.parametrize(("law", "name"), [("orifice", "orifice_leakage"), ("gap_opens", "opening_gap_leakage")])
+def test_a_leak_has_its_own_law_and_is_no_air(law, name):
+    runs, prepared, *_ = _prepared("slow_log", (f"slip_leakage:{law}", 1.0))
+    found = lost_speed(runs, prepared)
+    truth = 50 * 2 * np.pi / 60 * 215e-6 / (2 * np.pi) / 150e5
+    assert found.found
+    assert list(found.leakage) == [name]
+    assert found.leakage[name][0] == pytest.approx(truth, rel=0.02)
+    assert found.gain > 0.9
+    assert found.holds_on(runs[:4], prepared[:4])
+    assert [each.name for each in found.corrections] == [name]
+    air = free_air(runs, prepared)
+    assert air is None or not air.found
+
+
+def test_a_small_motor_loses_as_much_speed_by_a_smaller_leak():
+    runs, prepared, *_ = _prepared("slow_log", ("slip_leakage", 1.0))
+    small = [
+        replace(
+            run, constants=tuple((k, v / 8 if k == "max_displacement" else v) for k, v in run.constants),
+            groups=tuple(replace(group, displacement=group.displacement / 8) for group in run.groups),
+        )
+        for run in prepared
+    ]  # fmt: skip
+    found, whole = lost_speed(runs, small), lost_speed(runs, prepared)
+    assert found.found
+    assert found.slip == pytest.approx(whole.slip, rel=1e-6)
+    assert found.leakage["slip_leakage"][0] == pytest.approx(whole.leakage["slip_leakage"][0] / 8, rel=1e-6)
 
 
 def test_no_speed_is_lost_where_the_controller_knows_its_leakage():
     runs, prepared, *_ = _prepared("rough")
     found = lost_speed(runs, prepared)
-    assert abs(found.leakage) < 0.05 * ORDINARY
+    assert abs(found.slip) < 0.05 * ORDINARY
     assert not found.found
 
 

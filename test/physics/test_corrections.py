@@ -101,7 +101,12 @@ def spoiled(run, correction):
             elif action is Action.SLIP:
                 drop = columns["active.pressure_a"] - columns["active.pressure_b"]
                 thin = 1.0 / relative_viscosity(columns["oil_temperature"])
-                columns[name] = true + e * drop / columns["active.displacement"] * thin
+                flow = {
+                    "slip_leakage": drop * thin,
+                    "orifice_leakage": np.sign(drop) * np.sqrt(np.abs(drop) * 150 * BAR),
+                    "opening_gap_leakage": drop * np.abs(drop) / (150 * BAR) * thin,
+                }[correction.name]
+                columns[name] = true + e * flow / columns["active.displacement"]
             elif action is Action.AIR:  # the compliance of the air, V/1.4 (p_0/p)^(1/1.4)/p, times the pressure's rate
                 high = columns["active.pressure_a"]
                 softness = e / 1.4 * (BAR / high) ** (1.0 / 1.4) / high

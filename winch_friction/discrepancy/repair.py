@@ -125,7 +125,8 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     ):
         own.add_term(None, term_named(angle.TERM), wave)
     for lost in search.flow:
-        own.add_correction(lost.correction)
+        for each in lost.corrections:
+            own.add_correction(each)
     return _model_of(own, seed, search.given.crane, parameters, provenance)
 
 

@@ -23,6 +23,7 @@ from winch_friction.physics.friction.correction import (
 )
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.gas import air_compressed, relaxed_compression
+from winch_friction.physics.leakage import leakage_per_coefficient
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, GroupSample, Run, Sample
 from winch_friction.physics.viscosity import relative_viscosity
 from winch_friction.physics.winch.crane import Crane, Drum
@@ -180,7 +181,7 @@ def _slip(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     driving = driving_group(groups)
     drop = columns[f"{driving}.pressure_a"] - columns[f"{driving}.pressure_b"]
     thinness = 1.0 / relative_viscosity(columns["oil_temperature"]) if "oil_temperature" in columns else 1.0
-    lost = c.value * drop / columns[f"{driving}.displacement"] * thinness
+    lost = c.value * leakage_per_coefficient(c.name, drop, thinness) / columns[f"{driving}.displacement"]
     return columns | {"speed_reference": columns["speed_reference"] - lost}
 
 

@@ -1,10 +1,10 @@
 """Lost speed: the flow that a commanded speed should have needed against the speed that was reached, on plateaus.
 
-Leakage does not touch the torque balance. Where the commanded speed is logged, it shows as speed lost in proportion to
-pressure over viscosity, in both directions alike, while a wrong speed scale changes sign with the direction.
+Leakage does not touch the torque balance. Where the commanded speed is logged, it shows as speed lost with pressure, in
+both directions alike, while a wrong speed scale changes sign with the direction.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -13,32 +13,44 @@ from scipy.ndimage import minimum_filter1d
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import viscosity
 from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.leakage import LEAKAGE_LAWS, REFERENCE_PRESSURE, leakage_per_coefficient
 from winch_friction.physics.signals import FloatArray, Run
 
+NAME = "slip_leakage"
 REFERENCE = "speed_reference"
+SYMBOLS = {"slip_leakage": "C_leak", "orifice_leakage": "C_orifice", "opening_gap_leakage": "C_opening"}
+EQUATIONS = {
+    "slip_leakage": r"C\,\Delta p/(D\,\mu)",
+    "orifice_leakage": r"C_o\sqrt{p_0\,\Delta p}/D",
+    "opening_gap_leakage": r"C_g\,\Delta p^2/(p_0\,D\,\mu)",
+}
 SETTLED = 1.5  # s of constant command before a sample counts as a plateau
 STEADY_COMMAND = 1.0  # rad/s^2
 SEGMENT = 5.0  # s
 FEWEST_SEGMENTS = 20
-# leakage per motor that is ordinary for such motors and left to the pump command, m^3/s/Pa
-ORDINARY = 6e-12
+# speed that leakage may cost at 150 bar, 40 degC and full displacement before it is more than ordinary and left to the
+# pump's command, rad/s: what 6e-12 m^3/s/Pa cost a motor of 215 cm^3, and so much of a smaller or larger one
+ORDINARY = 2.6
 SURE = 3.0  # standard deviations beyond the ordinary
+# a second law of leakage beside the first must leave no more than this share of what is lost in other runs
+WORTH_A_LAW = 0.8
 
 
 @dataclass(frozen=True)
 class Leakage:
-    """Leakage at 40 degC in m^3/s/Pa per driving motor, with its standard deviation and what it explains.
+    """Leakage in m^3/s/Pa at 150 bar and 40 degC per driving motor, by law, each with its standard deviation.
 
-    `before` and `after` are the rms of the lost speed over segments in rad/s, without and with the leakage, held out by
-    run.
+    `slip` is what they cost together at full displacement, rad/s, and `slip_std` its deviation. `before` and `after`
+    are the rms of the lost speed over segments in rad/s, without and with the leakage, held out by run.
     """
 
-    leakage: float
-    std: float
+    leakage: Mapping[str, tuple[float, float]]
+    slip: float
+    slip_std: float
     p_value: float
     before: float
     after: float
@@ -53,34 +65,37 @@ class Leakage:
     @property
     def found(self) -> bool:
         """More than ordinary leakage, surely, and it explains most of what is lost."""
-        return self.leakage - SURE * self.std > ORDINARY and self.p_value < 0.01 and self.gain > 0.3
+        return self.slip - SURE * self.slip_std > ORDINARY and self.p_value < 0.01 and self.gain > 0.3
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
         """The leakage as it is reported."""
-        return {"C_leak": ParameterEstimate(self.leakage, self.std, "m^3/s/Pa")}
+        return {SYMBOLS[law]: ParameterEstimate(*value, "m^3/s/Pa") for law, value in self.leakage.items()}
 
     @property
     def effect(self) -> Effect:
         """The leakage as an entry of the result."""
         return Effect(
-            "slip_leakage", (), "per driving motor at 40 degC", r"\omega_{ref}-\omega = C\,\Delta p/(D\,\mu)",
-            self.parameters, self.p_value, self.gain, 1.0, "commanded against reached speed",
+            NAME, (), "per driving motor at 150 bar and 40 degC", r"\omega_{ref}-\omega = "
+            + " + ".join(EQUATIONS[law] for law in self.leakage), self.parameters, self.p_value, self.gain, 1.0,
+            "commanded against reached speed", " + ".join(self.leakage),
         )  # fmt: skip
 
     @property
-    def correction(self) -> Correction:
-        """The leakage as an entry of the model."""
-        return Correction("slip_leakage", self.leakage, self.std, source=SOURCE)
+    def corrections(self) -> tuple[Correction, ...]:
+        """The leakage as entries of the model."""
+        return tuple(Correction(law, *value, source=SOURCE) for law, value in self.leakage.items())
 
     def holds_on(self, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
         """Whether the leakage also explains the speed that other runs lose."""
         table = _tables(runs, prepared)
         if not len(table):
             return False
-        lost, speed, rate = table[:, 0], table[:, 1], table[:, 2]
+        lost, speed, _, rates = _parts(table)
         before = lost - self.scale_alone * speed
-        after = lost - self.scale * speed - self.leakage * rate
+        after = lost - self.scale * speed
+        for law, (value, _) in self.leakage.items():
+            after = after - value * rates[law]
         return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
 
 
@@ -91,53 +106,85 @@ def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | No
 
 
 def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
-    """Leakage from commanded and reached speed; None where no command is logged or nothing is steady."""
+    """Leakage from commanded and reached speed, by the law that other runs bear out, or by two where they need both;
+    None where no command is logged or nothing is steady.
+    """
     table = _tables(runs, prepared)
-    if len(table) < FEWEST_SEGMENTS or len(np.unique(table[:, 3])) < 3:
+    if len(table) < FEWEST_SEGMENTS or len(np.unique(table[:, 0])) < 3:
         return None
-    lost, x, of_run = table[:, 0], table[:, 1:3], table[:, 3]
-    coefficients, std = _fit(x, lost)
-    before, after = _held_out(lost, x, of_run)
-    alone = float((x[:, 0] @ lost) / max((x[:, 0] ** 2).sum(), 1e-300))
+    lost, speed, of_run, rates = _parts(table)
+    before = _held_out(speed[:, None], lost, of_run)
+    singles: list[tuple[str, ...]] = [(law,) for law in LEAKAGE_LAWS]
+    fits = {laws: _fitted(laws, speed, rates, lost, of_run) for laws in singles}
+    laws = min(fits, key=lambda k: _rms(fits[k][2]))
+    for other in [law for law in LEAKAGE_LAWS if law not in laws]:
+        pair = (laws[0], other)
+        fits[pair] = _fitted(pair, speed, rates, lost, of_run)
+    bounds = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][1:]) > 0.0}
+    best = min(bounds, key=lambda k: _rms(bounds[k][2]))
+    if len(best) > 1 and _rms(bounds[best][2]) < WORTH_A_LAW * _rms(bounds[laws][2]):
+        laws = best
+    coefficients, covariance, after = bounds[laws]
+    alone = float((speed @ lost) / max((speed**2).sum(), 1e-300))
+    full = REFERENCE_PRESSURE / _full_displacement(prepared)
+    std = np.sqrt(np.diag(covariance))
     return Leakage(
-        float(coefficients[1]), float(std), sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after),
-        float(coefficients[0]), alone,
+        {law: (float(coefficients[k]), float(std[k])) for k, law in enumerate(laws, start=1)},
+        float(coefficients[1:].sum()) * full, float(np.sqrt(covariance[1:, 1:].sum())) * full,
+        sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after), float(coefficients[0]), alone,
     )  # fmt: skip
+
+
+def _full_displacement(prepared: Sequence[PreparedRun]) -> float:
+    """Of the driving motors, m^3/rad: the crane file's, or where it has none as far as they were swung out."""
+    stated = dict(prepared[0].constants).get("max_displacement", 0.0)
+    return stated or max(float(np.max(_driving(p).displacement)) for p in prepared if p.groups)
 
 
 def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FloatArray:
     pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
-    return np.concatenate([np.empty((0, 4)), *(_segments(run, p, k) for k, (run, p) in enumerate(pairs))])
+    none = np.empty((0, 3 + len(LEAKAGE_LAWS)))
+    return np.concatenate([none, *(_segments(run, p, k) for k, (run, p) in enumerate(pairs))])
 
 
 def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:
-    """Rows (lost speed, speed, speed lost per unit of leakage, run) of the steady stretches of one run."""
+    """Rows (run, lost speed, speed, speed lost per unit of each law's leakage) of the steady stretches of one run."""
     command = np.interp(prepared.time + prepared.start, run.time, run[REFERENCE])
     constant = np.abs(np.gradient(command, prepared.dt)) < STEADY_COMMAND
     width = max(int(SETTLED / prepared.dt), 1)
     # only the past counts: the plateau must have lasted before the sample
     settled = minimum_filter1d(constant.astype(int), width, origin=(width - 1) // 2) > 0
     use = settled & prepared.used
-    regressor = _per_leakage(prepared)
+    rates = _per_leakage(prepared)
     step = max(int(SEGMENT / prepared.dt), 1)
     rows = []
     for begin in range(0, len(command), step):
         part = np.flatnonzero(use[begin : begin + step]) + begin
         if len(part) > step // 2:
             speed = prepared.speed[part].mean()
-            rows.append((command[part].mean() - speed, speed, regressor[part].mean(), number))
-    return np.array(rows, dtype=float).reshape(-1, 4)
+            rows.append((number, command[part].mean() - speed, speed, *rates[part].mean(axis=0)))
+    return np.array(rows, dtype=float).reshape(-1, 3 + len(LEAKAGE_LAWS))
+
+
+def _parts(table: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
+    """Lost speed, speed, run and what each law loses per unit, of the rows."""
+    return table[:, 1], table[:, 2], table[:, 0], dict(zip(LEAKAGE_LAWS, table[:, 3:].T, strict=True))
+
+
+def _driving(prepared: PreparedRun) -> GroupSignals:
+    return next(group for group in prepared.groups if group.balances)
 
 
 def _per_leakage(prepared: PreparedRun) -> FloatArray:
-    """Speed lost per unit of leakage at 40 degC of one driving motor: dp / (D mu/mu_40), rad/s."""
-    driving = next(group for group in prepared.groups if group.balances)
-    thinness = np.ones(len(prepared.time))
+    """Speed lost per unit of leakage of one driving motor, by each law, (samples, laws), rad/s."""
+    driving = _driving(prepared)
+    thinness: FloatArray | float = 1.0
     if "oil_temperature" in prepared.channels:
         celsius = prepared.channels["oil_temperature"]
         law = 10 ** (10 ** np.interp(celsius, *_table())) - 0.7
         thinness = viscosity.kinematic_viscosity(viscosity.REFERENCE) / law
-    return driving.pressure / driving.displacement * thinness
+    flows = [leakage_per_coefficient(each, driving.pressure, thinness) for each in LEAKAGE_LAWS]
+    return np.column_stack(flows) / driving.displacement[:, None]
 
 
 @cache
@@ -147,25 +194,30 @@ def _table() -> tuple[FloatArray, FloatArray]:
     return celsius, np.log10(np.log10(viscosity.kinematic_viscosity(celsius) + 0.7))
 
 
-def _fit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, float]:
+def _fitted(
+    laws: tuple[str, ...], speed: FloatArray, rates: Mapping[str, FloatArray], lost: FloatArray, of_run: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Coefficients of speed and laws, their covariance, and the lost speed that they leave, held out by run."""
+    x = np.column_stack([speed, *(rates[law] for law in laws)])
+    return *_fit(x, lost), _held_out(x, lost, of_run)
+
+
+def _fit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     scale = np.sqrt((x**2).mean(axis=0)) + 1e-300
     z = x / scale
     inverse = np.linalg.pinv(z.T @ z)
     beta = inverse @ z.T @ y
-    sigma = np.sqrt(((y - z @ beta) ** 2).sum() / max(len(y) - 2, 1))
-    return beta / scale, float(sigma * np.sqrt(inverse[1, 1]) / scale[1])
+    variance = ((y - z @ beta) ** 2).sum() / max(len(y) - x.shape[1], 1)
+    return beta / scale, variance * inverse / np.outer(scale, scale)
 
 
-def _held_out(lost: FloatArray, x: FloatArray, of_run: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Residuals of each run, fitted to the others, with a speed scale alone and with leakage."""
-    before, after = np.empty(len(lost)), np.empty(len(lost))
+def _held_out(x: FloatArray, lost: FloatArray, of_run: FloatArray) -> FloatArray:
+    """What each run keeps of its lost speed, fitted to the others."""
+    left = np.empty(len(lost))
     for run in np.unique(of_run):
         out = of_run == run
-        scale_alone = (x[~out, 0] @ lost[~out]) / max((x[~out, 0] ** 2).sum(), 1e-300)
-        both, _ = _fit(x[~out], lost[~out])
-        before[out] = lost[out] - x[out, 0] * scale_alone
-        after[out] = lost[out] - x[out] @ both
-    return before, after
+        left[out] = lost[out] - x[out] @ _fit(x[~out], lost[~out])[0]
+    return left
 
 
 def sign_flip_p_value(gains: FloatArray, flips: int = 2000) -> float:

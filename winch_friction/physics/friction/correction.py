@@ -32,7 +32,7 @@ class Action(Enum):
     INERTIA = "inertia"  # inertia at the shaft = crane file's + e
     WARMTH = "warmth"  # true gas pressure = calculated (1 + e exp(-t/tau)), tau the correction's time constant
     HEAT = "heat"  # true gas pressure = calculated (1 - e <ln p>_tau), what has relaxed of ln p since the start
-    SLIP = "slip"  # speed_reference = true + e dp/D times mu_40/mu: what leaks away is not reached
+    SLIP = "slip"  # speed_reference = true + e f(dp, mu_40/mu)/D: what leaks away is not reached
     AIR = "air"  # speed_reference = true + e dv/dt/(n D), v what a unit of free air gives way to under the pressures
 
 
@@ -85,6 +85,13 @@ def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> D
     return DeclaredCorrection(
         name, Parameter(name, "1", typical, lower=-reach, upper=reach, doc=doc), "signal", action, ("pressure_a",),
         reads=("pressure_b",), by_group=True, has_time_constant=True, live=False,
+    )  # fmt: skip
+
+
+def _leakage(name: str, doc: str) -> DeclaredCorrection:
+    return DeclaredCorrection(
+        name, Parameter(name, "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, doc=doc), "signal", Action.SLIP, ("speed_reference",),
+        reads=("pressure_a", "pressure_b", "displacement"), by_group=True, live=False,
     )  # fmt: skip
 
 
@@ -167,12 +174,9 @@ _DECLARED = (
         "accumulator_heat", Action.HEAT, 1.0, 10.0,
         "share of the compression's heat that the wall takes, of a pressure that is calculated",
     ),
-    DeclaredCorrection(
-        "slip_leakage",
-        Parameter("slip_leakage", "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, doc="leakage per motor at 40 degC that slows it"),
-        "signal", Action.SLIP, ("speed_reference",), reads=("pressure_a", "pressure_b", "displacement"),
-        by_group=True, live=False,
-    ),
+    _leakage("slip_leakage", "leakage per motor at 40 degC that slows it"),
+    _leakage("orifice_leakage", "leakage per motor through an orifice, at 150 bar, that slows it"),
+    _leakage("opening_gap_leakage", "leakage per motor through gaps that pressure opens, at 150 bar and 40 degC"),
     DeclaredCorrection(
         "entrained_air",
         Parameter("entrained_air", "m^3", 6e-4, 0.0, 0.1, doc="free air of one line, at 1 bar"),

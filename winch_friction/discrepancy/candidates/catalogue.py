@@ -6,6 +6,7 @@ from pathlib import Path
 
 from winch_friction.discrepancy.candidates.bends import bends_over
 from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Untestable
+from winch_friction.discrepancy.candidates.drum_turn import drum_ripples
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
@@ -54,8 +55,9 @@ def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
 def candidates_for(
     runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None
 ) -> list[Candidate]:
-    """Every candidate, and of each family the free member over what these runs have covered."""
-    return [*all_candidates(effects_file), *bends_over(runs), *free_members(runs, model)]
+    """Every candidate, those that speak of what these runs have covered, and of each family the free member."""
+    own = [*bends_over(runs), *drum_ripples(runs, model), *free_members(runs, model)]
+    return [*all_candidates(effects_file), *own]
 
 
 def testable(

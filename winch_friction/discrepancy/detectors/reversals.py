@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
+from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.interval import chance_of_no_gain
@@ -82,7 +82,8 @@ def detect(
     `cleaned` takes out of the runs what has been found beside the torque balance.
     """
     named = {slot.name for slot in explanation.slots}
-    tried = [each for each in candidates if each.reversal_rival or each.name in named]
+    balanced = [each for each in candidates if each.regime in (MOVING, REVERSALS)]
+    tried = [each for each in balanced if each.reversal_rival or each.name in named]
     if "signal_delay" in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
         return None
     turning = cleaned(expand_around(given, expansion, explanation, tried, turning=True))

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from winch_friction.physics.friction.registry import register
-from winch_friction.physics.friction.symbols import T_d, gear_ratio, time, w
+from winch_friction.physics.friction.symbols import T_d, gear_ratio, shaft_angle, time, w
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
@@ -36,6 +36,17 @@ c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+a_d = Parameter("a_d", "1", 0.01, lower=-0.2, upper=0.2, doc="sine amplitude over the drum's angle, share of T_d/i")
+b_d = Parameter("b_d", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude over the drum's angle, share of T_d/i")
+k_d = Parameter("k_d", "1", 1.0, lower=0.5, upper=100.0, shape=True, doc="periods per turn of the drum")
+k_dh = Parameter("k_dh", "1", 1.0, lower=0.5, upper=100.0, shape=True, doc="longest periods per turn of the drum")
+_HARMONICS = tuple(
+    tuple(
+        Parameter(f"{own}_d{k}", "1", 0.01, lower=-0.2, upper=0.2, doc=f"{wave} amplitude of harmonic {k}, of T_d/i")
+        for own, wave in (("a", "sine"), ("b", "cosine"))
+    )
+    for k in (1, 2, 3)
+)
 
 _h = sp.Symbol("z_held", real=True)
 _rest = sp.exp(-w / REST_SPEED)
@@ -97,5 +108,26 @@ gear_asymmetry_power = register(
     Term(
         "gear_asymmetry_power", e_gp.symbol * LOAD_SCALE / gear_ratio * _load**n_ep.symbol, (e_gp, n_ep),
         Scope.SHAFT, "gear efficiency by direction, a power of the load", "gear and drum", opposing=False,
+    )
+)  # fmt: skip
+
+
+def _over_the_drum(order: sp.Expr, a: Parameter, b: Parameter) -> sp.Expr:
+    turned = order * shaft_angle / gear_ratio
+    return a.symbol * sp.sin(turned) + b.symbol * sp.cos(turned)
+
+
+drum_ripple = register(
+    Term(
+        "drum_ripple", _over_the_drum(k_d.symbol, a_d, b_d) * T_d / gear_ratio, (a_d, b_d, k_d), Scope.SHAFT,
+        "docs/discrepancy.md, an eccentric drum or a wheel of its gear", "gear and drum", opposing=False,
+    )
+)  # fmt: skip
+drum_ripple_harmonics = register(
+    Term(
+        "drum_ripple_harmonics",
+        sum(_over_the_drum(k * k_dh.symbol, a, b) for k, (a, b) in enumerate(_HARMONICS, start=1)) * T_d / gear_ratio,
+        (*(p for pair in _HARMONICS for p in pair), k_dh), Scope.SHAFT,
+        "docs/discrepancy.md, the same with two harmonics", "gear and drum", opposing=False,
     )
 )  # fmt: skip

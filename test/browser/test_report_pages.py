@@ -16,6 +16,13 @@ CUT_OFF = """[
 ].map((each) => each.outerHTML.slice(0, 120))"""
 
 
+# tables that go on to the right and do not fade out there, and those that fade though all is seen
+UNSEEN = """[...document.querySelectorAll(".scroll")].filter((each) =>
+    each.checkVisibility() &&
+    (each.scrollWidth - each.clientWidth - each.scrollLeft > 2) !== (getComputedStyle(each).maskImage !== "none")
+).map((each) => each.getAttribute("aria-label"))"""
+
+
 @pytest.fixture(scope="module")
 def gap_page(tmp_path_factory):
     return small_gap().to_html(tmp_path_factory.mktemp("pages") / "gap.html")
@@ -50,6 +57,9 @@ def test_every_report_is_accessible_silent_and_drawn(kind, path, visit, width):
         keep_screenshot(page, kind, width, scheme)
     assert said == []
     assert page.evaluate(CUT_OFF) == []
+    page.wait_for_function(f"!{UNSEEN}.length")
+    page.evaluate("document.querySelectorAll('.scroll').forEach((each) => each.scrollTo(1e4, 0))")
+    page.wait_for_function(f"!{UNSEEN}.length")
     assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
 
 

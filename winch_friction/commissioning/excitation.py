@@ -114,7 +114,7 @@ def _said(crane: Crane, gain: float, speed: float, load: float, displacement: fl
     held = max(crane.groups.values()) * crane.max_displacement * HOLDING_PRESSURE * load
     mass = held * crane.gear_ratio / (9.81 * crane.drum.layer_radii[-1]) / 1e3
     setting = displacement * crane.max_displacement / CM3_PER_REV
-    return f"constant {speed:.0f} rpm up and down with about {mass:.0f} t at {setting:.0f} cm^3/rev per motor, 8 s each"
+    return f"constant {speed:.0f} rpm up and down with about {mass:.0f} t at {setting:.0f} cm³/rev per motor, 8 s each"
 
 
 def _missing_channels(views: Sequence[RunView]) -> Iterator[str]:

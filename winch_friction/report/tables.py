@@ -43,6 +43,7 @@ def number(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}"
 
 
+_LONG = 12  # characters from which a word may be folded
 _SENTENCE = 40  # characters from which a cell counts as a sentence
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # the unit that people read a quantity in; one per quantity on every page and in every table
@@ -75,10 +76,14 @@ def _wide(value: Any) -> str:
 
 
 def _foldable(text: str) -> str:
-    """Escaped text that may break after `_` and `/`, and every 16 characters of a hash; symbols stay whole."""
-    if len(text) < 12:
-        return escape(text)
-    marked = re.sub(r"[0-9A-Za-z]{16}(?=[0-9A-Za-z]{8})|[_/](?=\w)", lambda found: found[0] + "\0", text)
+    """Escaped text whose words of twelve letters and more may break after `_` and `/`, and every 16 characters of a
+    hash; symbols stay whole, and numbers beside their units."""
+    text = re.sub(r"(?<=\d) (?=%|°|[A-Za-zµ]+[²³]?(?:/[a-z]+)?(?:[,;:)]|$))", "\u00a0", text)
+    return " ".join(_folded(word) if len(word) >= _LONG else escape(word) for word in text.split(" "))
+
+
+def _folded(word: str) -> str:
+    marked = re.sub(r"[0-9A-Za-z]{16}(?=[0-9A-Za-z]{8})|[_/](?=\w{3})", lambda found: found[0] + "\0", word)
     return escape(marked).replace("\0", "<wbr>")
 
 

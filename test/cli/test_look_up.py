@@ -113,10 +113,7 @@ def test_names_complete():
         (["simulate", "ahc_55t_215", "--hide", "tare", "--out", "x.csv"], "tare_load"),
         (["simulate", "ahc_55t_215", "--hide", "churnin", "--out", "x.csv"], "did you mean churning?"),
         (["compare", "a6vm215_crane2", "a6vm215_cran2"], "did you mean a6vm215_crane2"),
-        (
-            ["check", "one.csv", "two.csv", "--crane", "crane_150t"],
-            "one.csv: no such file or folder | two.csv: no such",
-        ),
+        (["check", "one.csv", "--crane", "crane_150t"], "one.csv: no such file or folder"),
         (["import", "logs", "--propose", "--map", "m.yaml"], "give the logs themselves, as logs/*.csv"),
         (["show", "a6vm215_crane2", "--out", "/proc/x.html"], "/proc/x.html: cannot be written"),
     ],

@@ -54,10 +54,9 @@ def test_a_motor_of_another_size_is_refused(tmp_path, capsys):
     out = tmp_path / "m.yaml"
     arguments = ["identify", "system", str(run_file), "--motor", "a6vm170", "--crane", "crane_150t", "--out", str(out)]
     assert run(arguments) == 2
-    error = capsys.readouterr().err.strip()
+    (error,) = [each for each in capsys.readouterr().err.splitlines() if "a6vm170" in each]
     assert "model 'a6vm170' does not belong to crane 'crane_150t'" in error
     assert "largest displacement" in error
-    assert "\n" not in error
     assert not out.exists()
 
 

@@ -33,22 +33,16 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.inputs import crane_of, folders_of_cranes, read_all, run_paths
+    from winch_friction.cli.inputs import folders_of_cranes, read_inputs, run_paths
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import refuse_other_crane
-    from winch_friction.records.model_file import load_model
 
     if terms_file is not None:
         load_file(terms_file)
     paths = run_paths(runs)
-    seed = load_model(model) if model else None
-    winch = crane_of(crane, seed, paths)
-    if seed is not None:
-        refuse_other_crane(seed, winch)
-    read = read_all(paths, winch)
+    read, winch, seed = read_inputs(paths, crane, model)
     near = folders_of_cranes([*paths, *([Path(crane)] if crane else [])])
     result = check(read, winch, seed, known_cranes(*near))
     content = result.content()

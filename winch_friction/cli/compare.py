@@ -9,7 +9,7 @@ from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.cli.outputs import PAGE, refuse_other_kind
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 CERTAIN = 2.0  # standard deviations from which a difference is more than what the models do not know of themselves
 
@@ -35,7 +35,12 @@ def command(
     from winch_friction.records.model_file import load_model
 
     refuse_other_kind(out, PAGE, "a page")
-    one, two = load_model(first), load_model(second)
+    problems, models = Problems(), []
+    for name in (first, second):
+        with problems:
+            models.append(load_model(name))
+    problems.say()
+    one, two = models
     _refuse_two_cranes(one, two)
     machine = curve_crane(one, crane)
     if runs:

@@ -89,14 +89,13 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.cli.inputs import crane_of, read_all, refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import read_inputs, refuse_copies, refuse_implausible, run_paths
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.discrepancy.options import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import refuse_other_crane, unstated
+    from winch_friction.physics.identity import unstated
     from winch_friction.records.atomic import write_text
-    from winch_friction.records.crane_file import load_crane
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
 
@@ -110,12 +109,8 @@ def run_gap(
         load_file(effects)  # before the model, which may be one that these effects have repaired
     assumed = not (model or crane)
     model = model or _usual_model(crane, paths)
-    seed_model = load_model(model)
-    loaded_crane = load_crane(seed_model.crane) if assumed else crane_of(crane, seed_model, paths)
-    refuse_other_crane(seed_model, loaded_crane)
-    show_warnings(unstated(seed_model))
-    mapping = bag_options_of(params_file)
-    read = read_all(paths, loaded_crane, **mapping)
+    crane = load_model(MODEL).crane if assumed else crane
+    read, loaded_crane, seed_model = read_inputs(paths, crane, model, bag_options_of(params_file), unstated)
     for run in read:
         show_warnings(run.warnings)
     refuse_copies(read)

@@ -1,8 +1,9 @@
 """`winch-friction identify motor | system | practice`: from supplier tables and logged tests to a friction model."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -115,30 +116,22 @@ def system(
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
     from winch_friction.cli.identify_output import show_system
-    from winch_friction.cli.inputs import crane_of, refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import refuse_copies, refuse_implausible, run_paths
     from winch_friction.cli.outputs import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
-    from winch_friction.physics.errors import InputError
-    from winch_friction.physics.identity import refuse_other_motor
+    from winch_friction.physics.errors import Problems
     from winch_friction.records.mapping import bag_options_of
-    from winch_friction.records.model_file import load_model, save_model
-    from winch_friction.records.runs import read_runs
+    from winch_friction.records.model_file import save_model
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     refuse_other_kind(out, MODEL, "a model")
     refuse_input_as_output(out, [motor, crane])
-    supplied = load_model(motor).only("motor")
-    known = crane_of(crane, supplied, runs)
-    if not known.drive.hydraulic:
-        raise InputError(
-            f"crane '{known.name}' has a drive of kind '{known.drive.kind}': identify fits what hydraulic motors lose; "
-            "for this drive winch-friction gap finds inertia, Coulomb and viscous friction and a gain of the load"
-        )
-    refuse_other_motor(supplied, known)
-    mapping = bag_options_of(params_file)
-    tests, others = read_runs(runs, known, **mapping), read_runs(held_out, known, **mapping)
+    problems = Problems()
+    known, supplied = _machine(crane, motor, runs, problems)
+    tests, others = _read_tests(runs, held_out, known, bag_options_of(params_file), problems)
+    problems.say()
     refuse_copies([*tests, *others])
     forced = refuse_implausible([*tests, *others], known, force=force, near=runs)
     found = identify_system(
@@ -156,6 +149,46 @@ def system(
     errors = test_errors(found.joint.model, [test.curve for test in (*found.tests, *found.held_out)])
     save_model(model, out)
     show_system(found, model, errors, out, json)
+
+
+def _machine(crane: str, motor: str, runs: Sequence[Path], problems: Any) -> tuple[Any, Any]:
+    """The crane and the motor's model; what is wrong with them is gathered."""
+    from winch_friction.cli.inputs import crane_of
+    from winch_friction.physics.errors import InputError
+    from winch_friction.physics.identity import refuse_other_motor
+    from winch_friction.records.model_file import load_model
+
+    supplied, known = None, None
+    with problems:
+        supplied = load_model(motor).only("motor")
+    if crane or supplied is not None:
+        with problems:
+            known = crane_of(crane, supplied, runs)
+    with problems:
+        if known is not None and not known.drive.hydraulic:
+            raise InputError(
+                f"crane '{known.name}' has a drive of kind '{known.drive.kind}': identify fits what hydraulic motors "
+                "lose; for this drive winch-friction gap finds inertia, Coulomb and viscous friction and a gain of the "
+                "load"
+            )
+        if known is not None and supplied is not None:
+            refuse_other_motor(supplied, known)
+    return known, supplied
+
+
+def _read_tests(
+    runs: Sequence[Path], held_out: Sequence[Path], crane: Any, options: Any, problems: Any
+) -> tuple[list[Any], list[Any]]:
+    """The tests and those held out; what is wrong with them is gathered."""
+    from winch_friction.cli.inputs import read_all
+    from winch_friction.records.runs import refuse_same_names
+
+    read: list[list[Any]] = [[], []]
+    for own, paths in zip(read, (runs, held_out), strict=True):
+        with problems:
+            own += read_all(paths, crane, complete=crane is not None, **options)
+            refuse_same_names(own)
+    return read[0], read[1]
 
 
 @app.command()

@@ -1,6 +1,6 @@
 """What the verbs ask of their inputs before they work: which runs, of which crane, and can that be."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.cli.console import progress, show_warnings
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
 TRUTH = "_truth"  # what simulate --truth appends to a run's name
@@ -42,15 +42,51 @@ def read_all(paths: Sequence[Path], crane: Any, **options: Any) -> list[Any]:
     """The runs of these files, with a bar; whatever is wrong with any of them is said at once."""
     from winch_friction.records.runs import read_run
 
-    runs, problems = [], []
+    runs, problems = [], Problems()
     for path in progress(paths, "reading runs"):
-        try:
+        with problems:
             runs.append(read_run(path, crane, **options))
-        except InputError as error:
-            problems.append(str(error))
-    if problems:
-        raise InputError(" | ".join(problems))
+    problems.say()
     return runs
+
+
+def read_inputs(
+    paths: Sequence[Path],
+    crane: str,
+    model: str,
+    options: Mapping[str, Any] | None = None,
+    remarks: Callable[[Any], Iterable[str]] = lambda model: (),
+) -> tuple[list[Any], Any, Any]:
+    """The runs, their crane and the model (None without a name); whatever is wrong with any of them is said at once.
+
+    `options` are for bags; `remarks` are what is to be told of the model on stderr.
+    """
+    problems = Problems()
+    winch, seed = machine_of(crane, model, paths, problems)
+    runs: list[Any] = []
+    if seed is not None:
+        show_warnings(remarks(seed))
+    with problems:
+        runs = read_all(paths, winch, complete=winch is not None, **(options or {}))
+    problems.say()
+    return runs, winch, seed
+
+
+def machine_of(crane: str, model: str, paths: Sequence[Path], problems: Problems) -> tuple[Any, Any]:
+    """The crane and the model (None without a name); what is wrong with them, or speaks against both, is gathered."""
+    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.records.model_file import load_model
+
+    seed, winch = None, None
+    with problems:
+        seed = load_model(model) if model else None
+    if crane or not problems.found:  # a model that cannot be read names no crane
+        with problems:
+            winch = crane_of(crane, seed, paths)
+    with problems:
+        if seed is not None and winch is not None:
+            refuse_other_crane(seed, winch)
+    return winch, seed
 
 
 def refuse_copies(runs: Sequence[Any]) -> None:

@@ -1,4 +1,4 @@
-"""`winch-friction <verb>`: exit 0 done, 2 bad input (one clear line), 1 a defect of this program."""
+"""`winch-friction <verb>`: exit 0 done, 2 bad input (one clear line a problem), 1 a defect of this program."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ Examples, each with more under [bold]--help[/bold]:
 
   [cyan]winch-friction gap runs/*.csv --crane crane_150t --model a6vm215_crane2 --out gap/[/cyan]
 
-Exit status: 0 done, 2 bad input (one line says what, where and what to do), 1 a defect.
+Exit status: 0 done, 2 bad input (one line a problem says what, where and what to do), 1 a defect.
 """
 
 app = typer.Typer(cls=VerbGroup, help=HELP, rich_markup_mode="rich", add_completion=True)
@@ -53,7 +53,7 @@ def run(arguments: Sequence[str]) -> int:
         result = typer.main.get_command(app).main(words or ["--help"], "winch-friction", standalone_mode=False)
         return result if isinstance(result, int) else DONE
     except InputError as error:
-        return _bad_input(str(error))
+        return _bad_input(*error.problems)
     except (KeyboardInterrupt, typer.Abort):
         return _said("interrupted", INTERRUPTED)
     except BrokenPipeError:
@@ -95,8 +95,10 @@ def _usage_hint(error: Exception) -> str:
     return f" (see '{context.command_path} --help')" if context is not None else ""
 
 
-def _bad_input(message: str) -> int:
-    return _said(" ".join(message.split()), BAD_INPUT)
+def _bad_input(*problems: str) -> int:
+    for each in problems:
+        _said(" ".join(each.split()), BAD_INPUT)
+    return BAD_INPUT
 
 
 def _said(message: str, status: int) -> int:

@@ -28,21 +28,18 @@ def command(
 
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
-    from winch_friction.cli.inputs import read_all
+    from winch_friction.cli.inputs import read_all, read_inputs
     from winch_friction.cli.outputs import PAGE, refuse_other_kind
     from winch_friction.physics.errors import InputError
-    from winch_friction.physics.identity import refuse_other_crane
-    from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.model_file import load_model
     from winch_friction.report.run_page import channel_rows, write_run_page
 
     if model and not crane:
         raise InputError("plot: --model needs --crane")
     refuse_other_kind(out, PAGE, "a page")
-    machine, drawn = load_crane(crane) if crane else None, load_model(model) if model else None
-    if drawn is not None and machine is not None:
-        refuse_other_crane(drawn, machine)
-    read = read_all(runs, machine)
+    if crane:
+        read, machine, drawn = read_inputs(runs, crane, model)
+    else:
+        read, machine, drawn = read_all(runs, None), None, None
     for run in read:
         show_warnings(run.warnings)
     page = write_run_page(out, read, machine, drawn)

@@ -1,6 +1,7 @@
 """`winch-friction replay`: a recording through the nodes' own step."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -45,14 +46,13 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.inputs import crane_of, refuse_implausible
+    from winch_friction.cli.inputs import machine_of, refuse_implausible
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.cli.provenance import provenance_of
-    from winch_friction.physics.errors import InputError
+    from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import ASSUMED_STD, refuse_other_crane, unstated
+    from winch_friction.physics.identity import ASSUMED_STD, unstated
     from winch_friction.records.mapping import bag_options_of
-    from winch_friction.records.model_file import load_model
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
@@ -65,9 +65,12 @@ def command(
     if terms_file is not None:
         load_file(terms_file)
     settings = settings_from_file(params_file) if params_file else None
-    seed = load_model(model)
-    winch = crane_of(crane, seed, [recording])
-    refuse_other_crane(seed, winch)
+    problems = Problems()
+    winch, seed = machine_of(crane, model, [recording], problems)
+    with problems:
+        if problems.found:
+            _read(recording, winch, options, complete=False)
+    problems.say()
     show_warnings(unstated(seed, settings.estimator.default_std if settings else ASSUMED_STD))
     run = _run_of(recording, winch, options)
     forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}
@@ -95,13 +98,18 @@ def command(
 def _run_of(recording: Path, crane: Any, options: dict[str, Any]) -> Any:
     """The recording as a run, or None where it lacks what a run needs: a replay needs less, and says what it lacks."""
     from winch_friction.physics.errors import InputError
+
+    try:
+        return _read(recording, crane, options)
+    except InputError:
+        return None
+
+
+def _read(recording: Path, crane: Any, options: Mapping[str, Any], complete: bool = True) -> Any:
     from winch_friction.records.runs import read_run
 
     is_bag = recording.is_dir() or recording.suffix in (".mcap", ".db3")
-    try:
-        return read_run(recording, crane, **(options if is_bag else {}))
-    except InputError:
-        return None
+    return read_run(recording, crane, complete=complete, **(options if is_bag else {}))
 
 
 def _settings_for(recording: Path, run: Any, settings: Any) -> Any:

@@ -9,8 +9,7 @@ from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.cli.outputs import PAGE, refuse_other_kind
-from winch_friction.physics.errors import InputError
-from winch_friction.records.paths import meant
+from winch_friction.physics.errors import InputError, meant
 
 LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
 

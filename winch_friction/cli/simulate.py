@@ -7,8 +7,7 @@ import typer
 
 from winch_friction.cli.names import complete_crane, complete_model, complete_scenario
 from winch_friction.cli.optional import OptionalTexts
-from winch_friction.physics.errors import InputError
-from winch_friction.records.paths import meant
+from winch_friction.physics.errors import InputError, Problems, meant
 
 LARGEST_EFFECT = 10.0  # times the typical size: ten times an effect of the catalogue is another machine
 FASTEST = 1000.0  # rad/s, 9500 rpm: no motor of a winch turns faster, so the load has run away
@@ -55,9 +54,7 @@ def command(
       winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
     """
     from winch_friction.cli.console import progress, show_json, show_table
-    from winch_friction.cli.inputs import crane_of
-    from winch_friction.physics.identity import refuse_other_crane
-    from winch_friction.records.model_file import load_model
+    from winch_friction.cli.inputs import machine_of
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     hidden = [_effect(text) for text in hide or []]
@@ -66,11 +63,13 @@ def command(
         return
     if not scenario:
         raise InputError("which scenario? Give a file, a shipped name, gap_campaign or paper_tests")
-    plan = _plan(scenario, seed, out, kind)
-    _refuse_overwriting([path for _, _, path in plan], force)
-    friction = load_model(model)
-    winch = crane_of(crane or plan[0][0].crane, friction)
-    refuse_other_crane(friction, winch)
+    problems = Problems()
+    plan: Any = []
+    with problems:
+        plan = _plan(scenario, seed, out, kind)
+        _refuse_overwriting([path for _, _, path in plan], force)
+    winch, friction = machine_of(crane or (plan[0][0].crane if plan else ""), model, [], problems)
+    problems.say()
     if plant:
         plan = [(chosen.override({"plant": plant}), run_seed, path) for chosen, run_seed, path in plan]
     for chosen, _, _ in plan:

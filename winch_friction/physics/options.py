@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
 from typing import Any, TypeVar
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems, unknown_key
 
 T = TypeVar("T")
 
@@ -50,20 +50,27 @@ def from_mapping(kind: type[T], content: Mapping[str, Any], where: str) -> T:
     if not isinstance(content, Mapping):
         raise InputError(f"{where}: expected a mapping of keys, found {content!r}")
     known = {each.name: each for each in fields(kind)}  # type: ignore[arg-type]
-    for key in content:
-        if key not in known:
-            raise InputError(f"{where}: unknown key '{key}'; known keys are {', '.join(known)}")
-    values = {key: _converted(known[key], value, f"{where}: {key}") for key, value in content.items()}
+    problems, values = Problems(), {}
+    for key, value in content.items():
+        with problems:
+            if key not in known:
+                raise InputError(f"{where}: {unknown_key(str(key), known)}")
+            values[key] = _converted(known[key], value, f"{where}: {key}")
     try:
-        return kind(**values)
+        made = kind(**values)
     except InputError as error:
-        raise InputError(f"{where}: {error}") from error
+        raise InputError(*problems.found, *(f"{where}: {each}" for each in error.problems)) from error
+    problems.say()
+    return made
 
 
 def check(configuration: Any) -> None:
     """Raise `InputError` when a field is outside its limits; to be called from `__post_init__`."""
+    problems = Problems()
     for each in fields(configuration):
-        _check_value(getattr(configuration, each.name), default_of(each), limits_of(each), each.name)
+        with problems:
+            _check_value(getattr(configuration, each.name), default_of(each), limits_of(each), each.name)
+    problems.say()
 
 
 def _converted(each: "Field[Any]", value: Any, where: str) -> Any:

@@ -22,7 +22,7 @@ def load_crane(name: str | Path) -> Crane:
     try:
         return crane_from_content(content, str(path))
     except InputError as error:
-        raise InputError(with_all_problems(str(error), content, "crane", path.name)) from None
+        raise with_all_problems(error, content, "crane", str(path)) from None
 
 
 def crane_from_content(content: Any, where: str) -> Crane:

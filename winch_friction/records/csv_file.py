@@ -8,31 +8,43 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.headers import Header, header_text, parse_header
 from winch_friction.records.run_checks import Place, checked_run
 
+_SHOWN = 3  # places named of one kind of problem
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-nan")
 
 
 def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
     """A run from a CSV file; raises `InputError` with line and column for whatever cannot be read."""
     lines, rows = _rows(path, _text(path))
-    headers = unique_headers([parse_header(cell, str(path)) for cell in rows[0]], path)
-    _check_width(path, lines, rows)
+    problems = Problems()
+    with problems:
+        _check_width(path, lines, rows)
+    ragged = bool(problems.found)
+    headers = read_headers(path, rows[0], problems)
+    if ragged:
+        problems.say()
     place: Place = lambda row: f"line {lines[row + 1]}"
     cells = list(zip(*rows[1:], strict=True)) or [()] * len(headers)
     columns, aside = {}, {}
     bare = [header.name for header in headers if header.known and not header.unit]
     for header, values in zip(headers, cells, strict=True):
         if header.known:
-            columns[header.name] = header.to_si(_numbers(path, header, values, place), str(path))
+            numbers = _numbers(path, header, values, place, problems)
+            columns[header.name] = numbers
+            with problems:
+                columns[header.name] = header.to_si(numbers, str(path))
         else:
             aside[header.text] = _numbers_or_text(values)
-    return checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare)
+    with problems:
+        run = checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare)
+    problems.say()
+    return run
 
 
 def write_csv_run(run: Run, path: Path) -> Path:
@@ -55,6 +67,12 @@ def unique_headers(headers: list[Header], path: Path) -> list[Header]:
             raise InputError(f"{path}: column '{name}' stands twice, as '{seen[name].text}' and '{header.text}'")
         seen[name] = header
     return headers
+
+
+def with_count(said: list[str], count: int, of: str) -> list[str]:
+    """The problems that are shown, the last of them with how many more there are."""
+    more = count - len(said)
+    return [*said[:-1], f"{said[-1]} (and {more} more {of})"] if more else said
 
 
 def _text(path: Path) -> str:
@@ -87,6 +105,19 @@ def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
     return lines, rows
 
 
+def read_headers(path: Path, cells: Sequence[str], problems: Problems) -> list[Header]:
+    """The headers of a file's columns; what is wrong with any of them is gathered."""
+    headers = []
+    for cell in cells:
+        own = Header(cell.strip(), cell.partition("[")[0].strip(), "")  # where its bracket does not close
+        with problems:
+            own = parse_header(cell, str(path))
+        headers.append(own)
+    with problems:
+        unique_headers(headers, path)
+    return headers
+
+
 def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]) -> None:
     width = len(rows[0])
     if rows[0] and rows[0][0].startswith("#"):
@@ -96,27 +127,38 @@ def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]
         )
     if not width:
         raise InputError(f"{path}: line 1 is blank; expected the header line there")
-    for line, row in zip(lines, rows, strict=True):
-        if len(row) != width:
-            raise InputError(f"{path}: line {line}: {len(row)} values for {width} columns" if row else
-                             f"{path}: line {line}: blank line")  # fmt: skip
+    bad = [(line, row) for line, row in zip(lines, rows, strict=True) if len(row) != width]
+    if bad:
+        said = [
+            f"{path}: line {line}: {len(row)} values for {width} columns" if row else f"{path}: line {line}: blank line"
+            for line, row in bad[:_SHOWN]
+        ]
+        raise InputError(*with_count(said, len(bad), "lines"))
 
 
-def _numbers(path: Path, header: Header, values: Sequence[str], place: Place) -> FloatArray:
+def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, problems: Problems) -> FloatArray:
+    """A column's numbers; a cell that is none is gathered, and NaN."""
     try:
         return np.array(values, dtype=float)
     except ValueError:  # a cell that is empty, or no number
-        return np.array([_number(path, header, place, row, text) for row, text in enumerate(values)])
+        numbers = [_number(text) for text in values]
+    bad = [row for row, number in enumerate(numbers) if number is None]
+    if bad:
+        at = [f"{path}: {place(row)}, column '{header.text}': '{values[row].strip()[:40]}'" for row in bad[:_SHOWN]]
+        said = [f"{each} is not a number; leave the cell empty if unknown" for each in at]
+        with problems:
+            raise InputError(*with_count(said, len(bad), "like it in this column"))
+    return np.array([np.nan if number is None else number for number in numbers])
 
 
-def _number(path: Path, header: Header, place: Place, row: int, text: str) -> float:
+def _number(text: str) -> float | None:
+    """The cell's number, NaN for an empty one, None for what is no number."""
     if text.strip().lower() in _MISSING:
         return float("nan")
     try:
         return float(text)
     except ValueError:
-        at = f"{path}: {place(row)}, column '{header.text}'"
-        raise InputError(f"{at}: '{text.strip()[:40]}' is not a number; leave the cell empty if unknown") from None
+        return None
 
 
 def _numbers_or_text(values: Sequence[str]) -> Any:

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.errors import InputError, Problems
+from winch_friction.physics.friction import FrictionModel, registered_terms, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.symbols import CONSTANTS
-from winch_friction.physics.friction.term import Parameter
+from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.physics.units import factor_to_si
 from winch_friction.records.atomic import write_text
 from winch_friction.records.corrections import corrections_content, read_corrections
@@ -30,7 +30,7 @@ def load_model(name: str | Path) -> FrictionModel:
     try:
         return model_from_content(content, str(path))
     except InputError as error:
-        raise InputError(with_all_problems(str(error), content, "model", path.name)) from None
+        raise with_all_problems(error, content, "model", str(path)) from None
 
 
 def model_from_text(text: str, where: str = "model text") -> FrictionModel:
@@ -53,11 +53,8 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
     top = Section(content, where)
     _check_schema(top)
     tables = read_tables(top)
-    terms = tuple(tables[name] if name in tables else term_named(name) for name in _term_names(top))
-    declared = unique_parameters(terms)
-    section = top.section("parameters")
-    entries = [_Entry(section, parameter) for parameter in declared]
-    section.close()
+    terms = _terms(top, tables)
+    entries = _entries(top, terms)
     model = FrictionModel(
         name=top.text("name"),
         terms=terms,
@@ -72,6 +69,34 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
     top.get("description")
     top.close()
     return model
+
+
+def _terms(top: Section, tables: Mapping[str, Term]) -> tuple[Term, ...]:
+    problems, terms = Problems(), []
+    for name in _term_names(top):
+        with problems:
+            terms.append(tables[name] if name in tables else term_named(name))
+    if problems.found:  # whatever else is wrong is told beside the terms that are known
+        with problems:
+            _entries(top, tuple(terms), complete=False)
+        raise InputError(*(each if each.startswith(top.where) else f"{top.where}: {each}" for each in problems.found))
+    return tuple(terms)
+
+
+def _entries(top: Section, terms: tuple[Term, ...], complete: bool = True) -> "list[_Entry]":
+    """The parameters of the terms; all that is wrong with them is said at once."""
+    section, problems, entries = top.section("parameters"), Problems(), []
+    for parameter in unique_parameters(terms):
+        with problems:
+            entries.append(_Entry(section, parameter))
+    if not complete:  # a parameter may be that of a term whose name is misspelt
+        for term in registered_terms().values():
+            for parameter in term.parameters:
+                section.get(parameter.name)
+    with problems:
+        section.close()
+    problems.say()
+    return entries
 
 
 class _Entry:

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
-from winch_friction.records.csv_file import unique_headers
-from winch_friction.records.headers import Header, header_text, parse_header
+from winch_friction.records.csv_file import read_headers
+from winch_friction.records.headers import Header, header_text
 from winch_friction.records.run_checks import Place, checked_run
 
 _METADATA = b"winch_friction"
@@ -20,19 +20,25 @@ _METADATA = b"winch_friction"
 def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
     """A run from a Parquet file; raises `InputError` with row (from 1) and column."""
     table = _table(path)
-    headers = unique_headers([parse_header(name, str(path)) for name in table.column_names], path)
+    problems = Problems()
+    headers = read_headers(path, table.column_names, problems)
     place: Place = lambda row: f"row {row + 1}"
     columns, aside = {}, {}
     bare = [header.name for header in headers if header.known and not header.unit]
     for header, chunked in zip(headers, table.columns, strict=True):
         if header.known:
-            columns[header.name] = header.to_si(_numbers(path, header, chunked), str(path))
+            with problems:
+                columns[header.name] = _numbers(path, header, chunked)
+                columns[header.name] = header.to_si(columns[header.name], str(path))
         else:
             aside[header.text] = chunked.to_numpy()
     metadata = json.loads((table.schema.metadata or {}).get(_METADATA, b"{}"))
-    return checked_run(
-        path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare
-    )
+    with problems:
+        run = checked_run(
+            path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare
+        )
+    problems.say()
+    return run
 
 
 def write_parquet_run(run: Run, path: Path) -> Path:

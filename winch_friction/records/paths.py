@@ -1,11 +1,9 @@
 """Where the shipped configuration lies, in a checkout, a ROS installation or a Python one."""
 
 import sys
-from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, meant
 
 _PACKAGE = "winch_friction"
 
@@ -37,9 +35,3 @@ def shipped(kind: str, name: str | Path, suffix: str = ".yaml") -> Path:
     raise InputError(
         f"'{name}' is neither a file nor a shipped name in {kind};{meant(str(name), known)} shipped: {', '.join(known)}"
     )
-
-
-def meant(name: str, known: Iterable[str]) -> str:
-    """' did you mean ...?' where a name is nearly a known one, otherwise nothing."""
-    near = get_close_matches(name, sorted(set(known)), n=3, cutoff=0.75)
-    return f" did you mean {' or '.join(near)}?" if near else ""

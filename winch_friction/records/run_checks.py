@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.drive import ELECTRIC, HYDRAULIC, Drive
@@ -44,7 +44,12 @@ def checked_run(
     said, aside = [*warnings, *remarks_on_bare_columns(name, columns, bare)], dict(aside or {})
     if aside:
         said.append(f"{name}: unknown columns kept aside: {', '.join(aside)}")
-    _check_time(name, columns, place)
+    problems = Problems()
+    with problems:
+        _check_time(name, columns, place)
+    if complete:
+        _check_columns(name, columns, crane, aside, problems)
+    problems.say()
     rows = _rows_of_new_time(name, columns["time"], place, said)
     columns = {column: values[rows] for column, values in columns.items()}
     aside = {column: np.asarray(values)[rows] for column, values in aside.items()}
@@ -52,9 +57,19 @@ def checked_run(
     columns = _with_finite_values(name, columns, place, said)
     if complete:
         columns = _with_motor_speed(name, columns, crane)
-        _check_required(name, columns, crane)
     _note_gaps(name, columns["time"], place, said)
     return Run(name=name, columns=columns, aside=aside, warnings=tuple(said), metadata=dict(metadata or {}))
+
+
+def _check_columns(
+    name: str, columns: Columns, crane: Crane | None, aside: Mapping[str, Any], problems: Problems
+) -> None:
+    """Whether all that a run needs is there, with a value."""
+    there = {column: values for column, values in columns.items() if np.isfinite(values).any() or column == "time"}
+    with problems:
+        there = _with_motor_speed(name, there, crane, aside)
+    with problems:
+        _check_required(name, there, crane)
 
 
 def _check_time(name: str, columns: Columns, place: Place) -> None:
@@ -105,12 +120,15 @@ def _with_finite_values(name: str, columns: Columns, place: Place, said: list[st
     return kept
 
 
-def _with_motor_speed(name: str, columns: Columns, crane: Crane | None) -> Columns:
+def _with_motor_speed(
+    name: str, columns: Columns, crane: Crane | None, aside: Mapping[str, Any] | None = None
+) -> Columns:
     if "motor_speed" in columns:
         return columns
     if "drum_speed" not in columns:
-        found = ", ".join(columns)
-        raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing or empty; found {found}")
+        near = [said for said in aside or {} if meant("motor_speed", [said.partition("[")[0].strip()])]
+        slip = f"'{near[0]}': did you mean motor_speed?" if near else f"found {', '.join(columns)}"
+        raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing or empty; {slip}")
     if crane is None:
         raise InputError(f"{name}: 'drum_speed' needs the crane's gear ratio to become 'motor_speed'; give the crane")
     rest = {column: values for column, values in columns.items() if column != "drum_speed"}
@@ -119,13 +137,16 @@ def _with_motor_speed(name: str, columns: Columns, crane: Crane | None) -> Colum
 
 def _check_required(name: str, columns: Columns, crane: Crane | None) -> None:
     groups = dict.fromkeys(c.rpartition(".")[0] for c in columns if c.rpartition(".")[2] in GROUP_CHANNELS and "." in c)
+    problems = []
     for group in groups:
         lacking = [channel for channel in GROUP_CHANNELS if f"{group}.{channel}" not in columns]
         if lacking:
-            raise InputError(f"{name}: motor group '{group}' lacks {', '.join(f'{group}.{each}' for each in lacking)}")
+            problems.append(f"{name}: motor group '{group}' lacks {', '.join(f'{group}.{each}' for each in lacking)}")
         if crane is not None and crane.drive.hydraulic and group not in crane.groups:
             known = ", ".join(crane.groups)
-            raise InputError(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
+            problems.append(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
+    if problems:
+        raise InputError(*problems)
     drive = crane.drive if crane is not None else Drive(HYDRAULIC if groups else ELECTRIC)
     for channel in drive.channels:
         if channel not in columns:

@@ -1,10 +1,10 @@
 """Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 
@@ -39,12 +39,21 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
 
 def read_runs(paths: Iterable[Path | str], crane: Crane | None = None, **options: Any) -> list[Run]:
     """Several runs; two of the same name raise `InputError`, since the name is a run's identity."""
-    runs = [read_run(path, crane, **options) for path in paths]
+    runs, problems = [], Problems()
+    for path in paths:
+        with problems:
+            runs.append(read_run(path, crane, **options))
+    problems.say()
+    refuse_same_names(runs)
+    return runs
+
+
+def refuse_same_names(runs: Sequence[Run]) -> None:
+    """Raise `InputError` where two runs have the same name."""
     names = [run.name for run in runs]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{name}: two runs have this name; a run's identity is its file name, so rename one")
-    return runs
 
 
 def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:

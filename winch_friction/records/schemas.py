@@ -7,13 +7,15 @@ stops at the first, has refused it.
 from collections.abc import Mapping
 from typing import Any
 
+from winch_friction.physics.errors import InputError, unknown_key
+
 Schema = dict[str, Any]
 
 TEXT: Schema = {"type": "string"}
 # YAML 1.1 reads 1e-3 as a string, so a number may be one
 NUMBER: Schema = {"type": ["number", "string"], "pattern": r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$"}
 MAPPING_OF: Schema = {"type": "object"}
-MOST_TOLD = 12  # problems of one file in one line
+MOST_TOLD = 12  # problems of one file
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -143,34 +145,38 @@ def problems(content: Any, schema: Schema) -> list[str]:
     except ModuleNotFoundError:  # the nodes need none; the reader's own first complaint stands
         return []
     found = sorted(Draft202012Validator(schema).iter_errors(content), key=lambda each: [str(p) for p in each.path])
-    return [_said(each) for each in found]
+    return list(dict.fromkeys(said for each in found for said in _said(each)))
 
 
-def _said(error: Any) -> str:
+def _said(error: Any) -> list[str]:
     place = ".".join(str(part) for part in error.absolute_path)
+    front = f"{place}: " if place else ""
+    if error.validator == "additionalProperties":
+        known = error.schema.get("properties", {})
+        unknown = [key for key in error.instance if key not in known]
+        return [f"{front}{unknown_key(str(key), known)}" for key in unknown]
+    if error.validator == "required":
+        missing = [key for key in error.validator_value if key not in error.instance]
+        return [f"{front}key '{key}' is missing" for key in missing]
     words = error.message
     if error.validator in ("anyOf", "pattern", "type"):
         words = f"{error.instance!r} is not {error.schema.get('description', 'what belongs here')}"
-    elif error.validator == "additionalProperties":
-        known = ", ".join(error.schema.get("properties", {}))
-        words = f"{words.partition(' (')[2].rstrip(')')}; known keys are {known}"
-    return f"{place}: {words}" if place else words
+    return [f"{front}{words}"]
 
 
-def with_all_problems(first: str, content: Any, name: str, where: str) -> str:
-    """A reader's complaint, followed by whatever else the schema finds wrong; one line."""
+def with_all_problems(refused: InputError, content: Any, name: str, where: str) -> InputError:
+    """A reader's complaints, followed by whatever else the schema finds wrong with a file."""
     if not isinstance(content, Mapping):
-        return f"{first}: is this a {name} file?"  # a log, say: its keys are no subject
-    others = [each for each in problems(content, DECLARED[name]) if not _same(each, first)]
-    if not others:
-        return first
-    more = f" ... and {len(others) - MOST_TOLD} more" if len(others) > MOST_TOLD else ""
-    return f"{first}; also in {where}: {'; '.join(others[:MOST_TOLD])}{more}"
+        return InputError(f"{refused}: is this a {name} file?")  # a log, say: its keys are no subject
+    first = list(refused.problems)
+    others = [each for each in problems(content, DECLARED[name]) if not any(_same(each, said) for said in first)]
+    more = [f"{where}: ... and {len(others) - MOST_TOLD} more"] if len(others) > MOST_TOLD else []
+    return InputError(*first, *(f"{where}: {each}" for each in others[:MOST_TOLD]), *more)
 
 
 def _same(problem: str, first: str) -> bool:
     """Whether a problem's place and key are those of the reader's own complaint."""
-    place, _, words = problem.partition(": ")
-    quoted = words.split("'")[1::2]
-    last = place.rpartition(".")[2] if words else ""
-    return (bool(last) and last in first) or any(f"'{each}'" in first for each in quoted[:1])
+    place, _, words = problem.rpartition(": ")
+    quoted = words.split("'")[1::2][:1]
+    last = place.rpartition(".")[2]
+    return (bool(last) and last in first and not quoted) or any(f"'{each}'" in first for each in quoted)

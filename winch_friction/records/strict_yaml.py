@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, unknown_key
 from winch_friction.physics.units import factor_to_si
 
 
@@ -58,11 +58,13 @@ class Section:
 
     def close(self) -> None:
         """Refuse the keys that nobody asked for."""
-        unknown = [str(key) for key in self.content if key not in self._asked]
-        if unknown:
-            raise InputError(
-                f"{self.where}: unknown key '{unknown[0]}'; known keys are {', '.join(sorted(self._asked))}"
-            )
+        problems = [
+            f"{self.where}: {unknown_key(str(key), sorted(self._asked))}"
+            for key in self.content
+            if key not in self._asked
+        ]
+        if problems:
+            raise InputError(*problems)
 
 
 def finite(value: Any, where: str) -> float:

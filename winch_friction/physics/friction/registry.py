@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, meant
 from winch_friction.physics.friction.term import Term
 
 _TERMS: dict[str, Term] = {}
@@ -31,7 +31,7 @@ def term_named(name: str) -> Term:
     _load_shipped()
     if name not in _TERMS:
         raise InputError(
-            f"term '{name}' is not known; known terms are {', '.join(sorted(_TERMS))}; "
+            f"term '{name}' is not known; known terms are {', '.join(sorted(_TERMS))};{meant(name, _TERMS)} "
             "one of your own needs its file of terms"
         )
     return _TERMS[name]

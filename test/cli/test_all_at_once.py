@@ -1,0 +1,135 @@
+"""Whatever is wrong with the inputs of a verb is said at once: one line for each problem, with file and place."""
+
+import pickle
+import re
+
+import pytest
+import yaml
+
+from winch_friction.cli.main import run
+from winch_friction.physics.errors import InputError, Problems
+from winch_friction.records.model_file import load_model
+from winch_friction.records.paths import config_directory
+from winch_friction.records.runs import read_run
+
+HEAD = ["time [s]", "motor_speed [rpm]", "motor_torque [N*m]", "hook_load [kg]"]
+ROWS = [[f"{0.02 * k:.2f}", "60", "12", "1000"] for k in range(200)]
+
+
+def table(path, head=HEAD, cells=None, cut=()):
+    rows = [list(row) for row in ROWS]
+    for (line, column), text in (cells or {}).items():
+        rows[line - 2][column] = text
+    for line in cut:
+        rows[line - 2] = rows[line - 2][:2]
+    path.write_text("\n".join(",".join(row) for row in [head, *rows]) + "\n")
+    return path
+
+
+def problems_of(path, **options):
+    with pytest.raises(InputError) as caught:
+        read_run(path, **options)
+    return list(caught.value.problems)
+
+
+def said(capsys):
+    lines = capsys.readouterr().err.splitlines()
+    assert all(line.startswith("winch-friction: ") for line in lines)
+    return [line.removeprefix("winch-friction: ") for line in lines]
+
+
+def test_problems_are_gathered_and_travel():
+    problems = Problems()
+    for words in ("one", "two\n  lines"):
+        with problems:
+            raise InputError(words)
+    with problems, pytest.raises(KeyError):
+        raise KeyError("a defect is none of the user's")
+    with pytest.raises(InputError) as caught:
+        problems.say()
+    assert caught.value.problems == ("one", "two lines")
+    assert str(caught.value) == "one | two lines"
+    assert pickle.loads(pickle.dumps(caught.value)).problems == ("one", "two lines")
+    Problems().say()  # nothing to say
+
+
+def test_every_unit_that_cannot_be_is_named(tmp_path):
+    head = ["time [s]", "motor_speed [bananas]", "motor_torque [m]", "hook_load [kg"]
+    found = problems_of(table(tmp_path / "run.csv", head))
+    assert len(found) == 3
+    assert all(any(word in each for each in found) for word in ("bananas", "'m'", "hook_load [kg"))
+
+
+def test_every_cell_that_is_no_number_is_named_up_to_three_a_column(tmp_path):
+    cells = {(9, 1): "abc", (10, 3): "--", **{(line, 2): "#REF!" for line in range(20, 80)}}
+    found = problems_of(table(tmp_path / "run.csv", cells=cells))
+    assert [re.search(r"line (\d+)", each)[1] for each in found] == ["9", "20", "21", "22", "10"]
+    assert "57 more like it in this column" in found[3]
+
+
+def test_lines_of_another_width_are_named_up_to_three(tmp_path):
+    found = problems_of(table(tmp_path / "run.csv", cut=(5, 7, 9, 11, 13)))
+    assert [re.search(r"line (\d+)", each)[1] for each in found] == ["5", "7", "9"]
+    assert "2 more lines" in found[-1]
+
+
+def test_a_misspelt_column_a_unit_and_time_that_goes_back_are_said_together(tmp_path):
+    head = ["time [s]", "motor_sped [rpm]", "motor_torque [kN]", "hook_load [kg]"]
+    found = problems_of(table(tmp_path / "run.csv", head, {(50, 0): "0.1"}))
+    assert len(found) == 3
+    assert any("did you mean motor_speed" in each for each in found)
+    assert any("goes back" in each and "line 50" in each for each in found)
+
+
+def test_every_key_of_a_model_file_that_cannot_be_is_a_line_of_its_own(tmp_path, capsys):
+    content = yaml.safe_load((config_directory() / "models" / "a6vm215_crane2.yaml").read_text())
+    content["parameters"]["K44"] = content["parameters"].pop("K4")
+    content["parameters"]["K1"]["value"] = "much"
+    content["parameters"]["C5"]["unit"] = "bananas"
+    content["terms"].append("stribek")
+    content["craen"] = content.pop("crane")
+    path = tmp_path / "bad.yaml"
+    path.write_text(yaml.safe_dump(content))
+    assert run(["show", str(path)]) == 2
+    lines = said(capsys)
+    for words in ("'K4' is missing", "'K44'", "K1: value", "bananas", "did you mean stribeck", "'craen'"):
+        assert sum(words in line for line in lines) == 1, (words, lines)
+    assert len(lines) == 6
+    assert all(str(path) in line or "stribek" in line for line in lines)
+
+
+def test_a_crane_s_problems_are_told_once_each(tmp_path, capsys):
+    content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
+    content["gear_ration"] = content.pop("gear_ratio")
+    content["inertia"] = "-5 kg*m^2"
+    path = tmp_path / "bad.yaml"
+    path.write_text(yaml.safe_dump(content))
+    assert run(["show", str(path)]) == 2
+    lines = said(capsys)
+    assert len(lines) == 3, lines
+    assert all(str(path) in line for line in lines)
+    assert any("did you mean gear_ratio" in line for line in lines)
+
+
+@pytest.mark.parametrize("verb", ["check", "gap", "plot", "replay", "simulate", "compare"])
+def test_model_crane_and_runs_are_said_together(verb, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    bad = str(table(tmp_path / "run.csv", cells={(9, 1): "abc"}))
+    named = ["--crane", "crane_150x", "--model", "a6vm215_crane22"]
+    words = {
+        "replay": [bad, *named], "simulate": ["ahc_55t_21", *named], "compare": ["a6vm215_crane22", "a6vm215_crane21"],
+    }.get(verb, [bad, "nothere.csv", *named])  # fmt: skip
+    assert run([verb, *words]) == 2
+    lines = said(capsys)
+    wanted = {
+        "replay": ("crane_150x", "crane22", "'abc'"), "simulate": ("crane_150x", "crane22", "ahc_55t_21"),
+        "compare": ("crane22", "crane21"),
+    }.get(verb, ("crane_150x", "crane22", "'abc'", "nothere.csv"))  # fmt: skip
+    for word in wanted:
+        assert sum(f"{word}" in line.partition(";")[0] for line in lines) == 1, (word, lines)
+    assert len(lines) == len(wanted)
+    assert [each.name for each in tmp_path.iterdir()] == ["run.csv"]
+
+
+def test_a_good_model_stays_good():
+    assert load_model("a6vm215_crane2").crane == "crane_150t"

@@ -209,11 +209,13 @@ def practice(
     from winch_friction.cli.console import progress, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
     from winch_friction.cli.inputs import refuse_implausible
+    from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
+    refuse_unwritable(out / "report.html")
     folder = read_practice(_example(example))
     forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)
     done = run_practice(

@@ -122,6 +122,7 @@ def import_logs(
     overwrite: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Write one run file per log, all or none."""
+    from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.importing.carry_out import import_log
     from winch_friction.importing.contradiction import run_contradictions
     from winch_friction.importing.mapping import load_map, with_settings
@@ -135,6 +136,7 @@ def import_logs(
     loaded = load_crane(crane or log_map.crane) if crane or log_map.crane else None
     targets = [out / f"{_stem(path)}.{form}" for path in logs]
     _refuse_existing(logs, targets, overwrite)
+    refuse_unwritable(*targets[:1])
     runs, problems = [], []
     for path, target in progress(list(zip(logs, targets, strict=True)), "reading logs"):
         try:

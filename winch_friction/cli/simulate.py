@@ -55,6 +55,7 @@ def command(
     """
     from winch_friction.cli.console import progress, show_json, show_table
     from winch_friction.cli.inputs import machine_of
+    from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     hidden = [_effect(text) for text in hide or []]
@@ -67,7 +68,9 @@ def command(
     plan: Any = []
     with problems:
         plan = _plan(scenario, seed, out, kind)
-        _refuse_overwriting([path for _, _, path in plan], force)
+        targets = [path for _, _, path in plan]
+        _refuse_overwriting(targets, force)
+        refuse_unwritable(*targets[:1])
     winch, friction = machine_of(crane or (plan[0][0].crane if plan else ""), model, [], problems)
     problems.say()
     if plant:

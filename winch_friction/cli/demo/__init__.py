@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import show_json, show_table, stderr
+from winch_friction.cli.outputs import refuse_unwritable
 from winch_friction.physics.errors import InputError
 
 PRODUCTS = ("bag", "legs", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
@@ -64,6 +65,7 @@ def _clear(out: Path) -> None:
     """Remove what an earlier demo left; a folder of something else is not touched."""
     if out.exists() and not out.is_dir():
         raise InputError(f"{out}: is a file; give a folder")
+    refuse_unwritable(out / "plan.json")
     if out.is_dir() and any(out.iterdir()) and not (out / "plan.json").exists():
         raise InputError(f"{out}: holds other files; give a folder of its own")
     for name in PRODUCTS:

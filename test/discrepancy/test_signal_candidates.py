@@ -12,7 +12,9 @@ from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.feedback import _swivel
 from winch_friction.discrepancy.candidates.signals import (
     ALL,
+    _offset,
     bent_columns,
+    bowed_warm_columns,
     creeping_columns,
     curved_columns,
     scale_columns,
@@ -82,6 +84,21 @@ def test_a_feedback_that_drifts_reads_the_oil():
     columns = warm_columns(_swivel, warm, {"groups": ALL})
     np.testing.assert_allclose(columns[:, 0], MOTORS * (A - B))
     np.testing.assert_allclose(columns[:, 1], MOTORS * (A - B) * np.array([0.0, 10.0, -10.0]))
+
+
+def test_a_zero_that_bends_with_the_warmth_has_its_square_and_asks_for_cold_and_warm_oil():
+    warm = SimpleNamespace(**vars(run()) | {"channels": {"oil_temperature": np.array([40.0, 50.0, 20.0])}})
+    columns = bowed_warm_columns(_offset, warm, {"groups": ALL})
+    np.testing.assert_allclose(columns, MOTORS * SWASH * np.array([[1.0, 0.0, 0.0], [1, 10, 100], [1, -20, 400]]))
+    (own,) = [each for each in all_candidates() if each.law_name == "thermal zero that bends"]
+    logs = [
+        SimpleNamespace(
+            channels={"oil_temperature": np.full(3, oil)}, present=frozenset({"oil_temperature"}), groups=[1]
+        )
+        for oil in (38.0, 44.0, 58.0)
+    ]
+    assert own.untestable(logs) is None
+    assert own.untestable(logs[:2]).needs == "runs of colder and warmer oil"
 
 
 def test_a_gain_that_bends_is_both_its_parts():

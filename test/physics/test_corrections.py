@@ -77,7 +77,8 @@ def spoiled(run, correction):
             true = columns[name]
             if action is Action.OFFSET:
                 warmer = columns["oil_temperature"] - 40.0 if correction.declared.reads else 1.0
-                columns[name] = true + e * warmer
+                square = correction.name == "pressure_thermal_bow"
+                columns[name] = true + e * (warmer * warmer if square else warmer)
                 if correction.declared.grows:
                     ((begin, end),) = correction.during
                     columns[name] = true + e * np.interp(run.time, [begin, end], [0.0, 1.0])

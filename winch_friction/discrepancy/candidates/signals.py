@@ -32,6 +32,8 @@ NEXT = 1.25  # times a delay, beyond which the next one on the grid says it bett
 DELAY = "signal_delay"
 OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
+# K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line
+WARMTH_TO_BEND = 15.0
 SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
@@ -43,6 +45,9 @@ _GroupLaw = Callable[[GroupSignals], FloatArray]
 
 p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
+)
+p_TT = Parameter(
+    "p_TT", "Pa/K^2", 5e-3 * BAR, lower=-0.2 * BAR, upper=0.2 * BAR, doc="bow of the transducers' zero over the warmth"
 )
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
 p_d = Parameter("p_d", "Pa", 3.0 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="how far the zero creeps over the runs")
@@ -78,6 +83,19 @@ def warm_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray
     """A zero error and what the oil's warmth adds to it, N m, shape (samples, 2)."""
     constant = group_columns(law, run, values)
     return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
+
+
+def bowed_warm_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
+    """The same, and what the square of the oil's warmth adds, N m, shape (samples, 3)."""
+    warm = warm_columns(law, run, values)
+    return np.column_stack([warm, warm[:, 1] * (run.channels["oil_temperature"] - THERMAL_REFERENCE)])
+
+
+def _one_warmth(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    oil = [float(np.median(run.channels["oil_temperature"])) for run in runs if "oil_temperature" in run.channels]
+    if len(oil) < 2 or np.ptp(oil) > WARMTH_TO_BEND:
+        return None
+    return "runs of colder and warmer oil", f"a zero that bends with the warmth shows over {WARMTH_TO_BEND:g} K"
 
 
 def creeping_columns(run: PreparedRun, values: Values) -> FloatArray:
@@ -235,6 +253,11 @@ def signal_candidates() -> list[Candidate]:
         in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
                   group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
                   law_name="thermal zero shift", needs=OIL),
+        # a bridge is compensated at two temperatures: what is left between and beyond them is a bow
+        in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40) + p_{TT}(\vartheta-40)^2)", (p_0, p_T, p_TT),
+                  partial(bowed_warm_columns, _offset), group_shapes,
+                  to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T), ("pressure_thermal_bow", p_TT)),
+                  law_name="thermal zero that bends", needs=OIL, blind=_one_warmth),
         in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),

@@ -22,7 +22,7 @@ THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the 
 class Action(Enum):
     """What an error of value e does; the true value stands on the right."""
 
-    OFFSET = "offset"  # measured = true + e (times the oil's temperature above 40 degC where it is named)
+    OFFSET = "offset"  # measured = true + e (times a power of the oil's degrees above 40 degC where that is named)
     SCALE = "scale"  # measured = true (1 + e)
     CURVATURE = "curvature"  # measured = true (1 + e true)
     BEND = "bend"  # measured = true + e (true - beyond) from `beyond` on, true below
@@ -59,6 +59,7 @@ class DeclaredCorrection:
     live: bool = True
     grows: bool = False
     bends_in: str = ""  # unit of `beyond`
+    by_warmth: int = 1  # power of what the oil is above 40 degC, where that is read
 
     @property
     def doc(self) -> str:
@@ -96,14 +97,12 @@ def _leakage(name: str, doc: str) -> DeclaredCorrection:
 
 
 _DECLARED = (
-    _signal(
-        "pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
-        "pressure_a",
-    ),
-    _signal(
-        "pressure_thermal_zero", Action.OFFSET, "Pa/K", 0.1 * BAR, 5.0 * BAR,
-        "zero error of the transducers at port A per degree of the oil above 40 degC", "pressure_a", reads=_OIL,
-    ),
+    _signal("pressure_offset", Action.OFFSET, "Pa", 1.5 * BAR, 50 * BAR, "zero error of the transducers at port A",
+            "pressure_a"),
+    _signal("pressure_thermal_zero", Action.OFFSET, "Pa/K", 0.1 * BAR, 5.0 * BAR,
+            "zero error of the transducers at port A per degree of the oil above 40 degC", "pressure_a", reads=_OIL),
+    _signal("pressure_thermal_bow", Action.OFFSET, "Pa/K^2", 5e-3 * BAR, 0.2 * BAR,
+            "the same per square degree", "pressure_a", reads=_OIL, by_warmth=2),
     _signal(
         "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES
     ),
@@ -120,10 +119,8 @@ _DECLARED = (
         "pressure_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the transducers at both ports beyond a pressure",
         *_PRESSURES, bends_in="Pa",
     ),
-    _signal(
-        "displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
-        "zero error of the displacement feedback", "displacement",
-    ),
+    _signal("displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
+            "zero error of the displacement feedback", "displacement"),
     _signal(
         "displacement_thermal_zero", Action.OFFSET, "m^3/rad/K", 0.1 * CM3_PER_REV, 2.0 * CM3_PER_REV,
         "zero error of the displacement feedback per degree of the oil above 40 degC", "displacement", reads=_OIL,
@@ -268,7 +265,7 @@ class Correction:
         """The error at times in s and oil temperatures in degC, where they matter to it; in the value's unit."""
         value = self.value
         if "oil_temperature" in self.declared.reads:
-            value = value * (oil - THERMAL_REFERENCE)
+            value = value * (oil - THERMAL_REFERENCE) ** self.declared.by_warmth
         if self.declared.grows:
             ((begin, end),) = self.during
             value = value * np.clip((time - begin) / (end - begin), 0.0, 1.0)

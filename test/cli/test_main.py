@@ -67,9 +67,10 @@ def test_usage_errors_are_bad_input(arguments, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_an_interrupt_has_its_own_status(verb):
+def test_an_interrupt_has_its_own_status_and_is_said(verb, capsys):
     verb(KeyboardInterrupt())
     assert main.run(["replay"]) == 130
+    assert capsys.readouterr().err.split() == ["winch-friction:", "interrupted"]
 
 
 def test_help_imports_no_verb():

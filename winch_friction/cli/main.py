@@ -51,6 +51,8 @@ def run(arguments: Sequence[str]) -> int:
     words = without_modes(arguments)
     try:
         result = typer.main.get_command(app).main(words or ["--help"], "winch-friction", standalone_mode=False)
+        if result == INTERRUPTED:  # Typer takes the interrupt for itself and says nothing
+            return _said("interrupted", INTERRUPTED)
         return result if isinstance(result, int) else DONE
     except InputError as error:
         return _bad_input(*error.problems)

@@ -84,6 +84,38 @@ def test_bad_parameters_are_one_line_and_status_2(executable: str, override: str
     assert "Traceback" not in ended.stderr
 
 
+@pytest.mark.parametrize(
+    ("executable", "overrides", "said"),
+    [
+        (
+            "compensator",
+            {"scale": "7.0", "max_age": "'soon'", "velocity_source": "referenc", "pressure_reference": "3"},
+            {
+                "parameter 'scale' must be 0 ... 1.3, found 7.0",
+                "parameter 'max_age' must be a number 0.001 ... 0.5 s, found 'soon'",
+                "parameter 'pressure_reference' must be a text, found 3",
+                "parameter 'velocity_source' must be one of reference, measured, found 'referenc'",
+            },
+        ),
+        ("compensator", {"scale": "1"}, {"parameter 'scale' must be a number 0 ... 1.3, found 1: write 1.0"}),
+        (
+            "estimator",
+            {"crane": "crane_150", "model_file": "a6vm215_crane22"},
+            {"mean crane_150t", "mean a6vm215_crane2"},
+        ),
+    ],
+)
+def test_all_bad_parameters_are_said_at_once(executable: str, overrides: dict[str, str], said: set[str]) -> None:
+    command = [sys.executable, "-m", f"winch_friction.nodes.{executable}", "--ros-args"]
+    for name, value in overrides.items():
+        command += ["-p", f"{name}:={value}"]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0)
+    assert ended.returncode == 2
+    lines = [line for line in ended.stderr.splitlines() if "error" in line.lower()]
+    assert len(lines) == len(said)
+    assert all(any(words in line for line in lines) for words in said), lines
+
+
 def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(bench: Bench, tmp_path: Path) -> None:
     file = tmp_path / "parameters.yaml"
     overrides = {"/winch/joint_states": {"subscription": {"reliability": "reliable"}}}
@@ -91,6 +123,6 @@ def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(b
     file.write_text(yaml.safe_dump({"/**/compensator": {"ros__parameters": parameters}}))
     bench.start("compensator", "--params-file", str(file))
     bench.announce()
-    assert "parameter 'scal' is not known" in bench.log("compensator")
+    assert "parameter 'scal' is not known and has no effect; did you mean scale?" in bench.log("compensator")
     (subscription,) = bench.node.get_subscriptions_info_by_topic("/winch/joint_states")
     assert subscription.qos_profile.reliability.name == "RELIABLE"

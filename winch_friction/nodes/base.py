@@ -17,10 +17,10 @@ from std_srvs.srv import SetBool, Trigger
 from winch_friction.nodes.guard import Guarded, answered, said_aloud
 from winch_friction.nodes.messages import diagnostic_array, diagnostic_status
 from winch_friction.nodes.options import FIXED, NodeOptions
-from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.nodes.parameters import OptionParameters, declare_all, unknown_parameters
 from winch_friction.nodes.polling import Polled
 from winch_friction.nodes.qos import fresh
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import load_file
 from winch_friction.physics.winch.crane import Crane
@@ -54,8 +54,7 @@ class WinchNode(Guarded, LifecycleNode):
         super().__init__(name, **node_arguments)
         self._node_parameters = OptionParameters(NodeOptions, fixed=FIXED)
         self._settings = (self._node_parameters, *settings)
-        for each in self._settings:
-            each.declare(self)
+        declare_all(self, self._settings)
         self.options: NodeOptions = self._node_parameters.read(self)
         self.check_settings({})
         self.crane: Crane
@@ -115,8 +114,7 @@ class WinchNode(Guarded, LifecycleNode):
                 raise
             except BaseException as error:  # whatever its author derived from the root of all exceptions
                 raise InputError(f"{self.options.terms_file}: {type(error).__name__}: {error}") from error
-            for each in self._settings:
-                each.declare(self)
+            declare_all(self, self._settings)
 
     # -- lifecycle
     @said_aloud
@@ -125,11 +123,18 @@ class WinchNode(Guarded, LifecycleNode):
         try:
             self.options = self._node_parameters.read(self)
             self.load_terms()
-            self._warn_of_unknown()
-            self.crane = load_crane(self.options.crane)
-            self.build(self.crane, load_model(self.options.model_file))
+            for each in unknown_parameters(self, self._settings):
+                self.get_logger().warning(each)
+            problems = Problems()
+            with problems:
+                self.crane = load_crane(self.options.crane)
+            with problems:
+                model = load_model(self.options.model_file)
+            problems.say()
+            self.build(self.crane, model)
         except (InputError, OSError) as error:
-            self.get_logger().error(str(error))
+            for each in getattr(error, "problems", (str(error),)):
+                self.get_logger().error(each)
             self._take_down()
             return TransitionCallbackReturn.FAILURE
         self._diagnostics = self.publisher(DiagnosticArray, "/diagnostics", 10)
@@ -240,13 +245,6 @@ class WinchNode(Guarded, LifecycleNode):
         return self.ros_now() if self.options.watchdog_clock == "ros" else self.steady_now()
 
     # -- parameters
-    def _warn_of_unknown(self) -> None:
-        """rclpy takes a misspelt parameter without a word and goes on with the default."""
-        given = getattr(self, "_parameter_overrides", {})
-        for name in sorted(given):
-            if not self.has_parameter(name) and not name.startswith("qos_overrides."):
-                self.get_logger().warning(f"parameter '{name}' is not known and has no effect")
-
     def _on_set(self, changes: Sequence[Any]) -> SetParametersResult:
         try:
             self.check_settings({each.name: each.value for each in changes})

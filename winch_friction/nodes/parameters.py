@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.options import Limits, default_of, from_mapping, limits_of
 
 T = TypeVar("T")
@@ -38,12 +38,14 @@ class OptionParameters(Generic[T]):
         self.names: dict[str, tuple[str, str | None]] = {}
 
     def declare(self, node: Any) -> None:
-        """Declare every field that is not declared yet; a bad override is an `InputError` that names the parameter."""
-        keys = self._keys()
+        """Declare every field that is not declared yet; bad overrides are an `InputError` that names the parameters."""
+        keys, problems = self._keys(), Problems()
         for each in self._fields:
             for name, key, default in self._entries(each, keys.get(each.name, {})):
-                declare(node, name, default, limits_of(each), each.name in self.fixed)
+                with problems:
+                    declare(node, name, default, limits_of(each), each.name in self.fixed)
                 self.names[name] = (each.name, key)
+        problems.say()
 
     def _entries(self, each: Any, more: Mapping[str, float]) -> list[tuple[str, str | None, Any]]:
         default = default_of(each)
@@ -64,14 +66,56 @@ class OptionParameters(Generic[T]):
         return from_mapping(self.kind, content, f"{node.get_name()}: parameters")
 
 
+def declare_all(node: Any, settings: Iterable[OptionParameters[Any]]) -> None:
+    """Declare several dataclasses' fields; all bad overrides are said at once."""
+    problems = Problems()
+    for each in settings:
+        with problems:
+            each.declare(node)
+    problems.say()
+
+
+def unknown_parameters(node: Any, settings: Iterable[OptionParameters[Any]]) -> list[str]:
+    """What is said of overrides that are no parameter: rclpy takes a misspelt one without a word."""
+    known = [name for each in settings for name in each.names]
+    return [
+        f"parameter '{name}' is not known and has no effect;{meant(name, known)}".rstrip(";")
+        for name in sorted(_overrides(node))
+        if not node.has_parameter(name) and not name.startswith("qos_overrides.")
+    ]
+
+
+def _overrides(node: Any) -> Mapping[str, Any]:
+    given: Mapping[str, Any] = getattr(node, "_parameter_overrides", {})
+    return given
+
+
 def declare(node: Any, name: str, default: Any, limits: Limits, read_only: bool = False) -> None:
     """Declare one parameter with its descriptor."""
     try:
         if not node.has_parameter(name):
             node.declare_parameter(name, default, descriptor(default, limits, read_only))
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-        allowed = f" ({limits.lower:g} ... {limits.upper:g})" if isinstance(default, (int, float)) else ""
-        raise InputError(f"{node.get_name()}: parameter '{name}': {_one_line(error)}{allowed}") from error
+        given = _overrides(node).get(name)
+        said = _must_be(given.value, default, limits) if given is not None else f": {_one_line(error)}"
+        raise InputError(f"{node.get_name()}: parameter '{name}'{said}") from error
+    value = node.get_parameter(name).value
+    if limits.choices and value != default and value not in limits.choices:
+        words = f"must be one of {', '.join(limits.choices)}, found {value!r}"
+        raise InputError(f"{node.get_name()}: parameter '{name}' {words}")
+
+
+_KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text", list: "a list of texts"}
+
+
+def _must_be(value: Any, default: Any, limits: Limits) -> str:
+    """What is said of an override of another type, or out of its range."""
+    same = type(value) is type(default)
+    unit = f" {limits.unit}" if limits.unit not in ("", "1") else ""
+    bounds = f"{limits.lower:g} ... {limits.upper:g}{unit}" if _KINDS.get(type(default), "").endswith("number") else ""
+    kind = "" if same and bounds else _KINDS.get(type(default), type(default).__name__)
+    hint = f": write {value}.0" if isinstance(default, float) and type(value) is int else ""
+    return f" must be {' '.join(filter(None, (kind, bounds)))}, found {value!r}{hint}"
 
 
 def descriptor(default: Any, limits: Limits, read_only: bool) -> ParameterDescriptor:

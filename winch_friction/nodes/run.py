@@ -80,6 +80,7 @@ def _spin(node: Any, ending: Ending) -> int:
 
 
 def _refuse(error: Exception) -> int:
-    print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+    for each in getattr(error, "problems", (str(error),)):
+        print(f"error: {' '.join(each.split())}", file=sys.stderr)
     rclpy.try_shutdown()
     return BAD_INPUT

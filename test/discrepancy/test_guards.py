@@ -331,6 +331,27 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
     assert [each.slot.name for each in proven.search.selection.found] == stay
 
 
+@pytest.mark.parametrize(("share", "name", "rivals"), [(0.3, "wave", {"other"}), (0.7, "other", {"wave"})])
+def test_what_did_as_well_alone_is_a_rival_of_what_stays(share, name, rivals):
+    """Two causes of nearly one trace share a gap; the locked runs need one of them, the closer one, which need not be
+    the first: the other is no less likely."""
+    twin = WAVE + 0.2 * OTHER
+    cross = crossfit(3.0 * WAVE + 3.0 * share * 0.2 * OTHER + noise(), other=twin)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(SLOTS), found))
+
+    def trial_of(own):
+        left = 3.0 * WAVE * (not own.selection.final.names) + noise(1)
+        return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
+
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    (finding,) = proven.search.selection.found
+    assert finding.slot.name == name
+    assert {each.name for each in finding.rivals} == rivals
+    assert proven.search.verdict.kind == AMBIGUOUS
+
+
 @pytest.mark.parametrize(
     ("fewer", "floor", "minor"),
     [(0.6, 0.4, True), (0.9, 0.4, True), (0.9, 0.2, False), (1.2, 0.4, False), (1.2, 1.0, False), (3.0, 1.0, False)],

@@ -14,7 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.grammar import Law, Scored
 from winch_friction.discrepancy.engine.omnibus import dependences
-from winch_friction.discrepancy.engine.selection import Selection, select
+from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
@@ -187,11 +187,13 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
 
 
 def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
-    """The trial without those names, the last found first, that the locked runs do not need beside the others: which
+    """The trial without those names, the one that the training runs miss least first, that the locked runs do not
+    need beside the others: which
     take nothing off them surely, or no more than the others' laws may be inexact by, or, beside a name whose law is
     not the catalogue's own and may want mending, those without which nothing would be missing.
     """
-    for slot in reversed(full.search.selection.final.slots):
+    count = len(full.search.selection.final.slots)
+    for slot in _least_missed_first(full.search):
         search, final = full.search, full.search.selection.final
         brought = any(slot.name in each.brings for each in final.slots)
         if len(final.slots) == 1 or brought or slot.plain:
@@ -201,17 +203,39 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
         minor = is_minor(refit.holdout, without.holdout, full.holdout) and not leaves_too_much(without.holdout)
         if mends or minor or not adds(without.holdout, full.holdout, rng):
             full = without
+    if len(full.search.selection.final.slots) < count:
+        full = replace(full, search=_judged_anew(full.search, rng))
     return full
+
+
+def _least_missed_first(search: Search) -> list[Slot]:
+    """The names in the order in which the held-out loss of the training runs rises without them: of two that say much
+    the same, the one found first need not be the one that says it best.
+    """
+    slots = search.selection.final.slots
+    if len(slots) == 1:
+        return list(slots)
+    without = {id(slot): search.cross.explain(tuple(each for each in slots if each is not slot)) for slot in slots}
+    return sorted(slots, key=lambda slot: without[id(slot)].loss)
 
 
 def _without(search: Search, slot: Slot) -> Search:
     """The search without one of its names."""
     rest = tuple(each for each in search.selection.final.slots if each is not slot)
     found = tuple(each for each in search.selection.found if each.slot is not slot)
+    return _of(search, replace(search.selection, final=search.cross.explain(rest), found=found))
+
+
+def _judged_anew(search: Search, rng: np.random.Generator) -> Search:
+    """The search with the rivals that its names have now that others are gone."""
+    selection = search.selection
+    return _of(search, with_fewer(search.cross, selection, selection.final.slots, rng))
+
+
+def _of(search: Search, selection: Selection) -> Search:
     verdict = search.verdict
     if verdict.kind in (MISSING, AMBIGUOUS):
-        verdict = replace(verdict, kind=AMBIGUOUS if any(each.rivals for each in found) else MISSING)
-    selection = replace(search.selection, final=search.cross.explain(rest), found=found)
+        verdict = replace(verdict, kind=AMBIGUOUS if any(each.rivals for each in selection.found) else MISSING)
     return replace(search, selection=selection, verdict=verdict)
 
 

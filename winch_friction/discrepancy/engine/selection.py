@@ -67,6 +67,15 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
     return Selection(base, current, _one_set_each(found), tuple(considered))
 
 
+def with_fewer(cross: CrossFit, selection: Selection, slots: Sequence[Slot], rng: np.random.Generator) -> Selection:
+    """The selection with these of its effects alone, each with the rivals that it has without the others: what took a
+    part beside an effect may do as well in its place."""
+    current = cross.explain(tuple(slots))
+    p_values = {each.slot.name: each.p_value for each in selection.found}
+    found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
+    return replace(selection, final=current, found=_one_set_each(found))
+
+
 def _one_set_each(found: Sequence[Finding]) -> tuple[Finding, ...]:
     """The findings; what could stand for the second law of a cause is no other name for it."""
     before = [{each.slot.name for each in found[:k]} for k in range(len(found))]

@@ -422,8 +422,25 @@ def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law
     noise_alone = float(cross.problem.grams.count.sum())
     named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=slots)
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
-    scored = law and Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
-    assert bool(outdone(scored, cross, Selection(named, named, found))) is falls
+    laws_near = [Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))] if law else []
+    assert bool(outdone(laws_near, cross, Selection(named, named, found))) is falls
+
+
+@pytest.mark.parametrize(("own", "falls"), [(0.9, False), (1.1, False), (2.5, True)])
+def test_a_law_of_a_curves_own_signals_speaks_for_it_beside_one_with_something_added(own, falls):
+    """The other leaves 0.6 of what the curve does; half as much again is no reason, a quarter is."""
+    cross = crossfit(noise())
+    noise_alone = float(cross.problem.grams.count.sum())
+    named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(CURVE,))
+    known = (*SLOTS, replace(SLOTS[0], law="bent"))
+    cross.problem = replace(cross.problem, layout=replace(cross.problem.layout, slots=known))
+    added = Law((Factor("square", "pressure"), Factor("step", "wire_out", (("c", 9.0),))), True)
+    both = [
+        Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
+        for law, share in ((added, 0.6), (SQUARE, own))
+    ]
+    selection = Selection(named, named, (Finding(CURVE, (), 0.0, 0.1, 1.0),))
+    assert bool(outdone(both, cross, selection)) is falls
 
 
 @pytest.mark.parametrize(("law", "share", "falls"), [
@@ -438,7 +455,7 @@ def test_a_curve_that_closes_the_locked_gap_falls_only_to_a_law_that_leaves_half
     named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(CURVE,))
     scored = Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
     selection = Selection(named, named, (Finding(CURVE, (), 0.0, 0.1, 1.0),))
-    assert bool(outdone(scored, cross, selection, closed=True)) is falls
+    assert bool(outdone([scored], cross, selection, closed=True)) is falls
 
 
 def test_a_second_law_of_a_cause_brings_no_other_names():

@@ -98,17 +98,23 @@ def propose(
     return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
 
 
-def best_law(
+def near_laws(
     search: Search, train: Sequence[str], rng: np.random.Generator, without: Sequence[str] = ()
-) -> Scored | None:
-    """The law of the grammar, `without` these kinds of factors, that answers for a search's gap best, for its length;
-    None where none is worth it."""
+) -> list[Scored]:
+    """Laws of the grammar, `without` these kinds of factors, that come near the one that answers for a search's gap
+    best, this one, for its length, first."""
     runs = [run for run in search.expansion.runs if run.name in train]
-    found = _laws(search, runs, rng, without)
-    return found[0][0] if found else None
+    return [scored for scored, _ in _sure_laws(search, runs, rng, without)]
 
 
-def _laws(
+def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator) -> list[tuple[Scored, float]]:
+    """The best law and those that are answers of their own beside it, with their chances."""
+    before = search.cross.explain(()).loss
+    sure = _sure_laws(search, runs, rng)
+    return [pair for pair in sure if pair is sure[0] or _another(pair[0], sure[0][0], before)]
+
+
+def _sure_laws(
     search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator, without: Sequence[str] = ()
 ) -> list[tuple[Scored, float]]:
     """Laws that come near the best on held-out segments, significantly; the simplest first."""
@@ -133,7 +139,7 @@ def _laws(
     p_values = flip_p_values(np.array([base.losses - each.losses for each in near]), rng)
     sure = [(each, float(p)) for each, p in zip(near, p_values, strict=True) if p <= LIMITS.remainder_p]
     sure.sort(key=lambda pair: _order(pair[0], base.loss))
-    return [pair for pair in sure if pair is sure[0] or _another(pair[0], sure[0][0], base.loss)]
+    return sure
 
 
 def _another(law: Scored, head: Scored, before: float) -> bool:

@@ -2,7 +2,7 @@
 what they do together.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -18,7 +18,7 @@ from winch_friction.discrepancy.engine.selection import Selection, select, with_
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
-from winch_friction.discrepancy.proposals import best_law
+from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide, excess
@@ -88,32 +88,35 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     left = excess(search.cross, search.explanation)
     asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
     closed = len(slots) == 1 and at_the_floor(trial.holdout)
-    law = best_law(search, split.train, rng, PICKING if closed else ()) if asked else None
-    why = outdone(law, search.cross, search.selection, closed)
+    laws = near_laws(search, split.train, rng, PICKING if closed else ()) if asked else []
+    why = outdone(laws, search.cross, search.selection, closed)
     if not why:
         return trial
     refit = tried(split, crane, options, _nameless(search), rng)
     return replace(refit, search=_unexplained(refit.search, why, rng))
 
 
-def outdone(law: Scored | None, cross: CrossFit, selection: Selection, closed: bool = False) -> str:
+def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:
     """Why names do not stand beside a law of the grammar; empty where they do.
 
     Several names, and a curve, fall where one law does as much; one name of a given law, or one that has `closed` the
     locked gap down to its floor, only where the other takes half of what it leaves. A law that a name's own could be
-    speaks for it.
+    speaks for it, if the first of the `laws` does not take half of what that one leaves.
     """
     named = selection.final
     slots = [slot for slot in named.slots if not slot.plain]
-    if law is None or not slots:
+    if not laws or not slots:
         return ""
+    law = laws[0]
     given = len(slots) == 1 and not slots[0].free
     share = LIMITS.outdone if given or closed else 1.0
     if law.loss - cross.floor > share * (named.loss - cross.floor):
         return ""
     if len(slots) == 1:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
-        if any(_could_be(law.law, slot, closed) for slot in rivals if _has_laws(slot, cross)):
+        many = [slot for slot in rivals if _has_laws(slot, cross)]
+        own = [each.loss for each in laws if any(_could_be(each.law, slot, closed) for slot in many)]
+        if own and law.loss - cross.floor > LIMITS.outdone * (min(own) - cross.floor):
             return ""
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "together " if len(slots) > 1 else ""

@@ -48,8 +48,7 @@ class Trial:
 def tried(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
     """The file that a search would write, put to all runs."""
     repaired = draft(search, search.explanation, _provenance(split.train, search.verdict, options))
-    training = [run for run in split.runs if run.name in split.train]
-    repaired = polished(repaired, search.given.model, training, crane)
+    repaired = polished(repaired, search.given.model, split.runs, split.train, crane)
     after = meet(split.runs, crane, read_back(repaired.model))
     sides = (compare(search.given, after, names, rng) for names in (split.train, split.holdout))
     return Trial(search, repaired, *sides)

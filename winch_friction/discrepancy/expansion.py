@@ -53,6 +53,11 @@ class Given:
     loads: Mapping[str, float]  # kg by run, where there is no `hook_load`
     prepared: tuple[PreparedRun, ...]
 
+    def only(self, names: Sequence[str]) -> "Given":
+        """The runs of these names, prepared as all of them agree that their wire is."""
+        pairs = [(run, own) for run, own in zip(self.runs, self.prepared, strict=True) if run.name in names]
+        return replace(self, runs=tuple(run for run, _ in pairs), prepared=tuple(own for _, own in pairs))
+
 
 def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
     """Measured runs as this model sees them; `InputError` for runs that lack what balance or corrections need."""

@@ -208,20 +208,21 @@ def _model_of(
     return Repair(model, parameters, tuple(cut))
 
 
-def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], crane: Crane) -> Repair:
-    """The model fitted once more to these runs along the path by which its file will be read.
+def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: Sequence[str], crane: Crane) -> Repair:
+    """The model fitted once more to the runs of these names along the path by which its file will be read.
 
+    All runs are prepared, for whether their wire gives is decided by all of them, and by fewer it may be otherwise.
     The draft comes from a linear problem around the seed: melted curves, pressures that depend on what was found and
-    shapes from a grid leave a second order, which a few Gauss-Newton steps on the model itself take away. Steps that do
-    not shrink the gap are not taken. The covariance is that of the last fit, wider where more than noise is left.
+    shapes from a grid leave a second order, which a few Gauss-Newton steps on the model take away. Steps that do not
+    shrink the gap are not taken. The covariance is the last fit's, wider where more than noise is left.
     """
     best = drafted
-    now = meet(runs, crane, best.model)
+    now = meet(runs, crane, best.model).only(train)
     prior, loose = _prior(drafted, seed)
     for _ in range(LIMITS.polishing):
         step, covariance, deviations = _step(now, prior, loose)
         tried = _stepped(best.model, step, covariance, deviations)
-        new = meet(runs, crane, tried)
+        new = meet(runs, crane, tried).only(train)
         if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
             # no better, but the uncertainty is this fit's all the same
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))
@@ -280,7 +281,7 @@ def _stepped(model: FrictionModel, step: FloatArray, covariance: FloatArray, dev
 
 
 def _misfit(given: Given) -> float:
-    """RMS of the gap over the moving samples of each run, in units that a run's own drive gives it."""
+    """RMS of the gap over each run's moving samples, in units that its own drive gives it."""
     own = [float(np.mean((run.gap[run.used] / run.unit_torque) ** 2)) for run in given.prepared if run.used.any()]
     return float(np.sqrt(np.mean(own))) if own else 0.0
 

@@ -33,15 +33,13 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.inputs import folders_of_cranes, read_inputs, run_paths
+    from winch_friction.cli.inputs import folders_of_cranes, load_terms, read_inputs, run_paths
     from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
-    from winch_friction.physics.friction.registry import load_file
 
-    if terms_file is not None:
-        load_file(terms_file)
+    load_terms(terms_file)
     paths = run_paths(runs)
     refuse_unwritable(out and out / "check.html")
     read, winch, seed = read_inputs(paths, crane, model)

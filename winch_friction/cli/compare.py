@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.cli.outputs import PAGE, refuse_other_kind
@@ -21,6 +22,7 @@ def command(
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.", autocompletion=complete_crane)] = "",
     loads: Annotated[str, typer.Option(help="Hanging masses of the grid, t.")] = "15,55,100",
     out: Annotated[OptionalPath, typer.Option(help="Write a page (.html) with curves and differences.")] = None,
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """Compare two models: curves, sigma, contributions, and where they differ.
@@ -34,6 +36,7 @@ def command(
     from winch_friction.cli.show import curve_crane
     from winch_friction.records.model_file import load_model
 
+    load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
     problems, models = Problems(), []
     for name in (first, second):

@@ -38,6 +38,14 @@ def _is_run(path: Path) -> bool:
     return path.suffix in RUN_SUFFIXES if path.is_file() else (path / "metadata.yaml").is_file()
 
 
+def load_terms(path: Path | None) -> None:
+    """Register the friction terms of a user's file, where one is given."""
+    if path is not None:
+        from winch_friction.physics.friction.registry import load_file
+
+        load_file(path)
+
+
 def read_all(paths: Sequence[Path], crane: Any, **options: Any) -> list[Any]:
     """The runs of these files, with a bar; whatever is wrong with any of them is said at once."""
     from winch_friction.records.runs import read_run

@@ -6,7 +6,9 @@ from typing import Annotated
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model
+from winch_friction.cli.optional import OptionalPath
 
 
 def command(
@@ -18,6 +20,7 @@ def command(
     model: Annotated[
         str, typer.Option(help="Model whose friction is drawn beside.", autocompletion=complete_model)
     ] = "",
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Ranges of every channel as JSON.")] = False,
 ) -> None:
     """Draw runs: every channel in the units people read, zoomed together, data as CSV a click away.
@@ -35,6 +38,7 @@ def command(
 
     if model and not crane:
         raise InputError("plot: --model needs --crane")
+    load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
     if crane:
         read, machine, drawn = read_inputs(runs, crane, model)

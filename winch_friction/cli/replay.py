@@ -46,11 +46,10 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.inputs import machine_of, refuse_implausible
+    from winch_friction.cli.inputs import load_terms, machine_of, refuse_implausible
     from winch_friction.cli.outputs import refuse_input_as_output
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.errors import InputError, Problems
-    from winch_friction.physics.friction.registry import load_file
     from winch_friction.physics.identity import ASSUMED_STD, unstated
     from winch_friction.records.mapping import bag_options_of
     from winch_friction.replay.recording import replay_recording
@@ -62,8 +61,7 @@ def command(
     refuse_input_as_output(out, [recording, model, crane])
     refuse_input_as_output(picture, [recording, model, crane])
     options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
-    if terms_file is not None:
-        load_file(terms_file)
+    load_terms(terms_file)
     settings = settings_from_file(params_file) if params_file else None
     problems = Problems()
     winch, seed = machine_of(crane, model, [recording], problems)

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.cli.outputs import PAGE, refuse_other_kind
@@ -23,6 +24,7 @@ def command(
     crane: Annotated[str, typer.Option(help="Crane on which a model is drawn.", autocompletion=complete_crane)] = "",
     load: Annotated[float, typer.Option(help="Hanging mass for a model's curve, t.")] = 55.0,
     out: Annotated[OptionalPath, typer.Option(help="Also write a page (.html), for a model or a term.")] = None,
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """Show what a name stands for: a model as a friction curve, a crane, a scenario, an effect or term.
@@ -35,6 +37,7 @@ def command(
 
       winch-friction show churning
     """
+    load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
     what = kind or kind_of(name) or _of_file(name)
     if what not in SHOWN:

@@ -5,8 +5,9 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model, complete_scenario
-from winch_friction.cli.optional import OptionalTexts
+from winch_friction.cli.optional import OptionalPath, OptionalTexts
 from winch_friction.physics.errors import InputError, Problems, meant
 
 LARGEST_EFFECT = 10.0  # times the typical size: ten times an effect of the catalogue is another machine
@@ -37,6 +38,7 @@ def command(
     hide: Annotated[
         OptionalTexts, typer.Option(help="Effect to hide in the plant, EFFECT or EFFECT=SIZE (1 = typical).")
     ] = None,
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     kind: Annotated[str, typer.Option("--format", help="csv, parquet, mcap or db3, for a folder of runs.")] = "csv",
     truth: Annotated[bool, typer.Option(help="Write the plant's truth beside each run.")] = False,
     force: Annotated[bool, typer.Option(help="Overwrite runs that exist.")] = False,
@@ -58,6 +60,7 @@ def command(
     from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
+    load_terms(terms_file)
     hidden = [_effect(text) for text in hide or []]
     if effects:
         _list_effects(as_json)

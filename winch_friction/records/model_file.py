@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from winch_friction.physics.errors import InputError, Problems
+from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.friction import FrictionModel, registered_terms, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.symbols import CONSTANTS
@@ -89,10 +89,12 @@ def _entries(top: Section, terms: tuple[Term, ...], complete: bool = True) -> "l
     for parameter in unique_parameters(terms):
         with problems:
             entries.append(_Entry(section, parameter))
-    if not complete:  # a parameter may be that of a term whose name is misspelt
-        for term in registered_terms().values():
-            for parameter in term.parameters:
-                section.get(parameter.name)
+    # beside an unknown term a parameter may be its own
+    known = [parameter.name for parameter in unique_parameters(terms)]
+    others = {parameter.name for term in registered_terms().values() for parameter in term.parameters}
+    for name in map(str, section.content):
+        if not complete and (name in others or not meant(name, known)):
+            section.get(name)
     with problems:
         section.close()
     problems.say()

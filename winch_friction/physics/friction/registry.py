@@ -32,7 +32,7 @@ def term_named(name: str) -> Term:
     if name not in _TERMS:
         raise InputError(
             f"term '{name}' is not known; known terms are {', '.join(sorted(_TERMS))};{meant(name, _TERMS)} "
-            "one of your own needs its file of terms"
+            "one of your own needs its file (--terms-file; gap: --effects; nodes: terms_file)"
         )
     return _TERMS[name]
 

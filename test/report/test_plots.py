@@ -50,7 +50,7 @@ def test_every_term_can_be_set_and_each_symbol_is_explained(name):
 def test_the_regularisation_of_a_power_is_not_shown():
     formula = term_html(term_named("churning")).partition("<table>")[0]
     assert "0.0047" not in formula
-    assert "2000 rpm" in term_html(term_named("churning"))
+    assert "2000\u00a0rpm" in term_html(term_named("churning"))
 
 
 def test_a_law_in_latex_becomes_mathml():

@@ -133,3 +133,43 @@ def test_model_crane_and_runs_are_said_together(verb, tmp_path, capsys, monkeypa
 
 def test_a_good_model_stays_good():
     assert load_model("a6vm215_crane2").crane == "crane_150t"
+
+
+def test_a_practice_s_crane_tests_and_table_are_said_together(tmp_path, capsys):
+    shipped = config_directory() / "examples" / "practice_150t"
+    for path in shipped.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    content = yaml.safe_load((shipped / "practice.yaml").read_text())
+    content["tests"][2:4] = ["test_33.parquet", "test_44.parquet"]
+    (tmp_path / "practice.yaml").write_text(yaml.safe_dump({**content, "crane": "crane_150x", "colour": "red"}))
+    lines = (shipped / "supplier.csv").read_text().splitlines()
+    for row, (column, text) in {20: (1, "x"), 21: (1, "y"), 22: (2, "z")}.items():
+        cells = lines[row - 1].split(",")
+        cells[column] = text
+        lines[row - 1] = ",".join(cells)
+    (tmp_path / "supplier.csv").write_text("\n".join(lines) + "\n")
+    assert run(["identify", "practice", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
+    lines = said(capsys)
+    for words in ("crane_150x", "test_33", "test_44", "row 20", "row 21", "row 22", "'colour'"):
+        assert sum(words in line for line in lines) == 1, (words, lines)
+    assert len(lines) == 7
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_scenario_s_problems_are_a_line_each(tmp_path, capsys):
+    content = yaml.safe_load((config_directory() / "scenarios" / "ahc_55t_215.yaml").read_text())
+    path = tmp_path / "bad.yaml"
+    path.write_text(yaml.safe_dump({**content, "duration": -4, "mode": "sideways", "lode": 4}))
+    assert run(["simulate", str(path), "--out", str(tmp_path / "x.csv")]) == 2
+    lines = said(capsys)
+    assert len(lines) == 3
+    assert all(line.startswith(f"{path}: ") for line in lines)
+
+
+def test_a_misspelt_key_is_known_by_the_one_that_is_missing(tmp_path, capsys):
+    content = yaml.safe_load((config_directory() / "models" / "a6vm215_crane2.yaml").read_text())
+    content["parameters"]["K44"] = content["parameters"].pop("K4")
+    path = tmp_path / "bad.yaml"
+    path.write_text(yaml.safe_dump(content))
+    assert run(["show", str(path)]) == 2
+    assert "unknown key 'K44'; did you mean K4" in capsys.readouterr().err

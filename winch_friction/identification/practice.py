@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from winch_friction.identification.black_box import BlackBoxMap
 from winch_friction.identification.motor_identification import (
@@ -25,7 +25,7 @@ from winch_friction.identification.system_identification import (
     winch_seed,
 )
 from winch_friction.identification.verification import PressureCheck, TestError, pressure_check, test_errors
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
@@ -60,26 +60,36 @@ def read_practice(folder: Path) -> PracticeFolder:
     top = Section(read_yaml(path), str(path))
     if top.text("schema") != SCHEMA:
         raise InputError(f"{path}: schema '{top.text('schema')}' is not '{SCHEMA}'")
-    local = folder / f"{top.text('crane')}.yaml"
-    crane = load_crane(local if local.is_file() else top.text("crane"))
     names = {key: _names(top, key) for key in ("tests", "held_out_tests", "ahc_tests")}
-    runs = {key: tuple(read_run(folder / name, crane) for name in names[key]) for key in names}
-    supplier = folder / top.text("supplier_table")
-    content = PracticeFolder(
-        name=top.text("name"),
-        crane=crane,
-        table=read_supplier_table(supplier, crane.max_displacement or None),
-        motor_model=top.text("motor_model", "mj4"),
-        tests=runs["tests"],
-        held_out=runs["held_out_tests"],
-        ahc=runs["ahc_tests"],
+    supplier, motor_model = folder / top.text("supplier_table"), top.text("motor_model", "mj4")
+    name, named, note, problems = top.text("name"), top.text("crane"), top.text("note", ""), Problems()
+    with problems:
+        top.close()
+    crane: Crane | None = None
+    with problems:
+        local = folder / f"{named}.yaml"
+        crane = load_crane(local if local.is_file() else named)
+    runs: dict[str, list[Run]] = {key: [] for key in names}
+    for key, own in runs.items():
+        for each in names[key]:
+            with problems:
+                own.append(read_run(folder / each, crane, complete=crane is not None))
+    with problems:
+        table = read_supplier_table(supplier, (crane.max_displacement if crane else 0.0) or None)
+    problems.say()
+    return PracticeFolder(
+        name=name,
+        crane=cast(Crane, crane),
+        table=table,
+        motor_model=motor_model,
+        tests=tuple(runs["tests"]),
+        held_out=tuple(runs["held_out_tests"]),
+        ahc=tuple(runs["ahc_tests"]),
         hashes={
             each.name: _hash(each) for each in (supplier, *(folder / n for group in names.values() for n in group))
         },
-        note=top.text("note", ""),
+        note=note,
     )
-    top.close()
-    return content
 
 
 def _names(top: Section, key: str) -> list[str]:

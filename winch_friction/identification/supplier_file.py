@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from winch_friction.identification.supplier_table import SupplierTable
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.table import Table, read_table
 
 _AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
 LEAST_BEST_EFFICIENCY = 0.1  # any piston motor reaches several times that somewhere in its table
-_LOSSES = ("efficiency", "torque", "torque_loss")
+_UNITS = {"efficiency": "1", "torque": "N*m", "torque_loss": "N*m"}
+_LOSSES = tuple(_UNITS)
 
 
 def read_supplier_table(path: str | Path, max_displacement: float | None = None) -> SupplierTable:
@@ -21,7 +22,15 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     `InputError` naming file, row and column.
     """
     table = read_table(Path(path))
-    axes = {name: _positive(table, name, unit) for name, unit in _AXES.items()}
+    problems, axes = Problems(), {}
+    for name, unit in _AXES.items():
+        with problems:
+            axes[name] = _positive(table, name, unit)
+    with problems:
+        for name in _LOSSES:
+            if name in table:
+                table.column(name, _UNITS[name])
+    problems.say()
     displacement = axes["displacement"]
     return SupplierTable(
         name=table.name,

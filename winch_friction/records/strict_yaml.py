@@ -32,6 +32,7 @@ class Section:
 
     def need(self, key: str) -> Any:
         """A value that must be there."""
+        self._asked.add(key)
         if key not in self.content:
             raise InputError(f"{self.where}: key '{key}' is missing")
         return self.get(key)

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
 from winch_friction.records.headers import conversion_to_si, parse_header
+
+_SHOWN = 3  # places named of one kind of problem
 
 
 @dataclass(frozen=True)
@@ -39,9 +41,14 @@ class Table:
         """A column in SI; raises `InputError` for a missing one, an unknown unit, text and NaN."""
         if name not in self.cells:
             raise InputError(f"{self.path}: column '{name}' is missing; the table has {', '.join(self.cells)}")
-        values = np.array(
-            [self._number(text, name, row) for text, row in zip(self.cells[name], self.rows, strict=True)]
-        )
+        problems, values = Problems(), np.empty(len(self.rows))
+        for k, (text, row) in enumerate(zip(self.cells[name], self.rows, strict=True)):
+            with problems:
+                values[k] = self._number(text, name, row)
+        if len(problems.found) > _SHOWN:
+            more = f" (and {len(problems.found) - _SHOWN} more like it in this column)"
+            problems.found[_SHOWN - 1 :] = [problems.found[_SHOWN - 1] + more]
+        problems.say()
         return values * _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
 
     def _number(self, text: str, column: str, row: int) -> float:

@@ -149,17 +149,17 @@ def _mapping(content: Any) -> Any:
 
 
 def validated(kind: type[Any], content: Any, where: str) -> Any:
-    """A checked object, or `InputError` with all complaints in one line."""
+    """A checked object, or `InputError` with all complaints."""
     try:
         return kind(**_mapping(content))
     except ValidationError as error:
-        raise InputError(f"{where}: {_complaints(error, content)}") from None
+        raise InputError(*(f"{where}: {each}" for each in _complaints(error, content))) from None
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
 
 
-def _complaints(error: ValidationError, content: Any) -> str:
-    return "; ".join(dict.fromkeys(_complaint(each, content) for each in error.errors()))
+def _complaints(error: ValidationError, content: Any) -> list[str]:
+    return list(dict.fromkeys(_complaint(each, content) for each in error.errors()))
 
 
 def _complaint(first: Any, content: Any) -> str:

@@ -24,6 +24,9 @@ def frames(stop):
             "K2": "3.8e10",
             "K2 std": "1e9",
             "K2 status": "seed",
+            "K5": "1.16e-14",
+            "K5 std": "1e-15",
+            "K5 status": "seed",
             "C1": "2",
             "C1 std": "0.5",
             "C1 status": "learned",
@@ -66,6 +69,7 @@ def test_the_page_draws_what_comes_and_reconnects(visit, stop):
         assert "an input was lost" in page.inner_text("#faults")
         assert "learned" in page.inner_text("#estimates")
         assert "3.8e+10" in page.inner_text("#estimates")  # not a row of zeros
+        assert "1.16e−14" in page.inner_text("#estimates")  # with a minus: behind a hyphen a phone breaks the number
         assert violations(page) == []
         assert said == []
     page.wait_for_function("document.documentElement.dataset.link === 'lost'", timeout=15000)

@@ -58,7 +58,7 @@
   const short = (v) => {
     if (!Number.isFinite(v)) return "–";
     const size = Math.abs(v), powers = size && (size < 1e-3 || size >= 1e6);  // as the pages' tables
-    return powers ? v.toExponential(3).replace(/\.?0+e/, "e") : String(+v.toPrecision(4));
+    return powers ? v.toExponential(3).replace(/\.?0+e/, "e").replace("e-", "e−") : String(+v.toPrecision(4));
   };
   const show = (frame) => {
     keep(frame.points);

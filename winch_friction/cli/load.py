@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import show_json
+from winch_friction.cli.console import show_json, stderr
 from winch_friction.cli.names import complete_model
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.errors import InputError
@@ -37,9 +37,10 @@ def command(
 
         load_model(given)  # what cannot be read is said here, before the node is asked
     call = [sys.executable, "-m", "winch_friction.nodes.load", given, *terms]
-    done = subprocess.run(
-        [*call, "--namespace", namespace, "--node", node], capture_output=True, text=True, check=False
-    )
+    with stderr.status(f"asking {node} ..."):
+        done = subprocess.run(
+            [*call, "--namespace", namespace, "--node", node], capture_output=True, text=True, check=False
+        )
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.strip()]
         raise InputError(lines[-1] if lines else f"{node}: no answer")

@@ -76,9 +76,7 @@ class RemoteNode:
             self._clients[service] = self._node.create_client(service_type, f"{self.name}/{service}")
         client = self._clients[service]
         if not client.wait_for_service(timeout_sec=self._patience):
-            raise InputError(
-                f"{self.name}: not there after {self._patience:g} s; did it start, and in this ROS_DOMAIN_ID?"
-            )
+            raise InputError(f"{self.name}: not there after {self._patience:g} s; did it start? In this ROS_DOMAIN_ID?")
         asked = 1 if service in CHANGING else QUESTIONS
         for _ in range(asked):
             future = client.call_async(request)

@@ -97,6 +97,7 @@ def test_bad_parameters_are_one_line_and_status_2(executable: str, override: str
                 "parameter 'velocity_source' must be one of reference, measured, found 'referenc'",
             },
         ),
+        ("compensator", {"scale": "3"}, {"parameter 'scale' must be a number 0 ... 1.3, found 3"}),
         ("compensator", {"scale": "1"}, {"parameter 'scale' must be a number 0 ... 1.3, found 1: write 1.0"}),
         (
             "estimator",
@@ -114,6 +115,7 @@ def test_all_bad_parameters_are_said_at_once(executable: str, overrides: dict[st
     lines = [line for line in ended.stderr.splitlines() if "error" in line.lower()]
     assert len(lines) == len(said)
     assert all(any(words in line for line in lines) for words in said), lines
+    assert "write 3.0" not in ended.stderr  # is out of range as well
 
 
 def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(bench: Bench, tmp_path: Path) -> None:

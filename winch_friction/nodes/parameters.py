@@ -114,7 +114,8 @@ def _must_be(value: Any, default: Any, limits: Limits) -> str:
     unit = f" {limits.unit}" if limits.unit not in ("", "1") else ""
     bounds = f"{limits.lower:g} ... {limits.upper:g}{unit}" if _KINDS.get(type(default), "").endswith("number") else ""
     kind = "" if same and bounds else _KINDS.get(type(default), type(default).__name__)
-    hint = f": write {value}.0" if isinstance(default, float) and type(value) is int else ""
+    whole = isinstance(default, float) and type(value) is int and limits.lower <= value <= limits.upper
+    hint = f": write {value}.0" if whole else ""
     return f" must be {' '.join(filter(None, (kind, bounds)))}, found {value!r}{hint}"
 
 

@@ -147,3 +147,16 @@ def test_where_a_transducer_may_bend_stays_while_the_pressures_are_reckoned_anew
     other = run()
     other.used, other.constants, other.groups[0] = own.used, own.constants, replace(other.groups[0], pressure_sum=A)
     assert [each.label for each in found.shapes([other])] == [each.label for each in found.shapes([own])]
+
+
+def test_a_feedback_may_bow_by_what_its_zero_may_be_off():
+    """Six cubic centimetres of a motor of 250, up within a quarter of the stroke and down again in the next."""
+    runs = []
+    for share in np.linspace(0.2, 0.9, 8):
+        own = run()
+        own.used, own.constants = np.ones(3, bool), (("max_displacement", SWASH),)
+        own.groups = [replace(own.groups[0], displacement=np.full(3, share * SWASH))]
+        runs.append(own)
+    (curve,) = [each for each in bends_over(runs) if each.name == "swivel_offset"]
+    turn = 2.0 * (6.0 / 250.0) / 0.25
+    assert all(curve.plausible * bend.typical >= 0.999 * turn for bend in curve.linear[1:])

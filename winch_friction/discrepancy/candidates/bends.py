@@ -29,8 +29,10 @@ STROKES = (0.1, 0.4, 0.7)  # the same of the displacement, at which the feedback
 FEWEST_STROKES = 6  # displacements a twentieth of the largest apart: a zero, three bends, and two that could contradict
 
 b_p = Parameter("b_p", "1", 0.02, lower=-0.5, upper=0.5, doc="gain error of the transducers beyond a pressure")
+# a bow of an offset's typical height, 1 of 250 cm^3, up and down again over a quarter of the stroke each
+TURN = 2.0 * (1.0 / 250.0) / 0.25
 BENDS = tuple(
-    Parameter(f"b_D{k}", "1", 0.02, lower=-0.5, upper=0.5, doc=f"change {k} of the feedback's gain over the stroke")
+    Parameter(f"b_D{k}", "1", TURN, lower=-0.5, upper=0.5, doc=f"change {k} of the feedback's gain over the stroke")
     for k in range(1, len(STROKES) + 1)
 )
 

@@ -41,6 +41,12 @@ def test_the_blur_of_a_reversal_is_not_presliding(seed):
     assert result.verdict == "nothing_missing"
 
 
+def test_what_is_imitated_after_reversals_by_an_implausible_size_is_no_effect():
+    """Nothing is hidden; 167 Hz: a break-away six times as large as it ever was would explain a third of it."""
+    result, _ = _answer("drawn_null", 15_100_033)
+    assert result.verdict == "nothing_missing"
+
+
 def test_a_refit_that_harms_the_locked_runs_is_not_written():
     result, given = _answer("drawn_outside", 9_400_007, ("cold_load_grip", 1.0))
     assert result.verdict == "unexplained"

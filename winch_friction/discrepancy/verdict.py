@@ -7,7 +7,7 @@ import numpy as np
 
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.omnibus import Dependence
-from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.thresholds import LIMITS
 
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
@@ -32,7 +32,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
             before > LIMITS.never_noise and not rippled
         )
         return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
-    implausible = [f.slot.name for f in selection.found if _at_bound(cross, selection, f)]
+    implausible = [f.slot.name for f in selection.found if cross.at_bound(selection.final, f.slot)]
     if implausible:
         return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
@@ -78,11 +78,3 @@ def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
     steady = acceleration <= LIMITS.steady * np.percentile(acceleration, 99)
     chosen = steady if steady.sum() >= LIMITS.fewest_steady else np.ones_like(steady)
     return float(np.mean(left[chosen] ** 2 - 1.0 - cross.problem.unresolved[chosen]))
-
-
-def _at_bound(cross: CrossFit, selection: Selection, found: Finding) -> bool:
-    columns = list(cross.problem.columns(selection.final.slots))
-    upper = cross.problem.layout.upper
-    most = [upper[c] if found.slot.plain else found.slot.most for c in found.slot.columns]
-    sizes = [abs(selection.final.beta[columns.index(c)]) for c in found.slot.columns]
-    return any(size >= 0.999 * limit for size, limit in zip(sizes, most, strict=True))

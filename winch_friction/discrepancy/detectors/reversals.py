@@ -100,7 +100,7 @@ def detect(
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = cross.gain(base, trials[best])
     candidate, shape = trials[best].slots[-1].origin
-    if too_short(candidate, shape, chosen):
+    if too_short(candidate, shape, chosen) or cross.at_bound(trials[best], trials[best].slots[-1]):
         return None
     # what a named effect's law leaves of itself is its own second order, here as elsewhere
     own = max(cross.explain(()).loss - base.loss, 0.0) if kept else 0.0

@@ -95,6 +95,13 @@ class CrossFit:
             losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ without + (part @ without) @ without
         return Explanation(tuple(slots), losses, beta, loss, left_out)
 
+    def at_bound(self, explanation: Explanation, slot: Slot) -> bool:
+        """Whether one of its effects would be larger than is believed, if it might."""
+        columns, upper = list(self.problem.columns(explanation.slots)), self.problem.layout.upper
+        most = [upper[c] if slot.plain else slot.most for c in slot.columns]
+        sizes = [abs(explanation.beta[columns.index(c)]) for c in slot.columns]
+        return any(size >= 0.999 * limit for size, limit in zip(sizes, most, strict=True))
+
     def covariance(self, explanation: Explanation) -> FloatArray:
         """Covariance of an explanation's coefficients, data and prior."""
         return self.problem.covariance(self.total_g, self.problem.columns(explanation.slots))

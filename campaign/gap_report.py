@@ -19,7 +19,8 @@ READING = """## Reading the table
   still or heaving, encoders of 1024 to 8192 pulses, white and coloured noise, with and without optional channels.
 * At 0.3 of the size some effects are inside what is ordinary, and are rightly not called missing: `brake_drag`,
   `high_pressure_mixed` and `port_turbulence` move a base parameter (K4, K5, K2) by less than two standard deviations of
-  its prior, as the nulls do; `slip_leakage` is then within a motor's ordinary leakage.
+  its prior, as the nulls do (the arithmetic of each set stands under "Small effects and the prior"); `slip_leakage` is
+  then within a motor's ordinary leakage.
 * `entrained_air` (1 %) leaves the torque balance closed and is found in the flow, against the commanded speed;
   `dwell_stiction` shows for a radian of travel after a rest, where friction at rest is undetermined.
 * The drives of the elastic cranes: one has a rope's light damping, one is damped as strongly as 0.2 MN s/m."""
@@ -34,6 +35,7 @@ def write_table(path: Path, rows: Sequence[Row], counts: Counts, note: str = "")
         _bars(good, failed),
         _cost(),
         _effects(good),
+        _small(good),
         _outside(good),
         _pairs(good),
         drawn_worlds(good, share),
@@ -91,6 +93,12 @@ def _bars(good: Sequence[Row], failed: Sequence[Row]) -> str:
             f"| right name, or set of at most 3, of the detected at {size:g} | {named} | {share(detected, 'right')} |"
         )
         lines.append(f"| wrong single name at {size:g} | {wrong} | {share(detected, 'wrong_single')} |")
+        large = [row for row in rows if row.get("beyond", {}).get("exceeds")]
+        if large:
+            lines.append(
+                f"| detected at {size:g} of those beyond the prior's two deviations | ≥ 80 % |"
+                f" {share(large, 'detected')} |"
+            )
     pairs = [row | {"both": row["found"] == 2} for row in _kind(good, "pair")]
     lines.append(f"| pairs: both found | ≥ 70 % | {share(pairs, 'both')} |")
     lines.append(f"| pairs: a wrong one | ≤ 5 % | {share(pairs, 'wrong_entry')} |")
@@ -172,6 +180,30 @@ def _effects(good: Sequence[Row]) -> str:
         cells = [_cell([row for row in rows if _size(row) == size]) for size in (1.0, 0.3, 0.1)]
         answers = Counter(_answer(row) for row in rows if _size(row) == 1.0).most_common(2)
         lines.append(f"| `{effect}` | {' | '.join(cells)} | {'; '.join(f'{n}× {a}' for a, n in answers)} |")
+    return "\n".join(lines)
+
+
+def _small(good: Sequence[Row]) -> str:
+    """What the prior alone can take of small effects (`campaign.gap_small`)."""
+    rows = [row for row in _kind(good, "single") if "beyond" in row]
+    if not rows:
+        return ""
+    lines = [
+        "## Small effects and the prior",
+        "",
+        "The trace of the effect (bar of the balancing motors, with it less without it), what the seed model's",
+        "parameters and the measurement's tolerances cannot take of it within two of their standard deviations, and the",
+        "noise floor.",
+        "An effect counts where that is more than the floor.",
+        "",
+        "| data set | trace | left | floor | counts | answer |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in sorted(rows, key=lambda r: (-_size(r), not r["beyond"]["exceeds"], r["key"])):
+        trace, left = (f"{row['beyond'][key]:.2f}" for key in ("trace", "left"))
+        counts = "yes" if row["beyond"]["exceeds"] else "no"
+        name = f"{row['effects'][0][0]} × {_size(row):g}, {row['flavour']}"
+        lines.append(f"| {name} | {trace} | {left} | {row['floor']:.2f} | {counts} | {_answer(row)} |")
     return "\n".join(lines)
 
 

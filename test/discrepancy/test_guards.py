@@ -182,6 +182,12 @@ def test_correlated_blocks_count_for_a_tenth():
     assert std == pytest.approx(np.sqrt(10.0 / (WAVE**2).sum()), rel=0.1)
 
 
+def test_an_implausible_size_is_refused_with_what_it_was_held_to():
+    _, verdict = answer(80.0 * WAVE + noise())
+    assert verdict.kind == UNEXPLAINED
+    assert verdict.refused == "wave would need an implausible size, 50 times what is typical or more"
+
+
 def test_the_interval_holds_nineteen_times_of_twenty():
     held = []
     for seed in range(150):

@@ -32,9 +32,10 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
             before > LIMITS.never_noise and not rippled
         )
         return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
-    implausible = [f.slot.name for f in selection.found if cross.at_bound(selection.final, f.slot)]
+    implausible = [f.slot for f in selection.found if cross.at_bound(selection.final, f.slot)]
     if implausible:
-        return Verdict(UNEXPLAINED, f"{implausible[0]} would need an implausible size")
+        times = "" if implausible[0].plain else f", {implausible[0].most:g} times what is typical or more"
+        return Verdict(UNEXPLAINED, f"{implausible[0].name} would need an implausible size{times}")
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it")

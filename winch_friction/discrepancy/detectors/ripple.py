@@ -27,7 +27,7 @@ from winch_friction.physics.winch.torque_balance import run_drive_torque
 
 TERM = "torque_ripple"
 WINDOW = 0.3  # s; slower than this is friction, not ripple
-# family-wise, for white noise; encoder steps and friction make real backgrounds lumpier: of some 600 data sets without a
+# family-wise, for white noise; encoder steps and friction make real backgrounds lumpier: of 600 data sets without a
 # ripple one had a line of 1.2e-9, at 10 Hz; the faintest ripple at 0.3 of its size had 3e-25
 SIGNIFICANT = 1e-10
 # an angle added up from the speed carries the encoder's steps itself

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
@@ -487,6 +488,26 @@ def test_a_model_that_is_left_as_it_was_given_keeps_its_name(crane2_model):
 
 def test_nothing_compared_has_no_size():
     assert nothing_compared().size_after == Size(0.0, (0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class _Whole(_Found):
+    reversal: None = None
+    flow: tuple = ()
+
+
+@pytest.mark.parametrize(("left_as_given", "kind"), [(0.0, NOTHING), (3.0, UNEXPLAINED)])
+def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatch, left_as_given, kind):
+    """A refit to little data may leave the locked runs three times what the model that was given leaves."""
+    cross = crossfit(noise())
+    none = cross.explain(())
+    search = _Whole(cross, Selection(none, none, ()), Verdict(NOTHING))
+    astray = side(noise(), 3.0 * WAVE + noise(1))
+    given = side(noise(), left_as_given * WAVE + noise(1))
+    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, astray))
+    monkeypatch.setattr(standing_module, "as_given", lambda _, __, own, rng: Trial(own, None, None, given))
+    assert standing_module.standing(None, None, None, search, np.random.default_rng(0)).search.verdict.kind == kind
 
 
 def explanation(losses):

@@ -1,5 +1,7 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
+import numpy as np
+
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
@@ -41,11 +43,14 @@ def test_running_the_proposed_scenarios_resolves_the_ambiguity():
 
 
 def test_a_single_run_without_an_effect_is_no_discovery():
-    """A refit to the first half of one voyage goes astray; the model that made it leaves nothing, and stays."""
+    """Both halves of one voyage are told the same of its wire, so a refit to the first does not go astray: it moves no
+    parameter by half of its deviation, and the other half is none the worse."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     for seed in (0, 1):
         run = simulate(load_scenario("ahc_55t_215"), crane, model, seed=seed).run
         result = find_gap([Run("voyage", run.columns)], crane, model)
         assert result.verdict == "nothing_missing"
-        assert result.model.values == model.values
-        assert result.holdout.size_after.value == result.holdout.size_before.value
+        assert not result.effects
+        moved = np.abs(np.subtract(result.model.values, model.values)) / np.array(model.std)
+        assert moved.max() < 0.5
+        assert result.holdout.size_after.value <= 1.01 * result.holdout.size_before.value

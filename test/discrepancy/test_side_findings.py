@@ -2,18 +2,21 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
 from winch_friction.discrepancy.detectors.ripple import TERM, Ripple, _known, angle_ripple
 from winch_friction.discrepancy.detectors.soft_oil import free_air
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.leakage import LEAKAGE_LAWS, leakage_per_coefficient
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -57,6 +60,20 @@ def test_a_leak_has_its_own_law_and_is_no_air(law, name):
     assert [each.name for each in found.corrections] == [name]
     air = free_air(runs, prepared)
     assert air is None or not air.found
+
+
+@pytest.mark.parametrize(("second", "laws"), [
+    (1e-11, ["orifice_leakage", "slip_leakage"]), (0.0, ["slip_leakage"]), (-2e-12, ["slip_leakage"]),
+])  # fmt: skip
+def test_a_second_law_of_leakage_counts_where_other_runs_need_it_and_it_leaks_outwards(monkeypatch, second, laws):
+    rng = np.random.default_rng(3)
+    run, drop, thin = np.repeat(np.arange(6.0), 20), rng.uniform(10e5, 200e5, 120), rng.uniform(0.5, 2.0, 120)
+    rates = [leakage_per_coefficient(law, drop, thin) / 3e-5 for law in LEAKAGE_LAWS]
+    lost = 1e-11 * rates[0] + second * rates[1] + 0.02 * rng.standard_normal(120)
+    table = np.column_stack([run, lost, rng.uniform(-80.0, 80.0, 120), *rates])
+    monkeypatch.setattr(flow_balance, "_tables", lambda *_: table)
+    found = lost_speed([], [SimpleNamespace(constants=(("max_displacement", 3e-5),))])
+    assert sorted(found.leakage) == laws
 
 
 def test_a_small_motor_loses_as_much_speed_by_a_smaller_leak():

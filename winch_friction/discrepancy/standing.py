@@ -216,8 +216,6 @@ def _least_missed_first(search: Search) -> list[Slot]:
     the same, the one found first need not be the one that says it best.
     """
     slots = search.selection.final.slots
-    if len(slots) == 1:
-        return list(slots)
     without = {id(slot): search.cross.explain(tuple(each for each in slots if each is not slot)) for slot in slots}
     return sorted(slots, key=lambda slot: without[id(slot)].loss)
 

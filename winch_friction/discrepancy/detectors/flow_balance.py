@@ -120,11 +120,11 @@ def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage 
     for other in [law for law in LEAKAGE_LAWS if law not in laws]:
         pair = (laws[0], other)
         fits[pair] = _fitted(pair, speed, rates, lost, of_run)
-    bounds = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][1:]) > 0.0}
-    best = min(bounds, key=lambda k: _rms(bounds[k][2]))
-    if len(best) > 1 and _rms(bounds[best][2]) < WORTH_A_LAW * _rms(bounds[laws][2]):
+    allowed = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][1:]) > 0.0}
+    best = min(allowed, key=lambda k: _rms(allowed[k][2]))
+    if len(best) > 1 and _rms(allowed[best][2]) < WORTH_A_LAW * _rms(allowed[laws][2]):
         laws = best
-    coefficients, covariance, after = bounds[laws]
+    coefficients, covariance, after = allowed[laws]
     alone = float((speed @ lost) / max((speed**2).sum(), 1e-300))
     full = REFERENCE_PRESSURE / _full_displacement(prepared)
     std = np.sqrt(np.diag(covariance))

@@ -1,12 +1,15 @@
 """A tabulated term is a term like any other: file, arrays, scalars, kernel, Jacobian, LaTeX."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
+from winch_friction.physics.friction.compiled import compiled
 from winch_friction.physics.friction.symbols import layout
-from winch_friction.physics.friction.table import Table, tabulated
+from winch_friction.physics.friction.table import Table, outlined, tabulated
 from winch_friction.records.model_file import model_from_text, model_to_text
 
 WARM = Table(
@@ -165,3 +168,32 @@ def test_windows_are_one_level_there_and_nothing_elsewhere():
             assert functions.scalar_torque(point, (0.0, 4.0), ()) == pytest.approx(11.0 * expected), time
     with pytest.raises(InputError, match="a knot at either end"):
         Table("hangs", (("time", (10.0, 20.0, 40.0)),), shape="windows")
+
+
+HINGES = Table(
+    "hinges", (("speed_magnitude", (5.0, 40.0, 90.0)),), scope=Scope.SYSTEM, shape="convex_rising", anchor="low"
+)
+WINDOW = Table("window", (("wire_out", (20.0, 55.0)),), shape="windows")
+
+
+@pytest.mark.parametrize("table", [WARM, SURFACE, HINGES, WINDOW], ids=lambda table: table.name)
+def test_one_outline_serves_every_table_of_its_form(table):
+    constants = (("gear_ratio", 250.0), ("max_displacement", 3.4e-5))
+    moved = replace(table, knots=tuple((name, tuple(1.07 * k for k in at)) for name, at in table.knots), typical=2.0)
+    term, _ = outlined(table)
+    assert outlined(moved)[0] is term  # so that what is compiled of it is found again
+    rng = np.random.default_rng(3)
+    x = [rng.uniform(0.0, 1.3, 400) for _ in layout(2)]
+    for symbol, values in zip(layout(2), x, strict=True):
+        values *= {"w": 100.0, "l": 80.0, "L": 80.0, r"\vartheta": 80.0}.get(symbol.name, 1.0)
+        values *= {"p_": 2e7, "D_": 3.4e-5}.get(symbol.name[:2], 1.0)
+    for each in (table, moved):
+        own = compiled((tabulated(each),), 2, constants)
+        linear = own.vector_gradient(tuple(x), (1.0,) * len(own.parameters), ())
+        outline, knots = outlined(each)
+        shared = compiled((outline,), 2, constants)
+        columns = shared.vector_columns(tuple(x), tuple(knots.get(p.name, 1.0) for p in shared.parameters), ())
+        assert len(columns) == len(linear)
+        for column, derivative in zip(columns, linear, strict=True):
+            np.testing.assert_allclose(column, derivative, rtol=1e-9, atol=1e-12 * np.abs(derivative).max())
+            assert np.ptp(column) > 0.0

@@ -13,6 +13,7 @@ from winch_friction.discrepancy.preparation.balance import state_history
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import compiled
+from winch_friction.physics.friction.table import outlined
 from winch_friction.physics.friction.term import Term
 
 Grid = Mapping[str, tuple[float, ...]]
@@ -132,22 +133,19 @@ def _observed_time(runs: Sequence[PreparedRun]) -> list[Shape]:
 
 def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     """Torque at the shaft per unit of each linear parameter, N m, shape (samples, parameters)."""
+    if term.table is not None:
+        term, knots = outlined(term.table)
+        values = {**values, **knots}
     functions = compiled((term,), len(run.groups), run.constants)
     theta = tuple(values.get(p.name, 1.0) for p in functions.parameters)
     z = state_history(functions, run.point, theta, run.dt)
-    # a term is linear in what is no shape, so one parameter at one and the others at zero give its derivative
-    units = [
-        tuple(float(q is p) if not q.shape else values.get(q.name, 1.0) for q in functions.parameters)
-        for p in functions.parameters
-        if not p.shape
-    ]
-    columns = np.empty((len(run.time), len(units)))
+    columns = np.empty((len(run.time), sum(not p.shape for p in functions.parameters)))
     with np.errstate(all="ignore"):
         for at in range(0, len(columns), AT_ONCE):
             some = slice(at, at + AT_ONCE)
-            x, own = _part(run.point, some), _part(z, some)
-            for k, unit in enumerate(units):
-                columns[some, k] = functions.vector_torque(x, unit, own)
+            parts = functions.vector_columns(_part(run.point, some), theta, _part(z, some))
+            for k, part in enumerate(parts):
+                columns[some, k] = part
         whole = np.isfinite(columns.sum())
     return columns if whole else np.nan_to_num(columns, copy=False)
 

@@ -79,6 +79,11 @@ class CompiledTerms:
         return [sp.diff(self.total, parameter.symbol) for parameter in self.parameters]
 
     @cached_property
+    def columns(self) -> list[sp.Expr]:
+        """What each parameter that is no shape multiplies: the torque is linear in these."""
+        return [sp.diff(self.total, parameter.symbol) for parameter in self.parameters if not parameter.shape]
+
+    @cached_property
     def speed_derivative(self) -> sp.Expr:
         """Its partial derivative by speed at frozen direction: d/d omega with w = |omega|, dw/d omega = s."""
         return symbols.s * sp.diff(self.total, symbols.w) + sp.diff(self.total, symbols.omega)
@@ -137,6 +142,11 @@ class CompiledTerms:
     def vector_gradient(self) -> Callable[..., tuple[Any, ...]]:
         """Partial derivatives over arrays (entries that are constant come back as scalars)."""
         return self._function("gradient", "numpy")
+
+    @cached_property
+    def vector_columns(self) -> Callable[..., tuple[Any, ...]]:
+        """What each parameter that is no shape multiplies, over arrays (constant entries come back as scalars)."""
+        return self._function("columns", "numpy")
 
     @cached_property
     def vector_contributions(self) -> Callable[..., tuple[Any, ...]]:

@@ -6,7 +6,9 @@ linear in them, and it is a term like any other.
 """
 
 import itertools
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import sympy as sp
 
@@ -93,7 +95,7 @@ class _Axis:
     """One signal of a table; `of_surface` where there is another."""
 
     signal: str
-    knots: tuple[float, ...]
+    knots: tuple[float, ...]  # their symbols in an outline
     shape: str
     anchor: str
     of_surface: bool
@@ -122,17 +124,51 @@ def _words(*texts: str) -> list[list[str]]:
 
 def tabulated(table: Table) -> Term:
     """The term of a table; one parameter per interval (or pair of intervals), named `<table>_<k>[_<l>]`."""
+    return _declared(table, table.axes)
+
+
+def outlined(table: Table) -> tuple[Term, dict[str, float]]:
+    """The term with its knots as shape parameters, and their values: one for all tables that differ in these alone.
+
+    What is compiled of it serves every curve that data draw, wherever they bend it.
+    """
+    knots = tuple((name, tuple(float(k) for k in range(len(at)))) for name, at in table.knots)
+    form = replace(table, knots=knots, typical=1.0, source="", place="")
+    values = itertools.chain.from_iterable(at for _, at in table.knots)
+    return _outline(form), dict(zip((p.name for p in _knots(form)), values, strict=True))
+
+
+@lru_cache(maxsize=256)
+def _outline(form: Table) -> Term:
+    own = _knots(form)
+    symbol = iter(parameter.symbol for parameter in own)
+    axes = tuple(replace(axis, knots=tuple(next(symbol) for _ in axis.knots)) for axis in form.axes)
+    return replace(_declared(form, axes, own), table=None)
+
+
+def _knots(form: Table) -> list[Parameter]:
+    """The knots of a table as parameters, axis by axis."""
+    return [
+        Parameter(f"{form.name}_at_{name}_{k}", _SIGNALS[name].unit, 0.0, lower=float("-inf"), shape=True)
+        for name, at in form.knots
+        for k in range(len(at))
+    ]
+
+
+def _declared(table: Table, axes: Sequence[_Axis], shapes: Sequence[Parameter] = ()) -> Term:
     if table.shape == "windows":
-        return _in_windows(table)
-    bases = [_basis(axis) for axis in table.axes]
+        return _in_windows(table, axes[0], shapes)
+    bases = [_basis(axis) for axis in axes]
     parameters, equation = [], sp.Integer(0)
     for index in itertools.product(*(range(len(basis)) for basis in bases)):
-        if any(k == 0 and not axis.level for k, axis in zip(index, table.axes, strict=True)):
+        if any(k == 0 and not axis.level for k, axis in zip(index, axes, strict=True)):
             continue
         parameter = _parameter(table, index)
         parameters.append(parameter)
         equation += parameter.symbol * sp.Mul(*(basis[k] for basis, k in zip(bases, index, strict=True)))
-    return _term(table, equation, parameters, f"piecewise linear over {' and '.join(table.signals)}, {table.shape}")
+    return _term(
+        table, equation, [*parameters, *shapes], f"piecewise linear over {' and '.join(table.signals)}, {table.shape}"
+    )
 
 
 def _term(table: Table, equation: sp.Expr, parameters: list[Parameter], doc: str) -> Term:
@@ -145,14 +181,14 @@ def _term(table: Table, equation: sp.Expr, parameters: list[Parameter], doc: str
     )  # fmt: skip
 
 
-def _in_windows(table: Table) -> Term:
+def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     """One level, there or not: a step up at every odd knot and down at the next."""
-    ((name, knots),) = table.knots
+    name, knots = axis.signal, axis.knots
     signal = _SIGNALS[name].symbol
     steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
     inside = sp.Add(*(step if k % 2 == 0 else -step for k, step in enumerate(steps)))
     level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
-    return _term(table, level.symbol * inside, [level], f"in {len(knots) // 2} windows of {name}")
+    return _term(table, level.symbol * inside, [level, *shapes], f"in {len(knots) // 2} windows of {name}")
 
 
 def _basis(axis: _Axis) -> list[sp.Expr]:

@@ -51,6 +51,22 @@ def test_the_swing_is_found_and_taken_out(length):
     assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
 
 
+@pytest.mark.parametrize("off", [-0.035, -0.012, 0.0, 0.02])
+@pytest.mark.parametrize("inertia", [0.0, 0.3], ids=["as stated", "inertia off"])
+def test_the_swing_follows_a_wire_that_is_paid_out_in_the_run(off, inertia):
+    """A tenth of the length is a twentieth of the frequency; an inertia that is wrong must not pass for it."""
+    stated, rigid = 2.8, motion(TIME)
+    load = on_the_wire(rigid, DT, stated * (1.0 + off), 0.06)
+    noise = 5.0 * np.random.default_rng(2).standard_normal(len(TIME))
+    gap = MASS * LEVER * (load - (1.0 + inertia) * rigid) + noise
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    step = np.sign(np.cos(0.7 * TIME))[:, None]
+    swing = swinging_load(gap, everywhere, rigid, DT, MASS, lever, (stated**2 * MASS,), step, rigid[:, None])
+    assert swing.frequency == pytest.approx(stated * (1.0 + off), rel=0.002)
+    left = gap + MASS * LEVER * ((1.0 + inertia) * rigid - swing.acceleration)
+    assert left[500:].std() < 1.6 * noise.std()
+
+
 @pytest.mark.parametrize("share", [0.55, 0.8, 1.0, 1.25])
 def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
     """Twenty metres between drum and tip beside fifty paid out, a modulus from a catalogue."""

@@ -44,7 +44,7 @@ class RunPlant(NamedTuple):
     modulus: float
     pump_lag: float
     position_gain: float
-    wire_stiffness: float  # N/m, 0: rigid
+    wire_stiffness: float  # N/m at the run's beginning, 0: rigid; it follows the wire paid out
     wire_damping: float  # N s/m
     date: float  # 0 at the first run, 1 at the last
     gear: float

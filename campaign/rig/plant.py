@@ -98,7 +98,7 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
         drive = active * dp_motor + passive * dp_passive - static
         if elastic:
             tip = speed * r.radius / r.gear + heave[k]
-            dynamic = r.wire_stiffness * stretch + r.wire_damping * (tip - load_speed)
+            dynamic = r.wire_stiffness * r.wire_out / wire_out * stretch + r.wire_damping * (tip - load_speed)
             load_speed += STEP / mass * dynamic
             stretch += STEP * (tip - load_speed)
             drive -= dynamic * r.radius / r.gear

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
-    agreed_damping,
-    denies,
     on_the_wire,
-    shared_damping,
     swinging_load,
     wire_stiffnesses,
 )
@@ -45,8 +43,8 @@ def test_the_swing_is_found_and_taken_out(length):
     tried = wire_stiffnesses(3e8, None if length is None else np.full(len(TIME), length))
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, tried, step[:, None])
-    assert swing.frequency == pytest.approx(np.sqrt(stiffness / MASS), rel=0.02)
-    assert 0.03 <= swing.damping <= 0.1
+    assert swing.mode.frequency == pytest.approx(np.sqrt(stiffness / MASS), rel=0.02)
+    assert 0.03 <= swing.mode.damping <= 0.1
     left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * step
     assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
 
@@ -62,9 +60,36 @@ def test_the_swing_follows_a_wire_that_is_paid_out_in_the_run(off, inertia):
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     step = np.sign(np.cos(0.7 * TIME))[:, None]
     swing = swinging_load(gap, everywhere, rigid, DT, MASS, lever, (stated**2 * MASS,), step, rigid[:, None])
-    assert swing.frequency == pytest.approx(stated * (1.0 + off), rel=0.002)
+    assert swing.mode.frequency == pytest.approx(stated * (1.0 + off), rel=0.002)
     left = gap + MASS * LEVER * ((1.0 + inertia) * rigid - swing.acceleration)
     assert left[500:].std() < 1.6 * noise.std()
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_a_stiffness_that_follows_the_wire_is_told_from_one_that_does_not(follows):
+    """Thirty metres paid out from two hundred: the load on a spring of EA over what is out, integrated."""
+    length = 200.0 + 30.0 * np.sin(0.05 * TIME)
+    frequency, ratio = 2.8, 0.06
+
+    def spring(t):
+        out = float(np.interp(t, TIME, length)) if follows else float(np.median(length))
+        return frequency**2 * float(np.median(length)) / out
+
+    def oscillator(t, y):
+        return [y[1], -motion(t) - 2 * ratio * frequency * y[1] - spring(t) * y[0]]
+
+    exact = solve_ivp(oscillator, (0, TIME[-1]), [0.0, 0.0], t_eval=TIME, max_step=0.01, rtol=1e-8)
+    load = -2 * ratio * frequency * exact.y[1] - np.array([spring(t) for t in TIME]) * exact.y[0]
+    gap = MASS * LEVER * (load - motion(TIME)) + 5.0 * np.random.default_rng(3).standard_normal(len(TIME))
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    stated = (frequency**2 * MASS,)
+    swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, stated, length=length)
+    assert swing.mode.follows == follows
+    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration)
+    blind = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, stated)
+    without = gap + MASS * LEVER * (motion(TIME) - blind.acceleration)
+    assert left[500:].std() < 0.08 * gap[500:].std()
+    assert not follows or left[500:].std() < 0.5 * without[500:].std()
 
 
 @pytest.mark.parametrize("share", [0.55, 0.8, 1.0, 1.25])
@@ -75,8 +100,8 @@ def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
     gap = MASS * LEVER * (load - motion(TIME)) + 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, (stated,))
-    assert swing.frequency == pytest.approx(frequency, rel=0.02)
-    assert swing.damping == pytest.approx(0.06, rel=0.2)
+    assert swing.mode.frequency == pytest.approx(frequency, rel=0.02)
+    assert swing.mode.damping == pytest.approx(0.06, rel=0.2)
 
 
 def test_noise_alone_does_not_move_the_stated_stiffness():
@@ -86,14 +111,14 @@ def test_noise_alone_does_not_move_the_stated_stiffness():
     gap = swinging + 0.7 * swinging.std() * np.random.default_rng(1).standard_normal(len(TIME))
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, (stated,))
-    assert swing.frequency == np.sqrt(stated / MASS)
+    assert swing.mode.frequency == np.sqrt(stated / MASS)
 
 
 def test_a_rigid_wire_stays_rigid():
     gap = 5.0 * np.random.default_rng(2).standard_normal(len(TIME))
     rigid = motion(TIME)
     swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (6e6,))
-    assert swing.damping == 0.0
+    assert swing.mode.damping == 0.0
     assert np.array_equal(swing.acceleration, rigid)
 
 
@@ -103,7 +128,7 @@ def test_a_delay_is_not_taken_for_a_wire():
     late = np.interp(TIME - 0.05, TIME, torque) - torque + 5.0 * np.random.default_rng(3).standard_normal(len(TIME))
     shift = np.gradient(torque)[:, None]
     swing = swinging_load(late, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (3e6,), shift)
-    assert swing.damping == 0.0
+    assert swing.mode.damping == 0.0
 
 
 def test_stretches_of_motion_have_levels_of_their_own():
@@ -113,7 +138,7 @@ def test_stretches_of_motion_have_levels_of_their_own():
     friction = np.where(np.isin(np.arange(len(TIME)), moving), 400.0 * np.sign(np.sin(0.7 * TIME)), 5e3)
     gap = MASS * LEVER * (load - rigid) + friction
     swing = swinging_load(gap, moving, rigid, DT, MASS, np.full(len(TIME), LEVER), (49.0 * MASS,))
-    assert swing.damping == pytest.approx(0.25, rel=0.05)
+    assert swing.mode.damping == pytest.approx(0.25, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -167,5 +192,5 @@ def test_a_light_load_leaves_as_much_with_a_swing_as_without_and_a_heavy_one_on_
     gap = 100.0 * np.random.default_rng(2).standard_normal(len(TIME))
     for mass, denied in ((0.02 * MASS, False), (20.0 * MASS, True)):
         swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, mass, np.full(len(TIME), LEVER), (9.0 * mass,))
-        assert swing.damping == 0.0
+        assert swing.mode.damping == 0.0
         assert denies(swing.left, 0.08) is denied

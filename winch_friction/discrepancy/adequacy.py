@@ -109,7 +109,7 @@ def of_swing(left: Sequence[tuple[PreparedRun, FloatArray]]) -> Check:
 
 
 def _untold(run: PreparedRun) -> bool:
-    frequency, damping = run.wire_mode
+    frequency, damping = run.wire_mode[:2]
     return len(run.groups) > 1 and frequency > 0.0 >= damping
 
 

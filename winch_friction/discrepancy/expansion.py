@@ -12,7 +12,8 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, agreed_damping, denies, shared_damping
+from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, shared_damping
+from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
@@ -84,7 +85,7 @@ def as_rigid(given: Given) -> Given:
 
     def rigid(run: Run, old: PreparedRun) -> PreparedRun:
         load = given.loads.get(run.name, NAN)
-        new = prepare(run, given.crane, given.model, load, mode=(old.wire_mode[0], 0.0), spikes=old.spikes)
+        new = prepare(run, given.crane, given.model, load, mode=Mode(old.wire_mode[0], 0.0), spikes=old.spikes)
         return replace(new, corrections=old.corrections)
 
     pairs = zip(given.runs, given.prepared, strict=True)
@@ -124,7 +125,7 @@ def _moved(one: Correction) -> tuple[float, Correction]:
     return step, replace(one, value=one.value + step)
 
 
-def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
+def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
     All share what damps it. If most runs that can tell agree on that closely, it is that, unless most of heave
@@ -134,16 +135,17 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[tuple[float, float]]:
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
-    ratio = shared_damping([(*run.wire_mode, _mass(run)) for run in able], [run.swing_left for run in able])
+    ratio = shared_damping([(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_left for run in able])
     told = [run for run in compensating if _slow(run, TOLD)]
     if ratio is not None and 2 * sum(_denied(run, ratio) for run in told) > len(told):
         ratio = None
-    swinging = [(*run.wire_mode, _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
+    swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
-        every = [(*run.wire_mode, _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
+        every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
         ratio = agreed_damping(swinging) or agreed_damping(every)
     return [
-        (run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0) for run in prepared
+        Mode(run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0, *run.wire_mode[2:])
+        for run in prepared
     ]
 
 
@@ -199,7 +201,7 @@ def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
     load = 0.0
     for _ in range(LOAD_ROUNDS):
         # a swinging load weighs the same in the mean, so its wire is not looked into
-        prepared = prepare(run, crane, model, load, mode=(0.0, 0.0), spikes=np.zeros(1, bool))
+        prepared = prepare(run, crane, model, load, mode=Mode(0.0, 0.0), spikes=np.zeros(1, bool))
         gap = prepared.gap[prepared.used] / (prepared.radius[prepared.used] / crane.gear_ratio * GRAVITY)
         direction = prepared.direction[prepared.used]
         sides = [np.median(gap[direction == s]) for s in (-1.0, 1.0) if (direction == s).any()]

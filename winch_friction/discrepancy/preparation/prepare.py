@@ -10,7 +10,7 @@ from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
 from winch_friction.discrepancy.preparation.motion import Motion, motion_of
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
-from winch_friction.discrepancy.preparation.wire_mode import settling_time, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.preparation.wire_mode import Mode, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -43,7 +43,7 @@ def prepare(
     load: float = float("nan"),
     accounted: Accounted | None = None,
     turning: bool = False,
-    mode: tuple[float, float] | None = None,
+    mode: Mode | None = None,
     spikes: np.ndarray | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
@@ -78,34 +78,34 @@ def prepare(
 
 
 def _on_wire(
-    balancing: Balancing, load: SuspendedLoad, mode: tuple[float, float] | None
-) -> tuple[tuple[float, float], tuple[float, ...], SuspendedLoad, Balance]:
+    balancing: Balancing, load: SuspendedLoad, mode: Mode | None
+) -> tuple[Mode, tuple[float, ...], SuspendedLoad, Balance]:
     """The wire's mode, looked for unless given, what others would leave, the load behind it and the balance with it."""
     if mode is None:
         rigid = balancing.of(load)
         mode, left = _wire_mode(balancing, load, rigid)
-        if mode[1] <= 0.0:
+        if mode.damping <= 0.0:
             return mode, left, load, rigid
-    hanging = load.on_wire(balancing.grid.dt, mode)
+    hanging = load.on_wire(balancing.grid.dt, mode, balancing.grid.columns.get("wire_out"))
     return mode, (), hanging, balancing.of(hanging)
 
 
-def _wire_mode(
-    balancing: Balancing, load: SuspendedLoad, rigid: Balance
-) -> tuple[tuple[float, float], tuple[float, ...]]:
+def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tuple[Mode, tuple[float, ...]]:
     """Frequency and damping of the load's swinging, where the wire's stiffness is known, and what other dampings would
     leave where nothing swings."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
-        return (0.0, 0.0), ()
+        return Mode(0.0, 0.0), ()
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
     swing = swinging_load(
         rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
         friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
+        length=columns.get("wire_out"),
     )  # fmt: skip
-    stated = "wire_out" in columns and swing.damping <= 0.0
-    return (float(np.sqrt(stiffnesses[0] / mass)) if stated else swing.frequency, swing.damping), swing.left
+    if "wire_out" in columns and swing.mode.damping <= 0.0:
+        return Mode(float(np.sqrt(stiffnesses[0] / mass)), 0.0), swing.left
+    return swing.mode, swing.left
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:
@@ -115,14 +115,14 @@ def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> 
     return np.column_stack([motion.speed, motion.direction * motion.speed**2, *shifts])
 
 
-def _settled(grid: Grid, mode: tuple[float, float]) -> np.ndarray:
+def _settled(grid: Grid, mode: Mode) -> np.ndarray:
     if mode[1] <= 0.0:
         return np.ones(len(grid.time), bool)
-    return np.asarray(grid.time > min(settling_time(*mode), MOST_SETTLING * grid.time[-1]))
+    return np.asarray(grid.time > min(settling_time(*mode[:2]), MOST_SETTLING * grid.time[-1]))
 
 
 def _followed(
-    grid: Grid, motion: Motion, load: SuspendedLoad, balance: Balance, crane: Crane, mode: tuple[float, float]
+    grid: Grid, motion: Motion, load: SuspendedLoad, balance: Balance, crane: Crane, mode: Mode
 ) -> np.ndarray:
     """Samples in which a slow log can follow what inertia takes: between two of them it bends by less than shows.
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.physics.signals import FloatArray
 
 
@@ -43,7 +44,7 @@ class PreparedRun:
     groups: tuple[GroupSignals, ...]
     point: tuple[Any, ...]
     gap: FloatArray
-    wire_mode: tuple[float, float]  # frequency rad/s and damping ratio of the load on its wire; 0: rigid
+    wire_mode: Mode  # of the load on its wire
     swing_left: tuple[float, ...]  # share of the gap that a swing of each damping ratio would leave, of a rigid wire
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
@@ -74,7 +75,7 @@ class PreparedRun:
 def _shared(own: Any, other: Any) -> Any:
     if isinstance(own, np.ndarray):
         return other if _same(own, other) else own
-    if isinstance(own, tuple) and isinstance(other, tuple) and len(own) == len(other):
+    if type(own) is tuple and isinstance(other, tuple) and len(own) == len(other):
         return tuple(map(_shared, own, other))
     if isinstance(own, Mapping) and isinstance(other, Mapping):
         return {name: _shared(value, other.get(name)) for name, value in own.items()}

@@ -11,12 +11,19 @@ from winch_friction.discrepancy.engine import FloatArray
 
 
 def filtered(numerator: FloatArray, denominator: FloatArray, x: FloatArray) -> FloatArray:
-    """y with sum_i denominator_i y[k-i] = sum_i numerator_i x[k-i] from rest, shape (samples,); denominator_0 is 1."""
-    right = numerator[0] * x
-    for i, weight in enumerate(numerator[1:], 1):
-        right[i:] += weight * x[:-i]
-    bands = np.empty((len(denominator), len(x)), order="F")
-    bands[:] = np.asarray(denominator)[:, None]
+    """y with sum_i denominator_i y[k-i] = sum_i numerator_i x[k-i] from rest, shape (samples,); denominator_0 is 1.
+
+    Weights are numbers, shape (order + 1,), or another at every sample k, shape (order + 1, samples).
+    """
+    over, under = (
+        np.broadcast_to(np.reshape(each, (len(each), -1)), (len(each), len(x))) for each in (numerator, denominator)
+    )
+    right = over[0] * x
+    for i, weight in enumerate(over[1:], 1):
+        right[i:] += weight[i:] * x[:-i]
+    bands = np.zeros((len(under), len(x)), order="F")
+    for i, weight in enumerate(under):
+        bands[i, : len(x) - i] = weight[i:]
     return np.asarray(dtbsv(len(denominator) - 1, bands, right, lower=1, diag=1, overwrite_x=1))
 
 

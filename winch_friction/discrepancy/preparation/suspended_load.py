@@ -10,7 +10,7 @@ import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, smooth
 from winch_friction.discrepancy.preparation.motion import Motion
-from winch_friction.discrepancy.preparation.wire_mode import on_the_wire
+from winch_friction.discrepancy.preparation.wire_mode import Mode, on_the_wire
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
@@ -48,11 +48,12 @@ class SuspendedLoad:
         """What of it the heaving crane makes, N m at the motor shaft."""
         return self.mass * self.lever * self.heave
 
-    def on_wire(self, dt: float, mode: tuple[float, float]) -> "SuspendedLoad":
-        """The load behind the wire's mode (frequency rad/s, damping ratio); as it is where the wire is rigid."""
-        if mode[1] <= 0.0:
+    def on_wire(self, dt: float, mode: Mode, length: FloatArray | None) -> "SuspendedLoad":
+        """The load behind the wire's mode, whose `length` m it may follow; as it is where the wire is rigid."""
+        if mode.damping <= 0.0:
             return self
-        moved = on_the_wire(self.acceleration, dt, *mode), on_the_wire(self.heave, dt, *mode)
+        own = (dt, mode.frequency, mode.damping, length if mode.follows else None)
+        moved = on_the_wire(self.acceleration, *own), on_the_wire(self.heave, *own)
         return replace(self, acceleration=moved[0], heave=moved[1])
 
 

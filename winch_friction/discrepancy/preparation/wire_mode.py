@@ -7,6 +7,7 @@ so; the damping is nobody's datum and is chosen by what leaves least swinging in
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,7 @@ RATIOS_NEARBY = (0.035, 0.14, 0.3)  # damping ratios by which one of them is tol
 # down to what a mode of 3 % damping rings alike for; in all 5 %, as the stiffness follows a wire that is paid out by a
 # tenth of its length: 1 % off in frequency left 0.7 bar where the noise was 0.18
 TUNING_STEPS = (1.03, 1.015, 1.0075, 1.004, 1.002)
+LENGTH_CHANGES = 0.01  # of its median: half a percent in frequency
 LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; below it the wire is taken for rigid
 # no rope is damped more: a mode that is takes a motion sensor's noise out of the acceleration; and where the wire's
 # length is unknown, a delay or a wrong inertia looks like a wire that is damped more or leaves more
@@ -32,25 +34,29 @@ SETTLED = 4.0  # decay times, down to 2 %
 NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
 # rad a sample: a mode of four samples is still told from none, and one of six has its damping told
 FOLLOWED, TOLD = 1.5, 1.0
-ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
-# times what a run leaves on a rigid wire, from where on the mode that others agree on is denied by it: less a swing too
-# small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
-# with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
-DENIED = 1.2
-MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
+
+
+class Mode(NamedTuple):
+    """The load's mode on its wire: frequency rad/s and damping ratio (0: rigid) at the run's median length.
+
+    `follows`: its stiffness is that of the wire paid out at every moment.
+    """
+
+    frequency: float
+    damping: float
+    follows: bool = False
 
 
 @dataclass(frozen=True)
 class Swing:
-    """Load acceleration m/s^2 with the wire's mode, its frequency rad/s and damping ratio (0: rigid).
+    """Load acceleration m/s^2 with the wire's mode.
 
     `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at the stated frequency;
     empty where none is stated, or the samples cannot follow it.
     """
 
     acceleration: FloatArray
-    frequency: float
-    damping: float
+    mode: Mode
     left: tuple[float, ...] = ()
 
 
@@ -64,30 +70,39 @@ def swinging_load(
     stiffnesses: Sequence[float],
     friction: FloatArray | None = None,
     hiding: FloatArray | None = None,
+    length: FloatArray | None = None,
 ) -> Swing:
     """The wire's mode that leaves least swinging in the gap.
 
     `gap` N m was made with the `rigid` acceleration m/s^2 of the load; `counts` marks the samples to judge by; `lever`
     m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft. `friction`, shape
     (samples, columns), is what a missing effect may look like: its steps at reversals must not count as swinging.
-    What is `hiding` a swing, columns as well, is beside it where nothing swings without.
+    What is `hiding` a swing, columns as well, is beside it where nothing swings without. Where the wire's `length` m is
+    known and changes, the stiffness follows it if that leaves less.
     """
 
-    def change(frequency: float, ratio: float) -> FloatArray:
-        return mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio))
+    def change(length: FloatArray | None, frequency: float, ratio: float) -> FloatArray:
+        return mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio, length))
 
     besides = [each for each in (friction, hiding) if each is not None]
-    judge = _Judge(gap, counts, change, besides)
+    judge = _Judge(gap, counts, partial(change, None), besides)
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
     first = min(len(besides), 1)
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
         if ratio > 0.0:
-            if len(frequencies) == 1:
-                frequency, ratio = _tuned(partial(judge.left, len(besides)), frequency, ratio)
-            return Swing(on_the_wire(rigid, dt, frequency, ratio), frequency, ratio)
+            if len(frequencies) > 1:
+                return Swing(on_the_wire(rigid, dt, frequency, ratio), Mode(frequency, ratio))
+            lengths: list[FloatArray | None] = [None, *([length] if _changes(length) else [])]
+            judges = [_Judge(gap, counts, partial(change, own), besides) for own in lengths]
+            tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
+            own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
+            mode = Mode(*tuned[own], lengths[own] is not None)
+            return Swing(on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own]), mode)
     stated = frequencies if len(frequencies) == 1 else ()
-    return Swing(rigid, 0.0, 0.0, tuple(judge.left(first, each, ratio) for each in stated for ratio in DAMPING_RATIOS))
+    return Swing(
+        rigid, Mode(0.0, 0.0), tuple(judge.left(first, each, ratio) for each in stated for ratio in DAMPING_RATIOS)
+    )
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
@@ -115,6 +130,13 @@ def _nearby(
     found = _best_frequency(left, first, _best_ratio(partial(left, first))[1])
     less, damped = _best_ratio(partial(left, found))
     return (less, damped, found) if less < CLEARLY_LESS * value and damped < MOST_DAMPED else (value, ratio, stated)
+
+
+def _changes(length: FloatArray | None) -> bool:
+    """Whether a wire of this length m changes by so much of it that its mode does."""
+    if length is None or float(np.min(length)) <= 0.0:
+        return False
+    return bool(np.ptp(length) > LENGTH_CHANGES * np.median(length))
 
 
 def _tuned(left: Callable[[float, float], float], frequency: float, ratio: float) -> tuple[float, float]:
@@ -200,11 +222,20 @@ class _Judge:
         return np.asarray(own - means[self._stretch])
 
 
-def on_the_wire(rigid: FloatArray, dt: float, frequency: float, ratio: float) -> FloatArray:
-    """Load acceleration behind the wire's mode (frequency rad/s, damping ratio), bilinear and exact at the mode."""
-    warped = frequency / np.tan(0.5 * frequency * dt)
+def on_the_wire(
+    rigid: FloatArray, dt: float, frequency: float, ratio: float, length: FloatArray | None = None
+) -> FloatArray:
+    """Load acceleration behind the wire's mode (frequency rad/s, damping ratio), bilinear and exact at the mode.
+
+    With the wire's `length` m at every sample the stiffness is EA over it, and the mode that at its median; the damper
+    stays what it is.
+    """
+    own: FloatArray | float = frequency
+    if length is not None:
+        own = frequency * np.sqrt(np.median(length) / length)
+    warped = own / np.tan(0.5 * own * dt)
     first = 2.0 * ratio * frequency * warped
-    square, mode = warped**2, frequency**2
+    square, mode = warped**2, own**2
     numerator = np.array([mode + first, 2.0 * mode, mode - first])
     denominator = np.array([square + first + mode, 2.0 * (mode - square), square - first + mode])
     numerator, denominator = numerator / denominator[0], denominator / denominator[0]
@@ -228,57 +259,3 @@ def wire_stiffnesses(elastic_modulus_area: float, wire_out: FloatArray | None) -
     if wire_out is not None:
         return (elastic_modulus_area / max(float(np.median(wire_out)), 1.0),)
     return tuple(elastic_modulus_area / length for length in WIRE_LENGTHS)
-
-
-def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
-    """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass).
-
-    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither, or if what
-    they agree on is damped like no wire.
-    """
-    frequency, ratio, mass = np.array(modes).T
-    if np.median(ratio) >= MOST_DAMPED:
-        return None
-    damper = 2.0 * ratio * frequency * mass  # N s/m
-    spreads = [float(np.std(np.log(each))) for each in (damper, ratio)]
-    if min(spreads) > MOST_SPREAD:
-        return None
-    if spreads[0] < spreads[1]:
-        shared = float(np.median(damper))
-        return lambda own, load: min(shared / (2.0 * own * load), 1.0)
-    steady = float(np.median(ratio))
-    return lambda _own, _load: steady
-
-
-def denies(left: Sequence[float], ratio: float) -> bool:
-    """Whether a run that rings by no mode speaks against one of this damping ratio: its gap would swing more by it.
-
-    `left` as in `Swing`. A load too light, or a run too short, to show a swing leaves as much with it as without, and
-    has no say; where nothing is known of what a mode leaves, the run stands for a rigid wire.
-    """
-    return not len(left) or float(np.interp(np.log(ratio), np.log(DAMPING_RATIOS), left)) > DENIED
-
-
-def shared_damping(
-    modes: Sequence[tuple[float, float, float]], untold: Sequence[Sequence[float]] = ()
-) -> Callable[[float, float], float] | None:
-    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if most of them agree closely.
-
-    `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. What else
-    rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs would not
-    find one damping.
-    """
-    swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
-    if len(swinging) < FEWEST_ALIKE:
-        return None
-    frequency, ratio, mass = swinging.T
-    off = [np.abs(np.log(each / np.median(each))) for each in (2.0 * ratio * frequency * mass, ratio)]
-    alike = max((each <= ALIKE for each in off), key=np.sum)
-    if alike.sum() < FEWEST_ALIKE or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
-        return None
-    agreed = agreed_damping(swinging[alike].tolist())
-    if agreed is None:
-        return None
-    rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
-    against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
-    return agreed if 2 * alike.sum() > len(swinging) + against else None

@@ -1,0 +1,68 @@
+"""What damps the wire: one damper or one damping ratio for all runs, if they agree on it."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, MOST_DAMPED
+
+ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
+# times what a run leaves on a rigid wire, from where on the mode that others agree on is denied by it: less a swing too
+# small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
+# with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
+DENIED = 1.2
+MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
+
+
+def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
+    """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass).
+
+    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither, or if what
+    they agree on is damped like no wire.
+    """
+    frequency, ratio, mass = np.array(modes).T
+    if np.median(ratio) >= MOST_DAMPED:
+        return None
+    damper = 2.0 * ratio * frequency * mass  # N s/m
+    spreads = [float(np.std(np.log(each))) for each in (damper, ratio)]
+    if min(spreads) > MOST_SPREAD:
+        return None
+    if spreads[0] < spreads[1]:
+        shared = float(np.median(damper))
+        return lambda own, load: min(shared / (2.0 * own * load), 1.0)
+    steady = float(np.median(ratio))
+    return lambda _own, _load: steady
+
+
+def denies(left: Sequence[float], ratio: float) -> bool:
+    """Whether a run that rings by no mode speaks against one of this damping ratio: its gap would swing more by it.
+
+    `left` as in `Swing`. A load too light, or a run too short, to show a swing leaves as much with it as without, and
+    has no say; where nothing is known of what a mode leaves, the run stands for a rigid wire.
+    """
+    return not len(left) or float(np.interp(np.log(ratio), np.log(DAMPING_RATIOS), left)) > DENIED
+
+
+def shared_damping(
+    modes: Sequence[tuple[float, float, float]], untold: Sequence[Sequence[float]] = ()
+) -> Callable[[float, float], float] | None:
+    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if most of them agree closely.
+
+    `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. What else
+    rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs would not
+    find one damping.
+    """
+    swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
+    if len(swinging) < FEWEST_ALIKE:
+        return None
+    frequency, ratio, mass = swinging.T
+    off = [np.abs(np.log(each / np.median(each))) for each in (2.0 * ratio * frequency * mass, ratio)]
+    alike = max((each <= ALIKE for each in off), key=np.sum)
+    if alike.sum() < FEWEST_ALIKE or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
+        return None
+    agreed = agreed_damping(swinging[alike].tolist())
+    if agreed is None:
+        return None
+    rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
+    against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
+    return agreed if 2 * alike.sum() > len(swinging) + against else None

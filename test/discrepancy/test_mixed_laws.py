@@ -12,6 +12,7 @@ from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_c
 from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
+from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
 
@@ -91,7 +92,7 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
 def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at_odds():
     def run(groups, ratio, left=()):
         return SimpleNamespace(
-            groups=[None] * groups, wire_mode=(8.0, ratio), load=np.full(3, 5e4), dt=0.05, swing_left=left
+            groups=[None] * groups, wire_mode=Mode(8.0, ratio), load=np.full(3, 5e4), dt=0.05, swing_left=left
         )
 
     sea, cycles = [run(2, ratio) for ratio in (0.05, 0.07, 0.1, 0.4)], [run(1, 0.06) for _ in range(6)]
@@ -101,3 +102,15 @@ def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at
     blurred = (0.7,) * 11  # of every damping: it swings, but reversals hide half of it
     unsure = [run(2, 0.0, blurred), run(2, 0.0, blurred)]
     assert [each[1] for each in _agreed_modes([*sea[:1], *unsure, *cycles])] == pytest.approx([0.06] * 9)
+
+
+def test_a_run_that_cannot_tell_has_a_wire_that_follows_its_length_unless_the_others_deny_it():
+    def run(ratio, follows):
+        mode = Mode(8.0, ratio, follows)
+        return SimpleNamespace(groups=[None], wire_mode=mode, load=np.full(3, 5e4), dt=0.05, swing_left=(0.7,) * 11)
+
+    untold = [run(0.0, None)] * 2
+    for told, expected in (([True] * 5, True), ([None] * 5, True), ([False] * 4 + [True], False)):
+        modes = _agreed_modes([*(run(0.06, each) for each in told), *untold])
+        assert [each.follows for each in modes] == [*told, expected, expected]
+        assert [each.damping for each in modes] == pytest.approx([0.06] * 7)

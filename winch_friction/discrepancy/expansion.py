@@ -143,10 +143,17 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
         ratio = agreed_damping(swinging) or agreed_damping(every)
+    if ratio is None:
+        return [Mode(run.wire_mode[0], 0.0) for run in prepared]
+    said = [run.wire_mode[2] for run in prepared if run.wire_mode[2] is not None]
+    follows = 2 * sum(said) >= len(said)  # as a spring's stiffness does, unless the runs that tell deny it
     return [
-        Mode(run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if ratio and _slow(run) else 0.0, *run.wire_mode[2:])
+        Mode(
+            run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if _slow(run) else 0.0,
+            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows,
+        )
         for run in prepared
-    ]
+    ]  # fmt: skip
 
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:

@@ -39,12 +39,12 @@ FOLLOWED, TOLD = 1.5, 1.0
 class Mode(NamedTuple):
     """The load's mode on its wire: frequency rad/s and damping ratio (0: rigid) at the run's median length.
 
-    `follows`: its stiffness is that of the wire paid out at every moment.
+    `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes.
     """
 
     frequency: float
     damping: float
-    follows: bool = False
+    follows: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def swinging_load(
             judges = [_Judge(gap, counts, partial(change, own), besides) for own in lengths]
             tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
             own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
-            mode = Mode(*tuned[own], lengths[own] is not None)
+            mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
             return Swing(on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own]), mode)
     stated = frequencies if len(frequencies) == 1 else ()
     return Swing(

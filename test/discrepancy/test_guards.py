@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy.assembly import Trial, _concluded
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -37,7 +38,7 @@ from winch_friction.discrepancy.proof import (
     prove,
     worse_runs,
 )
-from winch_friction.discrepancy.standing import _each_proven, _sets, outdone
+from winch_friction.discrepancy.standing import _asked, _each_proven, _sets, outdone
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
@@ -463,6 +464,47 @@ def test_a_curve_that_closes_the_locked_gap_falls_only_to_a_law_that_leaves_half
     scored = Scored(law, 1.0, 0.0, (1.0 + 2.0 * share) * noise_alone, np.zeros(40))
     selection = Selection(named, named, (Finding(CURVE, (), 0.0, 0.1, 1.0),))
     assert bool(outdone([scored], cross, selection, closed=True)) is falls
+
+
+FALLS_WITH = Law((Factor("about", "oil_temperature", (("c", 40.0),)),), True)
+LESS_WHEN_COLD = Law((Factor("below", "oil_temperature", (("c", 40.0),)),), True)
+BOTH = Law((Factor("linear", "motor_speed"), Factor("about", "oil_temperature", (("c", 40.0),))), True)
+
+
+@pytest.mark.parametrize(("cause", "law", "amount", "falls"), [
+    ("viscosity_temperature", FALLS_WITH, -1.0, False),  # thick oil drags more: what its own law could be
+    ("viscosity_temperature", FALLS_WITH, 1.0, True),  # friction that grows with the oil's warmth is no viscosity
+    ("viscosity_temperature", LESS_WHEN_COLD, 1.0, False),
+    ("viscosity_temperature", LESS_WHEN_COLD, -1.0, True),
+    ("viscosity_temperature", BOTH, -1.0, False),
+    ("viscosity_temperature", BOTH, 1.0, True),
+    ("churning", ROOT, 1.0, True),  # churning grows ever faster with the speed, a root ever slower
+    ("churning", Law((Factor("square", "motor_speed"),), True), 1.0, False),
+    ("stribeck", ROOT, 1.0, True),  # a film carries more at speed, not less
+    ("stribeck", ROOT, -1.0, False),
+    ("notch_loss", ROOT, 1.0, True),
+])  # fmt: skip
+def test_a_law_that_bends_as_no_curve_of_the_cause_may_does_not_speak_for_it(cause, law, amount, falls):
+    cross = crossfit(noise())
+    noise_alone = float(cross.problem.grams.count.sum())
+    own = next(each for each in all_candidates() if each.name == cause)
+    slot = replace(SLOTS[0], name=cause, origin=(own, None), free=True)
+    named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(slot,))
+    scored = Scored(law, amount, 0.0, 1.1 * noise_alone, np.zeros(40))
+    selection = Selection(named, named, (Finding(slot, (), 0.0, 0.1, 1.0),))
+    assert bool(outdone([scored], cross, selection, closed=True)) is falls
+
+
+@pytest.mark.parametrize(("left", "closed", "stays"), [(0.05, True, True), (0.2, True, False), (0.2, False, True)])
+def test_a_law_that_picks_runs_is_asked_where_it_leaves_next_to_nothing(left, closed, stays):
+    """Beside one name that leaves the locked runs at their floor; beside others always."""
+    cross = crossfit(noise())
+    noise_alone = float(cross.problem.grams.count.sum())
+    named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=SLOTS[:1])
+    picks = Scored(FALLS_WITH, 1.0, 0.0, (1.0 + 2.0 * left) * noise_alone, np.zeros(40))
+    other = Scored(LAG, 1.0, 0.0, 2.0 * noise_alone, np.zeros(40))
+    found = _asked(lambda without: [picks, other] if not without else [other], cross, named, closed)
+    assert (picks in found) is stays
 
 
 def test_a_second_law_of_a_cause_brings_no_other_names():

@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
+from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit
-from winch_friction.discrepancy.engine.grammar import Law, Scored
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.holdout import Split
@@ -22,7 +23,7 @@ from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide, excess
-from winch_friction.discrepancy.vocabulary import PICKING, UNLIKE_A_CURVE
+from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
 # signals of an equation by the proposals' word for them
@@ -80,15 +81,16 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
 def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
     """The trial without its names where one law that is none of theirs does by itself what they do.
 
-    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: such are
-    not asked where one name leaves the locked runs at their floor.
+    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
+    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves.
     """
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
     left = excess(search.cross, search.explanation)
     asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
     closed = len(slots) == 1 and at_the_floor(trial.holdout)
-    laws = near_laws(search, split.train, rng, PICKING if closed else ()) if asked else []
+    near = partial(near_laws, search, split.train, rng)
+    laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
     why = outdone(laws, search.cross, search.selection, closed)
     if not why:
         return trial
@@ -115,7 +117,7 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     if len(slots) == 1:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
         many = [slot for slot in rivals if _has_laws(slot, cross)]
-        own = [each.loss for each in laws if any(_could_be(each.law, slot, closed) for slot in many)]
+        own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
         if own and law.loss - cross.floor > LIMITS.outdone * (min(own) - cross.floor):
             return ""
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
@@ -123,15 +125,41 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
 
 
-def _could_be(law: Law, slot: Slot, closed: bool) -> bool:
-    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value.
+def _asked(
+    near: Callable[[Sequence[str]], list[Scored]], cross: CrossFit, named: Explanation, closed: bool
+) -> list[Scored]:
+    """The laws that a set of names is held against, `near` gives them without some kinds of factors."""
+    laws = near(())
+    surely = laws and laws[0].loss - cross.floor <= LIMITS.surely_outdone * (named.loss - cross.floor)
+    return near(PICKING) if closed and laws and not surely else laws
+
+
+def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
+    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value, bent the way
+    in which its cause's curves may bend.
 
     Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
     """
-    term = slot.origin[0].term
+    law, term = scored.law, slot.origin[0].term
     own = {_SAME.get(name, name) for name in term.reads} if term is not None else set()
     unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
-    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set())
+    bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
+    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent
+
+
+def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
+    """Whether a factor rises or falls as a cause's curves over its signal may; of what the catalogue draws no curve of
+    there is nothing to say, nor of two factors that a negative amount belongs to.
+    """
+    names = (name for name, word in _SAME.items() if word == factor.signal)
+    shapes = set().union(*(shapes_over(cause, name) for name in (factor.signal, *names)))
+    turned = scored.amount < 0.0 and (len(scored.law.factors) == 1 or factor.kind == "about")
+    rises = (factor.kind in RISING) != turned
+    if not shapes or factor.kind not in (*RISING, *FALLING):
+        return True
+    if shapes == {"convex_rising"} and factor.kind == "root" and rises:
+        return False
+    return shapes != {"falling"} if rises else "falling" in shapes
 
 
 def _has_laws(slot: Slot, cross: CrossFit) -> bool:
@@ -140,11 +168,11 @@ def _has_laws(slot: Slot, cross: CrossFit) -> bool:
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
-    """The search as it is, and with fewer names; these first where a curve is among them, whose own second order
-    otherwise passes for another effect."""
+    """The search as it is, and with fewer names; these first where a curve is among several causes, whose own second
+    order otherwise passes for another effect."""
     slots = search.selection.final.slots
     counts = range(1, len(slots)) if not any(slot.plain for slot in slots) else range(0)
-    if any(slot.free for slot in slots):
+    if any(slot.free for slot in slots) and len({slot.name for slot in slots}) > 1:
         yield from (_with_at_most(count, search, rng) for count in counts)
         yield search
     else:

@@ -73,6 +73,7 @@ class Thresholds:
     near_the_floor: float = 3.0  # times it: what an inexact law may leave; more is seen by whoever looks at the runs
     outdone: float = 0.5  # of what a name leaves, that a law which is not its own may leave for it to fall; and of what
     # a law leaves, that a curve of the same cause may leave to speak for it
+    surely_outdone: float = 0.1  # of what a name leaves: less is left by no law that only picks the right runs
     # -- the seed's claim
     seed_reach: float = 4.5  # stated deviations that the base may move while its prior is on trial
     seed_sigma: float = 3.3  # joint surprise, deviations of a normal variable: one seed in a thousand

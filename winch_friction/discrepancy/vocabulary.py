@@ -37,6 +37,7 @@ class Word:
 
 PICKING = ("about", "step", "above", "below")  # of a signal that a run has one value of, these pick some of the runs
 UNLIKE_A_CURVE = ("lag", "hump", "wave", "sector")  # what no monotone function of a signal's present value draws
+RISING, FALLING = ("linear", "root", "square", "about", "step", "above"), ("below", "fade")  # with the signal
 _SHAPES = ("linear", "root", "square", "about", "step", "above", "below", "hump", "fade", "lag")
 WORDS = (
     Word("motor_speed", "w", "rad/s", "motor_speed", lambda r: np.abs(r.speed), kinds=_SHAPES),

@@ -5,12 +5,9 @@ from typing import Any
 from winch_friction.physics.dimensions import dimension_of, product
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
-from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 from winch_friction.physics.friction.term import Scope, Term
 from winch_friction.records.strict_yaml import Section, finite
-
-_UNITS = {each.name: each.unit for each in (*WINCH_SIGNALS, *GROUP_SIGNALS)}
 
 
 def read_tables(top: Section) -> dict[str, Term]:
@@ -52,7 +49,9 @@ def _read(section: Section, name: str) -> Term:
 def _knots(section: Section, signal: str) -> tuple[float, ...]:
     values = section.need(signal)
     if not isinstance(values, list):
-        raise InputError(f"{section.where}: {signal} must be a list of values in {_UNITS.get(signal, 'SI')}")
+        raise InputError(
+            f"{section.where}: {signal} must be a list of values in {FACTORS[signal][1] if signal in FACTORS else 'SI'}"
+        )
     return tuple(finite(value, f"{section.where}: {signal}") for value in values)
 
 

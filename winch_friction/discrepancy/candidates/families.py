@@ -138,7 +138,7 @@ class Free(NamedTuple):
     knots: tuple[float, ...] = LIMITS.free_knots  # quantiles of the signal, where there is one
 
 
-SPEED, PRESSURE, SWASH, LOAD = "speed_magnitude", "pressure", "displacement", "drum_torque"
+SPEED, PRESSURE, SWASH, LOAD, FLOW = "speed_magnitude", "pressure", "displacement", "drum_torque", "flow"
 LEFT = "displacement_left"  # a test seldom holds many displacements: how a loss falls with it is given, not drawn
 CURVES = (
     Free("viscosity_temperature", ("oil_temperature",), (SPEED,), shape="falling", anchor="high", needs=OIL),
@@ -152,6 +152,7 @@ CURVES = (
     Free("high_pressure_mixed", (PRESSURE,), (), Scope.MOTOR, "convex_rising"),
     Free("churning", (SPEED,), shape="convex_rising"),
     Free("port_turbulence", (SPEED,), (SWASH,), Scope.MOTOR, "convex_rising"),
+    Free("line_pressure_drop", (FLOW,), (SWASH,), Scope.MOTOR),
     Free("gear_load_loss", (LOAD,)),
     Free("sheave_bending", (LOAD,), scope=Scope.SHAFT, presumes=("gear_load_loss",)),
     Free("case_pressure", ("pressure_sum",), (LEFT,), Scope.MOTOR, "convex_rising", "none"),
@@ -215,6 +216,16 @@ def name_of(row: Free) -> str:
     return "_".join([*parts, row.shape.partition("_")[0]] if bent.get(row.shape) else parts)
 
 
+def shapes_over(cause: str, signal: str) -> set[str]:
+    """What a cause's curves may look like over a signal: rising, falling, convex_rising; empty where it has none."""
+    return {
+        shape
+        for row in (*CURVES, *SURFACES)
+        for name, shape in zip(row.signals, row.shape.split() * len(row.signals), strict=False)
+        if (row.cause, name) == (cause, signal)
+    }
+
+
 def bending(table: Table) -> FloatArray | None:
     """Quadratic form of a curve's coefficients that grows with every change of its slope, shape (intervals,
     intervals); None for what is no curve of one signal.
@@ -258,9 +269,16 @@ def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArr
 
 
 def _values(signal: str, run: PreparedRun) -> FloatArray:
-    if signal in (PRESSURE, SWASH, LEFT, "pressure_sum"):
+    if signal in (PRESSURE, SWASH, LEFT, FLOW, "pressure_sum"):
         largest = dict(run.constants).get("max_displacement", 0.0)
-        own = [np.abs(largest - g.displacement if signal == LEFT else getattr(g, signal)) for g in run.groups]
+        own = [
+            np.abs(
+                largest - g.displacement if signal == LEFT
+                else g.count * g.displacement * run.speed if signal == FLOW
+                else getattr(g, signal)
+            )
+            for g in run.groups
+        ]  # fmt: skip
         return np.mean(own, axis=0) if own else np.zeros(len(run.time))
     index = [each.name for each in WINCH_SIGNALS].index(signal)
     return np.broadcast_to(np.asarray(run.point[index], float), run.time.shape)

@@ -217,9 +217,7 @@ def _of_fewest_causes(cross: CrossFit, current: Explanation, rng: np.random.Gene
             continue
         without, others = cross.explain(rest), {slot.name for slot in cross.problem.slots} - {s.name for s in rest}
         trials = [
-            cross.explain((*rest, slot))
-            for slot in fitted(cross, rest, others)
-            if not slot.free and (slot.name, slot.law) not in laws
+            cross.explain((*rest, slot)) for slot in fitted(cross, rest, others) if (slot.name, slot.law) not in laws
         ]
         trials = [each for each in trials if does_as_well(each, current, without, rng)]
         if trials:

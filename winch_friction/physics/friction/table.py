@@ -20,10 +20,11 @@ MOST_SIGNALS = 2
 SHAPES = ("free", "rising", "falling", "convex_rising", "windows")
 ANCHORS = ("none", "low", "high")
 SIDES = {"both": 0, "hoisting": 1, "lowering": -1}
-_SIGNALS = {each.name: each for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)}
-# what may multiply a curve: symbol or expression, and unit
-FACTORS: dict[str, tuple[sp.Expr, str]] = {name: (each.symbol, each.unit) for name, each in _SIGNALS.items()} | {
-    "displacement_left": (symbols.X - symbols.D, "m^3/rad")  # up to the largest
+# what a curve may be over, and what may multiply it: symbol or expression, and unit
+FACTORS: dict[str, tuple[sp.Expr, str]] = {
+    **{each.name: (each.symbol, each.unit) for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)},
+    "displacement_left": (symbols.X - symbols.D, "m^3/rad"),  # up to the largest
+    "flow": (symbols.n * symbols.D * symbols.w, "m^3/s"),  # that a group of motors takes, of no leaks
 }
 
 
@@ -31,12 +32,12 @@ FACTORS: dict[str, tuple[sp.Expr, str]] = {name: (each.symbol, each.unit) for na
 class Table:
     """What a tabulated term is, apart from its values.
 
-    `knots` by signal, SI, rising; `times` names `FACTORS` whose product multiplies the curve. `shape` says whether it
-    may only rise or fall with every signal, or rise ever more steeply, on beyond the last knot. `anchor`: where it is
-    zero ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its own. `unit` of the
-    curve's values; times `times` they must be N m. Over two signals `shape` and `anchor` may be two words, one per
-    signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone. `windows`: one
-    level from each odd knot to the next, nothing elsewhere.
+    `knots` by signal, one of `FACTORS`, SI, rising; `times` names those whose product multiplies the curve. `shape`
+    says whether it may only rise or fall with every signal, or rise ever more steeply, on beyond the last knot.
+    `anchor`: where it is zero ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its
+    own. `unit` of the curve's values; times `times` they must be N m. Over two signals `shape` and `anchor` may be two
+    words, one per signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone.
+    `windows`: one level from each odd knot to the next, nothing elsewhere.
     """
 
     name: str
@@ -57,7 +58,7 @@ class Table:
             raise InputError(f"table '{self.name}': {'; '.join(problems)}")
 
     def _problems(self) -> list[str]:
-        found = [f"signal '{n}' is not known" for n in self.signals if n not in _SIGNALS]
+        found = [f"signal '{n}' is not known" for n in self.signals if n not in FACTORS]
         found += [f"factor '{n}' is not known" for n in self.times if n not in FACTORS]
         if not 1 <= len(self.knots) <= MOST_SIGNALS or len(set(self.signals)) != len(self.signals):
             found.append(f"it needs one or {MOST_SIGNALS} different signals")
@@ -149,7 +150,7 @@ def _outline(form: Table) -> Term:
 def _knots(form: Table) -> list[Parameter]:
     """The knots of a table as parameters, axis by axis."""
     return [
-        Parameter(f"{form.name}_at_{name}_{k}", _SIGNALS[name].unit, 0.0, lower=float("-inf"), shape=True)
+        Parameter(f"{form.name}_at_{name}_{k}", FACTORS[name][1], 0.0, lower=float("-inf"), shape=True)
         for name, at in form.knots
         for k in range(len(at))
     ]
@@ -184,7 +185,7 @@ def _term(table: Table, equation: sp.Expr, parameters: list[Parameter], doc: str
 def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     """One level, there or not: a step up at every odd knot and down at the next."""
     name, knots = axis.signal, axis.knots
-    signal = _SIGNALS[name].symbol
+    signal = FACTORS[name][0]
     steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
     inside = sp.Add(*(step if k % 2 == 0 else -step for k, step in enumerate(steps)))
     level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
@@ -193,7 +194,7 @@ def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
 
 def _basis(axis: _Axis) -> list[sp.Expr]:
     """1 and one ramp per interval; anchored at the high end, what of each ramp is still to come."""
-    signal, knots = _SIGNALS[axis.signal].symbol, axis.knots
+    signal, knots = FACTORS[axis.signal][0], axis.knots
     if axis.shape == "convex_rising":
         top = knots[-1]
         hinges = [sp.Piecewise((0.0, signal <= a), ((signal - a) / (top - a), True)) for a in knots[:-1]]
@@ -202,7 +203,7 @@ def _basis(axis: _Axis) -> list[sp.Expr]:
     return [sp.Integer(1), *((1 - ramp for ramp in ramps) if axis.to_come else ramps)]
 
 
-def _ramp(signal: sp.Symbol, a: float, b: float) -> sp.Expr:
+def _ramp(signal: sp.Expr, a: float, b: float) -> sp.Expr:
     return sp.Piecewise((0.0, signal <= a), ((signal - a) / (b - a), signal < b), (1.0, True))
 
 

@@ -11,7 +11,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation second
 
-.PHONY: docs demo test test-nodes test-computing test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
+.PHONY: docs demo test test-nodes test-computing test-long test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 
 setup: $(READY)
 
@@ -37,7 +37,12 @@ test-nodes: $(READY)
 	$(BIN)/python -m pytest -m "ros and not slow" -n 2 --dist loadfile
 
 test-computing: $(READY)
-	nice -n 5 $(BIN)/python -m pytest -m "not ros" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+
+# more whole data sets of the kinds that `make test` holds one or some of, five minutes on two cores: before a change of
+# the gap workflow lands, and in the campaign of faults
+test-long: $(READY)
+	$(BIN)/python -m pytest -m long -n logical --maxprocesses 4
 
 lint: $(READY)
 	$(BIN)/ruff check .

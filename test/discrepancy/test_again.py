@@ -14,22 +14,26 @@ from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 
 FRESH = 0.75  # of a campaign's length: the same plant and the same plan in another sea, with other noise
+# a load, a signal, a term, a state and the oil's stiffness, each of which goes its own way into the file
 CASES = [
-    ("tare_load", "quiet"), ("pressure_offset", "rough"), ("stribeck", "si_files"), ("churning", "paper"),
-    ("inertia_error", "elastic_still"), ("swivel_offset", "quiet"), ("slip_leakage", "slow_log"),
-    ("entrained_air", "quiet"), ("accumulator_thermal", "si_files"), ("torque_ripple", "rough"),
-    ("presliding", "quiet"),
+    ("tare_load", "quiet"), ("pressure_offset", "rough"), ("churning", "paper"), ("presliding", "quiet"),
+    ("entrained_air", "quiet"),
 ]  # fmt: skip
-# the workflow once more over the same runs, for a signal, a load and a term: in the others the written
-# file is measured on them
-SAME_AGAIN = ("pressure_offset", "tare_load", "churning")
+MORE = [
+    ("stribeck", "si_files"), ("inertia_error", "elastic_still"), ("swivel_offset", "quiet"),
+    ("slip_leakage", "slow_log"), ("accumulator_thermal", "si_files"), ("torque_ripple", "rough"),
+]  # fmt: skip
+# the workflow once more over the same runs: in the others the written file is measured on them
+SAME_AGAIN = ("pressure_offset", *(effect for effect, _ in MORE))
 
 
-@pytest.mark.parametrize(("effect", "flavour"), CASES)
+@pytest.mark.parametrize(
+    ("effect", "flavour"), [*CASES, *(pytest.param(*each, marks=pytest.mark.long) for each in MORE)]
+)
 def test_the_written_model_leaves_nothing(effect, flavour, tmp_path):
     crane, first_model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     first = gap_of(4050, flavour, (effect, 1.0))
-    assert effect in {name for each in first.effects for name in (each.name, *each.rivals)}
+    assert [effect in (each.name, *each.rivals) for each in first.effects] == [True]
     model = load_model(save_model(first.model, tmp_path / "model.yaml"))
     same = runs_with(4050, flavour, (effect, 1.0))
     names = [run.name for run in first.holdout.runs]

@@ -34,7 +34,9 @@ def with_waves(run, crane, **orders):
 
 @pytest.mark.parametrize(("orders", "law", "size"), [
     ({"k3": SHARE}, ONE, ("a_d", "k_d", 3.0)),
-    ({"k1": SHARE, "k2": 0.5 * SHARE, "k3": 0.3 * SHARE}, HARMONICS, ("a_d1", "k_dh", 1.0)),
+    pytest.param(
+        {"k1": SHARE, "k2": 0.5 * SHARE, "k3": 0.3 * SHARE}, HARMONICS, ("a_d1", "k_dh", 1.0), marks=pytest.mark.long
+    ),
 ])  # fmt: skip
 def test_what_repeats_with_the_drums_turn_is_a_ripple_of_that_order(orders, law, size, crane_150t, crane2_model):
     runs = [with_waves(run, crane_150t, **orders) for run in runs_with(23, "quiet", length=1.0)]

@@ -53,16 +53,16 @@ SEGMENT = RUN * 10 + POSITION // 30
 SLOTS = (Slot("wave", "", (1,), most=50.0), Slot("other", "", (2,), most=50.0))
 
 
-def crossfit(y, features=None, other=OTHER):
+def crossfit(y, features=None, other=OTHER, slots=SLOTS, more=None):
     """One base parameter that explains a little of the noise, and two candidates."""
     rng = np.random.default_rng(99)
-    x = np.column_stack([rng.standard_normal(len(y)), WAVE, other])
+    x = np.column_stack([rng.standard_normal(len(y)), WAVE, other, *([] if more is None else [more])])
     features = {"speed": np.abs(SPEED), "acceleration": np.abs(OTHER)} if features is None else features
     blocks = Blocks(y, x, RUN, SEGMENT, np.ones_like(y), features, np.sign(SPEED), POSITION)
     one = np.ones(1)
     base = Base(("b",), 1, one, 0.0 * one, -2.0 * one, 2.0 * one)
-    bound = np.array([2.0, 100.0, 100.0])
-    layout = Layout(base, SLOTS, np.ones(3), -bound, bound)
+    bound = np.array([2.0, *[100.0] * (x.shape[1] - 1)])
+    layout = Layout(base, slots, np.ones(len(bound)), -bound, bound)
     return CrossFit(Problem(layout, blocks, grams(blocks), dict.fromkeys(range(RUNS), 1.0)))
 
 
@@ -85,6 +85,14 @@ def test_of_laws_that_are_one_over_the_runs_the_first_listed_leads(better, leads
     second = replace(explanation(np.full(40, 1.0 - better)), slots=SLOTS[1:])
     trials = [second, first]
     assert trials[_in_order(cross, current, trials)[0]].slots[-1].name == leads
+
+
+@pytest.mark.parametrize(("curve", "causes"), [(OTHER, ["wave", "wave"]), (WAVE**2, ["wave", "other"])])
+def test_a_causes_own_curve_stands_for_a_second_name_where_it_does_as_well(curve, causes):
+    """A cause whose law lies between two known ones is one cause: its curve draws what it differs by."""
+    own = (*SLOTS, Slot("wave", "", (3,), most=50.0, law="curve", free=True))
+    cross, rng = crossfit(3.0 * WAVE + OTHER + noise(), slots=own, more=curve), np.random.default_rng(1)
+    assert [slot.name for slot in select(cross, rng).final.slots] == causes
 
 
 def test_what_is_there_is_selected_alone():
@@ -387,14 +395,18 @@ class _Found(_Search):
         return self.selection.final
 
 
-@pytest.mark.parametrize(("free", "first"), [(False, ("wave", "other")), (True, ("wave",))])
-def test_with_a_curve_the_fewest_names_are_tried_first(free, first):
-    """What a curve draws wrong between its knots would otherwise pass for another effect."""
+@pytest.mark.parametrize(
+    ("free", "second", "first"),
+    [(False, "other", ["wave", "other"]), (True, "other", ["wave"]), (True, "wave", ["wave", "wave"])],
+)
+def test_with_a_curve_the_fewest_causes_are_tried_first(free, second, first):
+    """What a curve draws wrong between its knots would otherwise pass for another effect; not so a second law of its
+    own cause."""
     cross = crossfit(3.0 * WAVE + 0.5 * OTHER + noise())
-    slots = (replace(SLOTS[0], free=free), SLOTS[1])
+    slots = (replace(SLOTS[0], free=free), replace(SLOTS[1], name=second))
     selection = select(cross, np.random.default_rng(1))
     search = _Found(cross, replace(selection, final=replace(cross.explain(SLOTS), slots=slots)))
-    tried = [each.selection.final.names for each in _sets(search, np.random.default_rng(1))]
+    tried = [[slot.name for slot in each.selection.final.slots] for each in _sets(search, np.random.default_rng(1))]
     assert tried[0] == first
     assert sorted(map(len, tried)) == [1, 2]
 

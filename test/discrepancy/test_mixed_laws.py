@@ -17,6 +17,7 @@ from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
 
 
+@pytest.mark.long
 def test_a_mixture_of_two_laws_of_a_cause_is_one_name():
     found = gap_of(910, "quiet", ("layer_radius:one_layer", 1.0), ("layer_radius:rope_sinks_in", 0.7))
     assert [each.name for each in found.effects] == ["layer_radius"]

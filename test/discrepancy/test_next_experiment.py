@@ -1,6 +1,7 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
 import numpy as np
+import pytest
 
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
@@ -19,6 +20,7 @@ def recorded(scenario: str, seed: int) -> Run:
     return Run(f"{scenario}_{seed}", run.columns)
 
 
+@pytest.mark.long
 def test_running_the_proposed_scenarios_resolves_the_ambiguity():
     """Each experiment parts the two that it was proposed for, and a few of them leave the one that is there."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")

@@ -45,6 +45,7 @@ def test_an_error_of_crane_file_or_log_is_named_against_a_column_too(crane_150t,
     assert found, said
 
 
+@pytest.mark.long
 def test_a_simulation_that_lacks_nothing_is_left_alone(crane_150t, crane2_model):
     runs = [cycle(20 + k, f"run_{k}", missing=False) for k in range(10)]
     assert find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False)).verdict == "nothing_missing"

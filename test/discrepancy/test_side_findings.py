@@ -157,11 +157,11 @@ def test_a_comb_is_counted_one_line_after_the_other(seed):
 
 
 @pytest.mark.parametrize(("order", "p_value", "found"), [
-    (9.01, 1e-11, True), (0.165, 1e-11, True), (0.208, 1.2e-9, False), (13.2, 1e-11, False), (13.2, 1e-20, True),
-    (1.0, 1e-4, False),
+    (9.01, 1e-11, True), (0.165, 1e-18, True), (0.764, 7e-14, False), (13.2, 1e-11, False), (13.2, 1e-20, True),
+    (1.0, 1e-4, False), (0.02, 1e-11, True),
 ])  # fmt: skip
 def test_a_line_between_whole_orders_must_be_surer(order, p_value, found):
-    """Nothing on the shaft has 13.2 periods a turn; an encoder that beats with the sampling may."""
+    """Nothing on the shaft has 13.2 periods a turn nor 0.764; an encoder that beats with the sampling may."""
     assert Ripple(order, 0.01, 1e-4, p_value, 100.0).found is found
 
 

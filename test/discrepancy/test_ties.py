@@ -54,7 +54,7 @@ def _scaled(run, factor):
     return Run(run.name, {k: v * factor if k.endswith("displacement") else v for k, v in run.columns.items()})
 
 
-@pytest.mark.parametrize("seed", [4061, 4062])
+@pytest.mark.parametrize("seed", [4061, pytest.param(4062, marks=pytest.mark.long)])
 def test_a_gain_error_of_the_displacement_is_no_single_name(seed):
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     runs = [_scaled(run, 1.02) for run in runs_with(seed, "paper")]

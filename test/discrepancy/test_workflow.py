@@ -20,8 +20,8 @@ def test_nothing_is_missing_when_only_the_parameters_differ(seed, flavour):
 
 @pytest.mark.parametrize(
     ("effect", "flavour"),
-    [("tare_load", "quiet"), ("viscosity_temperature", "slow_log"), ("presliding", "quiet"), ("torque_ripple", "paper"),
-     ("line_pressure_drop", "si_files")],
+    [("tare_load", "quiet"), ("viscosity_temperature", "slow_log"), ("line_pressure_drop", "si_files"),
+     pytest.param("torque_ripple", "paper", marks=pytest.mark.long)],
 )  # fmt: skip
 def test_a_hidden_effect_is_named(effect, flavour):
     result = gap_of(4010, flavour, (effect, 1.0))

@@ -49,6 +49,19 @@ def test_the_curve_is_linear_between_its_knots_and_constant_beyond_them():
         assert torque == pytest.approx(11 * 100.0 * expected), celsius
 
 
+def test_a_curve_over_the_flow_reads_motors_speed_and_displacement():
+    """The same flow by other speeds gives the same pressure, and pressure times displacement is the torque."""
+    valve = Table(
+        "valve", (("flow", (0.0, 0.01, 0.03)),), "Pa", ("displacement",), Scope.MOTOR, shape="rising", anchor="low"
+    )
+    model = _model(valve, values=[0.0, 1e5, 3e5])
+    again = model_from_text(model_to_text(model))
+    for functions in (model.compile(1), again.compile(1)):
+        for w, D in ((100.0, 2e-5), (200.0, 1e-5)):  # 11 motors: 0.022 m^3/s
+            torque = functions.scalar_torque(_point(w=w, D=D), (0.0, 1e5, 3e5), ())
+            assert torque == pytest.approx(11 * D * (1e5 + 0.6 * 3e5))
+
+
 def test_scalar_arrays_and_kernel_agree():
     model = _model(WARM, SURFACE)
     functions = model.compile(1)

@@ -23,6 +23,7 @@ from winch_friction.replay.recording import replay_recording
 
 pytestmark = pytest.mark.slow
 POLICIES = Path(__file__).resolve().parents[2] / "config" / "sros2" / "policies.xml"
+SECONDS = 30  # of every phase
 LAST_RAMP = 51  # messages of 0.02 s in a ramp of 1 s
 NODES = ("compensator", "estimator", "simulator")
 # a policy may allow it although this loop shows it nowhere: the group of normal winch mode, a time that others make
@@ -46,7 +47,7 @@ def voyage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Voyage]:
     bench = Bench(out)
     os.environ["ROS_DOMAIN_ID"] = str(bench.domain)
     try:
-        plan = make_plan(out, "ahc_irregular", voyage_legs("ahc_irregular")[:2], 0.82, 40.0, 11, 1.3)
+        plan = make_plan(out, "ahc_irregular", voyage_legs("ahc_irregular")[:2], 0.82, float(SECONDS), 11, 1.3)
         plan = replace(plan, feedforwards=plan.feedforwards[2:])
         parameter_file, plan_file = plan.write()
         with running_nodes(parameter_file, out / "logs") as nodes, running_stage(plan_file, out / "logs") as stage:
@@ -74,7 +75,7 @@ def _names(bench: Bench, node: str) -> dict[str, set[str]]:
 def test_no_sample_is_lost(voyage: Voyage) -> None:
     samples = voyage.recorded["/winch/joint_states"]
     phases = len(voyage.plan.phases)
-    assert samples == phases * (50 * 40 + 1)
+    assert samples == phases * (50 * SECONDS + 1)
     # between two phases the compensator is deactivated, and says its torque's way to zero
     assert samples <= voyage.recorded["/compensator/friction_torque"] <= samples + (phases - 1) * LAST_RAMP
     assert voyage.recorded["/estimator/friction_torque"] == samples

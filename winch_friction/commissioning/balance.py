@@ -156,8 +156,8 @@ def friction_point(view: RunView) -> tuple[Any, ...]:
 
 def without_memory(model: FrictionModel | None) -> FrictionModel | None:
     """The model's terms without a state: memory averages out over blocks, and would need the whole record."""
-    if model is None:
-        return None
+    if model is None or all(term.state is None for term in model.terms):
+        return model
     names = [term.name for term in model.terms if term.state is None]
     return model.subset(names) if names else None
 

@@ -24,7 +24,7 @@ from campaign.commit import commit  # noqa: E402
 from campaign.gap_cases import QUICK, Case, Counts, all_cases  # noqa: E402
 from campaign.gap_report import write_table  # noqa: E402
 from campaign.gap_score import score  # noqa: E402
-from campaign.gap_small import beyond_prior  # noqa: E402
+from campaign.gap_small import beyond_prior, counted  # noqa: E402
 from campaign.rig import DRAWN, make_dataset, world_of, write_world  # noqa: E402
 
 FIRST_SEED = 100_000
@@ -46,9 +46,9 @@ def diagnose(case: Case) -> dict[str, Any]:
     seconds = time.perf_counter() - started
     answer = json.loads(json.dumps(result.content()))
     judged = score(case, answer)
-    if case.kind == "single" and case.effects[0][1] < 1.0:
-        judged["beyond"] = beyond_prior(case, judged["floor"])
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    if counted(case.kind, case.effects):
+        judged["beyond"] = beyond_prior(case, judged["floor"])
     return {
         "key": case.key,
         "kind": case.kind,

@@ -9,6 +9,7 @@ noise floor, nobody can call it missing: a seed model that is so far off does th
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from campaign.gap_cases import Case
 from campaign.rig import make_dataset
 
 PRIOR = 2.0  # standard deviations
+LAWS = ("law", "held_out", "drawn_law")
 THIN = 10  # samples: a trace has nothing faster than a friction that turns over
 
 
@@ -60,13 +62,17 @@ def beyond_prior(case: Case, floor: float) -> dict[str, Any]:
     return {"trace": trace, "left": left, "exceeds": left > floor}
 
 
+def counted(kind: str, effects: Sequence[tuple[str, float]]) -> bool:
+    """Whether the arithmetic belongs to a kind of case: small effects, and the laws over drawn cranes."""
+    return kind in LAWS or (kind == "single" and effects[0][1] < 1.0)
+
+
 def main() -> None:
-    """Add the arithmetic to the results of small effects that lack it; the others stay as they are."""
+    """Add the arithmetic to the results that lack it; the others stay as they are."""
     path = Path(sys.argv[1])
     rows = [json.loads(line) for line in path.read_text().splitlines()]
     for row in rows:
-        small = row["kind"] == "single" and "error" not in row and row["effects"][0][1] < 1.0
-        if small and "beyond" not in row:
+        if counted(row["kind"], row["effects"]) and "error" not in row and "beyond" not in row:
             case = Case(row["kind"], tuple(map(tuple, row["effects"])), row["flavour"], row["seed"])
             row["beyond"] = beyond_prior(case, row["floor"])
             print(f"{row['key']}: {row['beyond']}", flush=True)

@@ -95,6 +95,18 @@ def test_a_causes_own_curve_stands_for_a_second_name_where_it_does_as_well(curve
     assert [slot.name for slot in select(cross, rng).final.slots] == causes
 
 
+def test_a_bent_law_that_takes_of_a_second_effect_is_no_dead_end():
+    """No exchange of one for one leads from the bent law and a decoy to the two that are there."""
+    third = np.tile(np.sin(np.linspace(0.0, 57.0, BLOCKS)), RUNS)
+    more = np.column_stack([WAVE + 0.06 * OTHER + 0.06 * third, 0.25 * OTHER - 0.7 * third])
+    slots = (
+        *(replace(slot, most=200.0) for slot in SLOTS),
+        Slot("wave", "", (3,), most=200.0, law="bent"), Slot("decoy", "", (4,), most=200.0),
+    )  # fmt: skip
+    cross, rng = crossfit(80.0 * WAVE + 8.0 * OTHER + noise(), slots=slots, more=more), np.random.default_rng(1)
+    assert [(slot.name, slot.law) for slot in select(cross, rng).final.slots] == [("wave", ""), ("other", "")]
+
+
 def test_what_is_there_is_selected_alone():
     selection, verdict = answer(2.0 * WAVE + noise())
     assert [each.slot.name for each in selection.found] == ["wave"]

@@ -22,7 +22,7 @@ from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leave
 from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide, excess
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
@@ -64,13 +64,13 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     it is where that does not end in a proven name that leaves surely less."""
     given = trial.search
     named = given.verdict.kind in (MISSING, AMBIGUOUS)
-    left = excess(given.cross, given.explanation)
+    left = given.cross.excess(given.explanation)
     if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
         return trial
     search = search_runs(split, given.given, options, rng, surfaces=True)
     if not search.selection.found:
         return trial
-    if named and excess(search.cross, search.selection.final) > LIMITS.outdone * left:
+    if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
         return trial
     other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
@@ -86,7 +86,7 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     """
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
-    left = excess(search.cross, search.explanation)
+    left = search.cross.excess(search.explanation)
     asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
     closed = len(slots) == 1 and at_the_floor(trial.holdout)
     near = partial(near_laws, search, split.train, rng)

@@ -39,7 +39,7 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it")
-    whole, whole_before = excess(cross, selection.final), max(excess(cross, selection.base), 1e-9)
+    whole, whole_before = cross.excess(selection.final), max(cross.excess(selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)
     if keeps_something(after, before, depends) or elsewhere:
@@ -47,11 +47,6 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
         names = ", ".join(selection.final.names)
         return Verdict(UNEXPLAINED, f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor")
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
-
-
-def excess(cross: CrossFit, explanation: Explanation) -> float:
-    """What an explanation leaves of held-out blocks above the noise and what matters to nobody, per noise variance."""
-    return (explanation.loss - cross.floor) / float(cross.problem.grams.count.sum())
 
 
 def telling(cross: CrossFit, left: Sequence[Dependence]) -> list[Dependence]:

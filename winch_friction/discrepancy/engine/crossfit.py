@@ -59,6 +59,11 @@ class CrossFit:
         """Loss of an explanation that leaves the noise and what matters to nobody."""
         return float(self.problem.grams.count.sum()) + self.unresolved
 
+    def excess(self, explanation: "Explanation") -> float:
+        """What an explanation leaves of held-out blocks above the noise and what matters to nobody, per noise
+        variance."""
+        return (explanation.loss - self.floor) / float(self.problem.grams.count.sum())
+
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
         """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)

@@ -63,6 +63,12 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
         if _no_worse(together, current, rng):
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
+    for start in _by_own_law(cross, current):
+        others = ([], {})
+        anew = _whole(cross, _forward(cross, base, start, rng, most, *others), rng)
+        if _far_less(cross, anew, current):
+            current, p_values = anew, p_values | others[1]
+            considered += others[0]
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
     return Selection(base, current, _one_set_each(found), tuple(considered))
 
@@ -134,6 +140,24 @@ def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator
     plain = [slot for slot in cross.problem.slots if slot.plain and not slot.brings]
     best = {slot.name: slot for slot in sorted(plain, key=lambda each: -cross.train_loss((each,))[0])}
     return _pruned(cross, cross.explain(tuple(best.values())), rng) if len(best) > 1 else base
+
+
+def _by_own_law(cross: CrossFit, current: Explanation) -> list[Explanation]:
+    """Where a set leaves more than noise and its first cause has another law than the catalogue's own: that one alone,
+    to begin from. A bent law takes what belongs to a second effect, and no exchange of one for one finds back.
+    """
+    if not current.slots or not current.slots[0].law or cross.excess(current) <= LIMITS.least_excess:
+        return []
+    first = current.slots[0]
+    own = [slot for slot in cross.problem.slots if slot.name == first.name and not slot.law and not slot.plain]
+    trials = [cross.explain((slot,)) for slot in own]
+    return [min(trials, key=lambda each: each.loss)] if trials else []
+
+
+def _far_less(cross: CrossFit, anew: Explanation, current: Explanation) -> bool:
+    """Whether a set of no more names leaves half of what another does at most, or one of more leaves noise."""
+    few = len(anew.slots) <= len(current.slots) or cross.excess(anew) <= LIMITS.least_excess
+    return few and anew.loss - cross.floor <= LIMITS.outdone * (current.loss - cross.floor)
 
 
 def _no_worse(plain: Explanation, other: Explanation, rng: np.random.Generator) -> bool:

@@ -28,6 +28,7 @@ from winch_friction.discrepancy.engine.selection import (
     select,
 )
 from winch_friction.discrepancy.engine.trials import heads
+from winch_friction.discrepancy.outdone import _asked, outdone
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -38,7 +39,7 @@ from winch_friction.discrepancy.proof import (
     prove,
     worse_runs,
 )
-from winch_friction.discrepancy.standing import _asked, _each_proven, _sets, outdone
+from winch_friction.discrepancy.standing import _each_proven, _sets
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
@@ -507,8 +508,11 @@ BOTH = Law((Factor("linear", "motor_speed"), Factor("about", "oil_temperature", 
     ("stribeck", ROOT, 1.0, True),  # a film carries more at speed, not less
     ("stribeck", ROOT, -1.0, False),
     ("notch_loss", ROOT, 1.0, True),
+    ("tare_load", Law((Factor("linear", "wire_out"),), False), 1.0, False),  # the rope's own weight
+    ("tare_load", Law((Factor("linear", "wire_out"),), True), 1.0, True),  # which opposes no motion
+    ("tare_load", Law((Factor("linear", "drum_torque"),), False), 1.0, True),
 ])  # fmt: skip
-def test_a_law_that_bends_as_no_curve_of_the_cause_may_does_not_speak_for_it(cause, law, amount, falls):
+def test_a_law_that_acts_or_bends_as_the_cause_may_not_does_not_speak_for_it(cause, law, amount, falls):
     cross = crossfit(noise())
     noise_alone = float(cross.problem.grams.count.sum())
     own = next(each for each in all_candidates() if each.name == cause)

@@ -73,6 +73,14 @@ def test_the_blurred_travel_is_that_of_three_samples(rate):
 
 
 @pytest.mark.long
+def test_of_several_names_the_one_whose_own_law_does_it_all_stays():
+    """The rope's weight under 13 bar of gap: inertia_error beside it only mended its second order."""
+    result, _ = _answer("law", 16_000_270, ("tare_load:rope_paid_out", 1.0))
+    assert [effect.name for effect in result.effects] == ["tare_load"]
+    assert result.holdout.size_after.value < 0.1 * result.holdout.size_before.value
+
+
+@pytest.mark.long
 def test_what_a_squeezed_oil_does_after_a_reversal_is_no_dwell():
     """Air in the oil, logged at 200 Hz: a tenth of the error after reversals, a quarter of what is above the noise."""
     case = next(each for each in all_cases(False) if each.seed == 300035)

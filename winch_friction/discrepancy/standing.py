@@ -1,33 +1,23 @@
-"""Which names stand: those that the locked runs bear out, no more of them than it takes, and none where one law does
-what they do together.
-"""
+"""Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
-from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
-from winch_friction.discrepancy.proposals import near_laws
-from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
-from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
-# signals of an equation by the proposals' word for them
-_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 _TrialOf = Callable[[Search], Trial]
 
 
@@ -36,14 +26,14 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     samples, or with none."""
     search = _replicated(search, split, rng)
     trial_of = partial(tried, split, crane, options, rng=rng)
-    refit = trial_of(_nameless(search))
+    refit = trial_of(nameless(search))
     whys = []
     for each in _sets(search, rng):
-        full, why = _stands(each, refit, trial_of, rng)
+        full, why = stands(each, refit, trial_of, rng)
         if full is not None:
             return _each_proven(full, refit, trial_of, rng)
         whys.append(why)
-    beside = replace(_nameless(search), ripple=search.ripple, flow=search.flow)
+    beside = replace(nameless(search), ripple=search.ripple, flow=search.flow)
     if search.ripple or search.flow:
         trial = trial_of(beside)
         if not worse_runs(trial.holdout, rng):
@@ -51,120 +41,12 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
     if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
         # little data may lead a refit astray where the model that was given leaves nothing
-        given = as_given(split, options, _nameless(search), rng)
+        given = as_given(split, options, nameless(search), rng)
         if at_the_floor(given.holdout):
             return replace(given, search=replace(given.search, verdict=Verdict(NOTHING)))
     # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
     harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)
     return as_given(split, options, judged.search, rng) if harmful else judged
-
-
-def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
-    it is where that does not end in a proven name that leaves surely less."""
-    given = trial.search
-    named = given.verdict.kind in (MISSING, AMBIGUOUS)
-    left = given.cross.excess(given.explanation)
-    if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
-        return trial
-    search = search_runs(split, given.given, options, rng, surfaces=True)
-    if not search.selection.found:
-        return trial
-    if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
-        return trial
-    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
-        return trial
-    return other if not named or adds(trial.holdout, other.holdout, rng) else trial
-
-
-def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """The trial without its names where one law that is none of theirs does by itself what they do.
-
-    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
-    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves.
-    """
-    search = trial.search
-    slots = [slot for slot in search.explanation.slots if not slot.plain]
-    left = search.cross.excess(search.explanation)
-    asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
-    closed = len(slots) == 1 and at_the_floor(trial.holdout)
-    near = partial(near_laws, search, split.train, rng)
-    laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
-    why = outdone(laws, search.cross, search.selection, closed)
-    if not why:
-        return trial
-    refit = tried(split, crane, options, _nameless(search), rng)
-    return replace(refit, search=_unexplained(refit.search, why, rng))
-
-
-def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:
-    """Why names do not stand beside a law of the grammar; empty where they do.
-
-    Several names, and a curve, fall where one law does as much; one name of a given law, or one that has `closed` the
-    locked gap down to its floor, only where the other takes half of what it leaves. A law that a name's own could be
-    speaks for it, if the first of the `laws` does not take half of what that one leaves.
-    """
-    named = selection.final
-    slots = [slot for slot in named.slots if not slot.plain]
-    if not laws or not slots:
-        return ""
-    law = laws[0]
-    given = len(slots) == 1 and not slots[0].free
-    share = LIMITS.outdone if given or closed else 1.0
-    if law.loss - cross.floor > share * (named.loss - cross.floor):
-        return ""
-    if len(slots) == 1:
-        rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
-        many = [slot for slot in rivals if _has_laws(slot, cross)]
-        own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
-        if own and law.loss - cross.floor > LIMITS.outdone * (min(own) - cross.floor):
-            return ""
-    names = " and ".join(dict.fromkeys(slot.name for slot in slots))
-    together = "together " if len(slots) > 1 else ""
-    return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
-
-
-def _asked(
-    near: Callable[[Sequence[str]], list[Scored]], cross: CrossFit, named: Explanation, closed: bool
-) -> list[Scored]:
-    """The laws that a set of names is held against, `near` gives them without some kinds of factors."""
-    laws = near(())
-    surely = laws and laws[0].loss - cross.floor <= LIMITS.surely_outdone * (named.loss - cross.floor)
-    return near(PICKING) if closed and laws and not surely else laws
-
-
-def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
-    """Whether a law may be what a name's own term draws: of signals that it reads, of their present value, bent the way
-    in which its cause's curves may bend.
-
-    Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
-    """
-    law, term = scored.law, slot.origin[0].term
-    own = {_SAME.get(name, name) for name in term.reads} if term is not None else set()
-    unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
-    bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
-    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent
-
-
-def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
-    """Whether a factor rises or falls as a cause's curves over its signal may; of what the catalogue draws no curve of
-    there is nothing to say, nor of two factors that a negative amount belongs to.
-    """
-    names = (name for name, word in _SAME.items() if word == factor.signal)
-    shapes = set().union(*(shapes_over(cause, name) for name in (factor.signal, *names)))
-    turned = scored.amount < 0.0 and (len(scored.law.factors) == 1 or factor.kind == "about")
-    rises = (factor.kind in RISING) != turned
-    if not shapes or factor.kind not in (*RISING, *FALLING):
-        return True
-    if shapes == {"convex_rising"} and factor.kind == "root" and rises:
-        return False
-    return shapes != {"falling"} if rises else "falling" in shapes
-
-
-def _has_laws(slot: Slot, cross: CrossFit) -> bool:
-    """Whether its cause is known under more laws than one: viscous friction of another power is no viscous friction."""
-    return slot.free or len({each.law for each in cross.problem.slots if each.name == slot.name}) > 1
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
@@ -173,14 +55,14 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
     slots = search.selection.final.slots
     counts = range(1, len(slots)) if not any(slot.plain for slot in slots) else range(0)
     if any(slot.free for slot in slots) and len({slot.name for slot in slots}) > 1:
-        yield from (_with_at_most(count, search, rng) for count in counts)
+        yield from (with_at_most(count, search, rng) for count in counts)
         yield search
     else:
         yield search
-        yield from (_with_at_most(count, search, rng) for count in reversed(counts))
+        yield from (with_at_most(count, search, rng) for count in reversed(counts))
 
 
-def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
+def with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
     """The best with so many names, judged anew."""
     cross, selection = search.cross, select(search.cross, rng, count)
     left = dependences(cross, cross.remainder(selection.final), rng)
@@ -188,7 +70,7 @@ def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Searc
     return replace(search, selection=selection, verdict=verdict, left=tuple(left))
 
 
-def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
+def stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
     """The trial of a set of names where the locked runs bear it out, otherwise why not."""
     slots = search.explanation.slots
     if not slots and not search.reversal:
@@ -268,7 +150,7 @@ def _of(search: Search, selection: Selection) -> Search:
     return replace(search, selection=selection, verdict=verdict)
 
 
-def _nameless(search: Search) -> Search:
+def nameless(search: Search) -> Search:
     """The search without any name."""
     selection = replace(search.selection, final=search.selection.base, found=())
     return replace(search, selection=selection, reversal=None, ripple=None, flow=())
@@ -282,10 +164,10 @@ def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
     after, noise = trial.holdout.size_after.value, trial.holdout.noise_floor
     kept = f"the locked runs keep {after:.3g} where their noise is {noise:.3g}"
-    return _unexplained(search, "; ".join(filter(None, (why, kept))), rng)
+    return unexplained(search, "; ".join(filter(None, (why, kept))), rng)
 
 
-def _unexplained(search: Search, why: str, rng: np.random.Generator) -> Search:
+def unexplained(search: Search, why: str, rng: np.random.Generator) -> Search:
     """The search with the signals that its gap depends on."""
     left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
     return replace(search, verdict=Verdict(UNEXPLAINED, why), left=tuple(left))

@@ -12,12 +12,13 @@ from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.holdout import Split, lock_holdout
 from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.outdone import by_surfaces, not_one_law
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import against_simulations
 from winch_friction.discrepancy.proposals import propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.seed_claim import try_seed, widened
-from winch_friction.discrepancy.standing import by_surfaces, not_one_law, standing
+from winch_friction.discrepancy.standing import standing
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel

@@ -140,6 +140,7 @@ class Candidate:
     free: bool = False  # a monotone curve through the data instead of a law of the literature
     # -- when it is looked for
     needs: tuple[str, ...] = ()  # run columns
+    varies_with: tuple[str, ...] = ()  # of what is no term: the signals that alone may show its torque
     presumes: tuple[str, ...] = ()  # terms of which the model must have one
     hydraulic: bool = False  # speaks of pressures or displacement
     blind: Blind | None = None  # (need, reason) where the runs cannot show it for a reason of its own
@@ -155,6 +156,16 @@ class Candidate:
     shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
     corrects: Corrects | None = None  # how its estimates become corrections of the repaired model
     merge: Merge | None = None  # how its term melts with the same term of another shape; None: values add
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Signals whose present values its torque depends on."""
+        return self.varies_with if self.term is None else tuple(self.term.reads)
+
+    @property
+    def opposing(self) -> bool:
+        """Whether it opposes the motion; a wrong signal, load or radius acts one way."""
+        return self.term is not None and self.term.opposing
 
     def scale(self, parameter: Parameter, sizes: Mapping[str, float]) -> float:
         """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""

@@ -134,6 +134,7 @@ def geometry_candidates() -> list[Candidate]:
             _tare_shapes,
             kind="load",
             needs=("hook_load",),
+            varies_with=("wire_out",),
             corrects=_to_mass,
         ),
         Candidate(
@@ -144,6 +145,7 @@ def geometry_candidates() -> list[Candidate]:
             _radius_shapes,
             kind="geometry",
             needs=("hook_load",),
+            varies_with=("drum_torque", "wire_layer"),
             plain=True,
             corrects=_to_radius,
         ),

@@ -516,7 +516,7 @@ def test_a_law_that_acts_or_bends_as_the_cause_may_not_does_not_speak_for_it(cau
     cross = crossfit(noise())
     noise_alone = float(cross.problem.grams.count.sum())
     own = next(each for each in all_candidates() if each.name == cause)
-    slot = replace(SLOTS[0], name=cause, origin=(own, None), free=True)
+    slot = replace(SLOTS[0], name=cause, origin=(own, None), free=own.term is not None)
     named = replace(explanation(np.full(40, 3.0 * noise_alone / 40)), slots=(slot,))
     scored = Scored(law, amount, 0.0, 1.1 * noise_alone, np.zeros(40))
     selection = Selection(named, named, (Finding(slot, (), 0.0, 0.1, 1.0),))

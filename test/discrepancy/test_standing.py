@@ -73,7 +73,7 @@ def test_the_blurred_travel_is_that_of_three_samples(rate):
 
 
 @pytest.mark.long
-def test_of_several_names_the_one_whose_own_law_does_it_all_stays():
+def test_the_ropes_own_weight_speaks_for_a_tare():
     """The rope's weight under 13 bar of gap: inertia_error beside it only mended its second order."""
     result, _ = _answer("law", 16_000_270, ("tare_load:rope_paid_out", 1.0))
     assert [effect.name for effect in result.effects] == ["tare_load"]

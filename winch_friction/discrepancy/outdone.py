@@ -17,7 +17,7 @@ from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import search_runs
-from winch_friction.discrepancy.standing import nameless, standing, stands, unexplained, with_at_most
+from winch_friction.discrepancy.standing import nameless, standing, unexplained
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
@@ -62,13 +62,7 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     why = outdone(laws, search.cross, search.selection, closed)
     if not why:
         return trial
-    trial_of = partial(tried, split, crane, options, rng=rng)
-    refit = trial_of(nameless(search))
-    if len(slots) > 1 and any(_could_be(laws[0], slot, closed) for slot in slots):
-        # the law is one name's own: what stands beside it only mends its second order
-        alone, _ = stands(with_at_most(1, search, rng), refit, trial_of, rng)
-        if alone is not None and not outdone(laws, search.cross, alone.search.selection):
-            return alone
+    refit = tried(split, crane, options, nameless(search), rng)
     return replace(refit, search=unexplained(refit.search, why, rng))
 
 

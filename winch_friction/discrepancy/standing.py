@@ -29,7 +29,7 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     refit = trial_of(nameless(search))
     whys = []
     for each in _sets(search, rng):
-        full, why = stands(each, refit, trial_of, rng)
+        full, why = _stands(each, refit, trial_of, rng)
         if full is not None:
             return _each_proven(full, refit, trial_of, rng)
         whys.append(why)
@@ -55,14 +55,14 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
     slots = search.selection.final.slots
     counts = range(1, len(slots)) if not any(slot.plain for slot in slots) else range(0)
     if any(slot.free for slot in slots) and len({slot.name for slot in slots}) > 1:
-        yield from (with_at_most(count, search, rng) for count in counts)
+        yield from (_with_at_most(count, search, rng) for count in counts)
         yield search
     else:
         yield search
-        yield from (with_at_most(count, search, rng) for count in reversed(counts))
+        yield from (_with_at_most(count, search, rng) for count in reversed(counts))
 
 
-def with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
+def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
     """The best with so many names, judged anew."""
     cross, selection = search.cross, select(search.cross, rng, count)
     left = dependences(cross, cross.remainder(selection.final), rng)
@@ -70,7 +70,7 @@ def with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search
     return replace(search, selection=selection, verdict=verdict, left=tuple(left))
 
 
-def stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
+def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
     """The trial of a set of names where the locked runs bear it out, otherwise why not."""
     slots = search.explanation.slots
     if not slots and not search.reversal:

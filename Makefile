@@ -37,7 +37,7 @@ test-nodes: $(READY)
 	$(BIN)/python -m pytest -m "ros and not slow" -n 2 --dist loadfile
 
 test-computing: $(READY)
-	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n $$(( $$(nproc) < 3 ? $$(nproc) + 1 : 4 )) --dist loadfile --no-loadscope-reorder
 
 # more whole data sets of the kinds that `make test` holds one or some of, five minutes on two cores: before a change of
 # the gap workflow lands, and in the campaign of faults

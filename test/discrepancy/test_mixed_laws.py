@@ -26,6 +26,7 @@ def test_a_mixture_of_two_laws_of_a_cause_is_one_name():
     assert len(found.effects[0].parameters) > 1  # the step of the layers, and what the load does
 
 
+@pytest.mark.long
 def test_a_long_delay_is_taken_out_of_the_runs():
     found = gap_of(911, "elastic_still", ("signal_delay:longer", 1.3))
     assert names_of(found) == [{"signal_delay"}]

@@ -38,7 +38,7 @@ def test_what_the_simulation_lacks_is_named_whatever_its_own_friction(crane_150t
     assert gap["after"] < 0.3 * gap["before"]
 
 
-@pytest.mark.parametrize("effect", ["inertia_error", "tare_load"])
+@pytest.mark.parametrize("effect", [pytest.param("inertia_error", marks=pytest.mark.long), "tare_load"])
 def test_an_error_of_crane_file_or_log_is_named_against_a_column_too(crane_150t, crane2_model, effect):
     """A correction changes what is right for the winch, and not what was simulated: the proof must see it."""
     found, said = named(effect, 9000, True, crane_150t, crane2_model)

@@ -55,6 +55,7 @@ def test_a_zero_that_is_off_in_some_runs_is_named_and_the_file_says_when(pattern
     assert again.verdict == "nothing_missing"
 
 
+@pytest.mark.long
 def test_a_brake_that_hangs_in_some_runs_is_named():
     """The rig's own, on a crane that it draws: which runs the brake hangs in is drawn there as well."""
     said = diagnose(Case("law", (("brake_drag:some_runs", 1.0),), DRAWN, SEED, (0.0, 1.5)))

@@ -22,7 +22,13 @@ def _data(flavour, seed, *effects):
     return runs, [prepare(run, crane, model) for run in runs]
 
 
-@pytest.mark.parametrize(("flavour", "seed"), [("quiet", 17), ("slow_log", 18), (DRAWN, 8_000_278), (DRAWN, 26)])
+CRANES = [
+    ("quiet", 17), (DRAWN, 8_000_278),
+    *(pytest.param(*each, marks=pytest.mark.long) for each in (("slow_log", 18), (DRAWN, 26))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("flavour", "seed"), CRANES)
 def test_the_volume_of_the_air_is_found(flavour, seed):
     runs, prepared = _data(flavour, seed, ("entrained_air", 1.0))
     found = free_air(runs, prepared)
@@ -31,7 +37,7 @@ def test_the_volume_of_the_air_is_found(flavour, seed):
     assert found.volume == pytest.approx(0.01 * world_of(seed, flavour).line_volume, rel=0.3)
 
 
-@pytest.mark.parametrize(("flavour", "seed"), [("quiet", 17), ("slow_log", 18), (DRAWN, 8_000_278), (DRAWN, 26)])
+@pytest.mark.parametrize(("flavour", "seed"), CRANES)
 @pytest.mark.parametrize("effect", [None, "signal_delay", "pressure_offset", "presliding"])
 def test_nothing_else_is_air(flavour, seed, effect):
     runs, prepared = _data(flavour, seed, *([(effect, 1.0)] if effect else []))

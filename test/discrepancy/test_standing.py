@@ -50,6 +50,7 @@ def test_what_is_imitated_after_reversals_by_an_implausible_size_is_no_effect():
     assert result.verdict == "nothing_missing"
 
 
+@pytest.mark.long
 def test_a_refit_that_harms_the_locked_runs_is_not_written():
     result, given = _answer("drawn_outside", 9_400_007, ("cold_load_grip", 1.0))
     assert result.verdict == "unexplained"

@@ -15,7 +15,7 @@ import numpy as np
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Shapes, label_of
 from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, no_load, term_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.dimensions import quotient_unit
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
@@ -270,15 +270,15 @@ def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArr
 
 def _values(signal: str, run: PreparedRun) -> FloatArray:
     if signal in (PRESSURE, SWASH, LEFT, FLOW, "pressure_sum"):
-        largest = dict(run.constants).get("max_displacement", 0.0)
-        own = [
-            np.abs(
-                largest - g.displacement if signal == LEFT
-                else g.count * g.displacement * run.speed if signal == FLOW
-                else getattr(g, signal)
-            )
-            for g in run.groups
-        ]  # fmt: skip
+        own = [np.abs(_of_group(signal, g, run)) for g in run.groups]
         return np.mean(own, axis=0) if own else np.zeros(len(run.time))
     index = [each.name for each in WINCH_SIGNALS].index(signal)
     return np.broadcast_to(np.asarray(run.point[index], float), run.time.shape)
+
+
+def _of_group(signal: str, group: GroupSignals, run: PreparedRun) -> FloatArray:
+    if signal == LEFT:
+        return dict(run.constants).get("max_displacement", 0.0) - group.displacement
+    if signal == FLOW:
+        return group.count * group.displacement * run.speed
+    return np.asarray(getattr(group, signal))

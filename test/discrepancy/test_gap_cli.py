@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from gap_rig import runs_with
 
+from winch_friction.cli.gap import _parameters
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -139,3 +140,13 @@ def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_pat
     assert winch_friction(["gap", str(tmp_path / "run.csv"), "--out", str(tmp_path / "out")]) == 2
     assert "no --crane and no --model were given" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
+    size = {"value": 3.0, "std": 0.1, "unit": "Pa"}
+    found = {"R_line": size, "free_line_pressure_drop_displacement_1": size}
+    assert (
+        _parameters({"law_kind": "free", "parameters": found})
+        == "R_line = 3 Pa, a curve (in the page and in model.yaml)"
+    )
+    assert _parameters({"law_kind": "literature", "parameters": {"free_play": size}}) == "free_play = 3 Pa"

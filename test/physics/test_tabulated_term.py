@@ -9,7 +9,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
 from winch_friction.physics.friction.compiled import compiled
 from winch_friction.physics.friction.symbols import layout
-from winch_friction.physics.friction.table import Table, outlined, tabulated
+from winch_friction.physics.friction.table import Table, at_knots, outlined, tabulated
 from winch_friction.records.model_file import model_from_text, model_to_text
 
 WARM = Table(
@@ -60,6 +60,22 @@ def test_a_curve_over_the_flow_reads_motors_speed_and_displacement():
         for w, D in ((100.0, 2e-5), (200.0, 1e-5)):  # 11 motors: 0.022 m^3/s
             torque = functions.scalar_torque(_point(w=w, D=D), (0.0, 1e5, 3e5), ())
             assert torque == pytest.approx(11 * D * (1e5 + 0.6 * 3e5))
+
+
+@pytest.mark.parametrize(("shape", "anchor"), [
+    ("rising", "low"), ("rising", "none"), ("falling", "high"), ("falling", "low"), ("convex_rising", "none"),
+    ("convex_rising", "low"), ("free", "none"),
+])  # fmt: skip
+def test_the_values_at_the_knots_are_those_of_the_term(shape, anchor):
+    table = Table(
+        "curve", (("oil_temperature", (20.0, 35.0, 60.0)),), "N*m", (), Scope.SHAFT, shape=shape, anchor=anchor
+    )
+    matrix = at_knots(table)
+    rises = np.linspace(0.5, 2.0, matrix.shape[1]) * (-1.0 if (shape, anchor) == ("falling", "low") else 1.0)
+    model = FrictionModel("m", (tabulated(table),), tuple(rises))
+    functions = model.compile(1)
+    found = [functions.scalar_torque(_point(w=1.0, celsius=at), tuple(rises), ()) for at in (20.0, 35.0, 60.0)]
+    np.testing.assert_allclose(matrix @ rises, found, rtol=1e-12)
 
 
 def test_scalar_arrays_and_kernel_agree():

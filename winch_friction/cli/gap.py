@@ -199,6 +199,13 @@ def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
         write_addition(out / "addition.csv", sides, result.seed_model, result.model)
 
 
+def _parameters(effect: dict[str, Any]) -> str:
+    """Values with units; of a curve that the data drew only that it is one: its rises by themselves say little."""
+    of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
+    said = [f"{k} = {p['value']:.3g} {p['unit']}" for k, p in effect["parameters"].items() if k not in of_curve]
+    return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
+
+
 def show_result(content: dict[str, Any], out: Path) -> None:
     """The verdict for a person."""
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
@@ -206,7 +213,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         [
             effect["name"],
             ", ".join(effect["indistinguishable_from"]) or "-",
-            ", ".join(f"{k} = {p['value']:.3g} {p['unit']}" for k, p in effect["parameters"].items()),
+            _parameters(effect),
             f"{100 * effect['evidence']['cv_gain']:.0f} %",
         ]
         for effect in content["effects"]

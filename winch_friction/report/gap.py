@@ -6,9 +6,12 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.physics.effects import effect_text
-from winch_friction.physics.friction import Term, registered_terms
+from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
+from winch_friction.physics.friction.table import FACTORS, at_knots, tabulated
 from winch_friction.physics.units import RPM
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
@@ -33,7 +36,9 @@ def gap_sections(result: GapResult, provenance: Mapping[str, Any] | None = None)
     decision = decision_html(verdict_sentence(result), facts(result), _physics(result) + _steps(result))
     sections = [
         TextSection("Decision", decision),
-        TextSection("What is missing", "".join(_effect(effect) for effect in result.effects) + _proposals(result)),
+        TextSection(
+            "What is missing", "".join(_effect(effect, result.model) for effect in result.effects) + _proposals(result)
+        ),
         TextSection("Whether these runs can answer", _adequacy(result)),
         TextSection("What the data say of the seed", _seed(result)),
         TextSection("Proof on locked runs", _proof(result)),
@@ -59,12 +64,14 @@ def _steps(result: GapResult) -> str:
     return "<h3>What to do next</h3>" + list_html(steps, ordered=len(steps) > 1) if steps else ""
 
 
-def _effect(effect: Effect) -> str:
+def _effect(effect: Effect, model: FrictionModel) -> str:
     text = effect_text(effect.name)
     rivals = paragraph(f"These runs cannot tell it from {' or '.join(effect.rivals)}.") if effect.rivals else ""
+    drawn, curve = _curve(effect, model)
     rows = [
         (name, value_for_people(e.value, e.unit), value_for_people(e.std, e.unit), for_people(e.unit))
         for name, e in effect.parameters.items()
+        if name not in drawn
     ]
     told = any(effect.variant.startswith(f"{name} =") for name in effect.parameters)
     term = _declared(effect)
@@ -74,7 +81,7 @@ def _effect(effect: Effect) -> str:
             f"What these runs determine, where its members are tied: {combined.expression} = {combined.value:.4g} ± "
             f"{combined.std:.2g} {for_people(combined.unit)} ({combined.because})."
         )
-        if combined
+        if combined and not drawn
         else ""
     )
     size = paragraph(f"Usual size: {text.size}.", "faint") if text.size else ""
@@ -85,12 +92,39 @@ def _effect(effect: Effect) -> str:
     return (
         f"<h3>{escape(text.title)} <code>{escape(effect.name)}</code></h3>{rivals}"
         + (paragraph(f"Found as: {effect.variant}.") if effect.variant and not told else "")
-        + table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4)
+        + (table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4) if rows else "")
+        + curve
         + paragraph(evidence)
         + size
         + combination
-        + (term_html(term) if term else latex_html(effect.law))
+        + (term_html(term) if term else latex_html(effect.law) if not drawn else "")
     )
+
+
+def _curve(effect: Effect, model: FrictionModel) -> tuple[set[str], str]:
+    """Parameters of a curve over one signal that an effect's law is or holds, and the curve's values for a person."""
+    tables = [term.table for term in model.terms if term.table is not None and term.name in effect.law_name.split()]
+    if len(tables) != 1 or len(tables[0].knots) != 1 or tables[0].shape == "windows":
+        return set(), ""
+    table = tables[0]
+    (signal, knots), matrix = table.knots[0], at_knots(table)
+    names = [parameter.name for parameter in tabulated(table).parameters]
+    at = [model.parameter_names.index(name) for name in names]
+    heights = matrix @ np.array(model.values)[at]
+    own = np.zeros((len(at), len(at))) if model.covariance is None else model.covariance[np.ix_(at, at)]
+    std = np.sqrt(np.maximum(np.diag(matrix @ own @ matrix.T), 0.0))
+    unit = FACTORS[signal][1]
+    shown = [[value_for_people(float(v), table.unit) for v in values] for values in (heights, std)]
+    rows = [(value_for_people(k, unit), h, s) for k, h, s in zip(knots, *shown, strict=True)]
+    head = (f"{_words(signal)} [{for_people(unit)}]", f"value [{for_people(table.unit)}]", "σ")
+    times = f", times {' and '.join(map(_words, table.times))}" if table.times else ""
+    where = {Scope.MOTOR: "of each motor", Scope.SYSTEM: "of all motors", Scope.SHAFT: "at the shaft"}[table.scope]
+    said = f"A curve over {_words(signal)} that the data drew{times}, {where}, linear between its places:"
+    return set(names), paragraph(said) + table_html(head, rows, "What was found", 4)
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _declared(effect: Effect) -> Term | None:

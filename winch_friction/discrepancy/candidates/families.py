@@ -259,6 +259,8 @@ def _halved(shares: Sequence[float]) -> tuple[float, ...]:
 
 
 def _unit(times: tuple[str, ...]) -> str:
+    if times in ((SWASH,), (LEFT,)):
+        return "Pa"  # what a displacement makes a torque of
     return quotient_unit("N*m", *((FACTORS[name][1], 1.0) for name in times))
 
 

@@ -10,11 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import numpy as np
 import sympy as sp
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import symbols
 from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.signals import FloatArray
 
 MOST_SIGNALS = 2
 SHAPES = ("free", "rising", "falling", "convex_rising", "windows")
@@ -192,9 +194,16 @@ def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     return _term(table, level.symbol * inside, [level, *shapes], f"in {len(knots) // 2} windows of {name}")
 
 
-def _basis(axis: _Axis) -> list[sp.Expr]:
+def at_knots(table: Table) -> FloatArray:
+    """What makes of the parameters of a curve over one signal its values at its knots, shape (knots, parameters)."""
+    axis, signal = table.axes[0], sp.Symbol("x", real=True)
+    basis = _basis(axis, signal)[0 if axis.level else 1 :]
+    return np.array([[float(each.subs(signal, knot)) for each in basis] for knot in axis.knots])
+
+
+def _basis(axis: _Axis, signal: sp.Expr | None = None) -> list[sp.Expr]:
     """1 and one ramp per interval; anchored at the high end, what of each ramp is still to come."""
-    signal, knots = FACTORS[axis.signal][0], axis.knots
+    signal, knots = FACTORS[axis.signal][0] if signal is None else signal, axis.knots
     if axis.shape == "convex_rising":
         top = knots[-1]
         hinges = [sp.Piecewise((0.0, signal <= a), ((signal - a) / (top - a), True)) for a in knots[:-1]]

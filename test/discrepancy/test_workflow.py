@@ -78,12 +78,11 @@ def test_the_repaired_model_reads_back_with_its_covariance():
     assert np.linalg.eigvalsh(again.covariance).min() > -1e-9 * again.covariance.max()
 
 
-def test_the_same_runs_and_seed_give_the_same_answer():
+def test_the_same_runs_and_seed_give_the_same_answer_in_whatever_order():
     first = gap_of(4010, "quiet", ("tare_load", 1.0)).content()
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-    again = find_gap(
-        runs_with(4010, "quiet", ("tare_load", 1.0)), crane, model, GapOptions(plan=False, proposals=False)
-    )
+    runs = runs_with(4010, "quiet", ("tare_load", 1.0))[::-1]
+    again = find_gap(runs, crane, model, GapOptions(plan=False, proposals=False))
     assert again.content() == first
 
 

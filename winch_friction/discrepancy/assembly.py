@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.discrepancy.adequacy import Check, supplying
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.drift import drift_note
 from winch_friction.discrepancy.engine.crossfit import CrossFit
@@ -146,10 +146,16 @@ def _effect(search: Search, laws: Sequence[Finding], repaired: Repair, tied: Com
     return Effect(
         name, tied.rivals, _and(each.slot.label for each in laws), " + ".join(each.latex for each in candidates),
         estimates, found.p_value, found.gain, found.selection_frequency,
-        law_name=_and(each.law_name or (CATALOGUES if len(laws) > 1 else "") for each in candidates),
+        law_name=_law_name(candidates),
         free=any(each.free for each in candidates),
         combination=known_combination(search, found, estimates, tied.partners, repaired.model),
     )  # fmt: skip
+
+
+def _law_name(candidates: Sequence[Candidate]) -> str:
+    """Of one law or of several; the catalogue's own has no name unless there is another beside it."""
+    names = dict.fromkeys(each.law_name for each in candidates)
+    return _and(name or CATALOGUES for name in names) if len(names) > 1 else next(iter(names))
 
 
 def _and(parts: Iterable[str]) -> str:

@@ -114,6 +114,7 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                     candidate.law_name,
                     candidate.free,
                     candidate.plain_in(model),
+                    shape.part,
                 )
             )
     whole = np.zeros((len(scales), len(scales))) if curves else None

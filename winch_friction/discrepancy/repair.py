@@ -19,6 +19,7 @@ from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.estimates import estimates_of, of_part, together
 from winch_friction.discrepancy.expansion import Given, meet
 from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
 from winch_friction.discrepancy.search import Search
@@ -107,15 +108,15 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     sides = _sides(search.given)
     for slot in explanation.slots:
         where = [columns.index(c) for c in slot.columns]
-        found = _estimates(slot, value[where], std[where], cross)
-        parameters[slot.name] = _together(parameters.get(slot.name, {}), found)
+        found = estimates_of(slot, value[where], std[where], cross)
+        parameters[slot.name] = together(parameters.get(slot.name, {}), of_part(slot, explanation.slots, found))
         _add(own, slot, found, sides, seed)
     if search.reversal is not None:
         finding = search.reversal
         at = [finding.cross.problem.columns(finding.fitted.slots).index(c) for c in finding.slot.columns]
         size = finding.cross.problem.layout.scales[list(finding.slot.columns)]
         deviation = np.sqrt(np.diag(finding.cross.covariance(finding.fitted)))[at] * size
-        found = _estimates(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
+        found = estimates_of(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
         _add(own, finding.slot, found, sides, seed)
     if (
@@ -128,16 +129,6 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         for each in lost.corrections:
             own.add_correction(each)
     return _model_of(own, seed, search.given.crane, parameters, provenance)
-
-
-def _together(first: Estimates, second: Estimates) -> dict[str, ParameterEstimate]:
-    """The estimates of a cause whose law is a mixture of two: what both of them have adds."""
-    both = {
-        name: ParameterEstimate(first[name].value + each.value, float(np.hypot(first[name].std, each.std)), each.unit)
-        for name, each in second.items()
-        if name in first
-    }
-    return {**first, **second, **both}
 
 
 def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:
@@ -166,21 +157,6 @@ def _sides(given: Given) -> Sides:
     named = {(group.name, group.balances) for run in given.prepared for group in run.groups}
     balancing = sorted(name for name, balances in named if balances)
     return Sides(given.crane, tuple(balancing), tuple(sorted(name for name, b in named if not b)))
-
-
-def _estimates(slot: Slot, value: FloatArray, std: FloatArray, cross: CrossFit) -> dict[str, ParameterEstimate]:
-    """The amplitudes of an effect, and the shape parameters of its term."""
-    candidate, shape = slot.origin
-    found = {
-        p.name: ParameterEstimate(float(v), float(s), p.unit)
-        for p, v, s, c in zip(candidate.linear, value, std, slot.columns, strict=True)
-        if candidate.term is not None or cross.total_g[c, c] > 0.0
-    }
-    if candidate.term is not None:
-        units = {p.name: p.unit for p in candidate.term.parameters}
-        for name, at in shape.values.items():
-            found[name] = ParameterEstimate(float(at), LIMITS.shape_std * abs(float(at)), units[name])
-    return found
 
 
 def _model_of(

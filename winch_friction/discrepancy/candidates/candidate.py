@@ -45,6 +45,11 @@ class Shape:
     bounds: tuple[float, float] | None = None
     carried: bool = False
 
+    @property
+    def part(self) -> str:
+        """Which of the motor groups it speaks of, where it speaks of some."""
+        return f"{self.values['groups']:g}" if "groups" in self.values else ""
+
 
 Shapes = Callable[[Sequence[PreparedRun]], list[Shape]]
 

@@ -20,6 +20,7 @@ class Slot:
 
     `law` tells the members of one candidate's family apart, `free` marks the flexible one, `plain` what a bare
     model simply lacks.
+    `part` tells which of several like things the columns speak of, each of which may follow a law of its own.
     `brings` names candidates that belong to it, `most` is the largest amplitude (in units of its columns) that is
     believed; `origin` is whatever the caller made the columns of.
     """
@@ -33,6 +34,7 @@ class Slot:
     law: str = ""
     free: bool = False
     plain: bool = False
+    part: str = ""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.rivals import does_as_well, rivals_of
+from winch_friction.discrepancy.engine.starts import far_less, other_starts
 from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -63,10 +64,10 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
         if _no_worse(together, current, rng):
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
-    for start in _by_own_law(cross, current):
+    for start in other_starts(cross, current):
         others = ([], {})
         anew = _whole(cross, _forward(cross, base, start, rng, most, *others), rng)
-        if _far_less(cross, anew, current):
+        if far_less(cross, anew, current):
             current, p_values = anew, p_values | others[1]
             considered += others[0]
     found = tuple(_found(cross, current, k, p_values, rng) for k in range(len(current.slots)))
@@ -142,24 +143,6 @@ def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator
     return _pruned(cross, cross.explain(tuple(best.values())), rng) if len(best) > 1 else base
 
 
-def _by_own_law(cross: CrossFit, current: Explanation) -> list[Explanation]:
-    """Where a set leaves more than noise and its first cause has another law than the catalogue's own: that one alone,
-    to begin from. A bent law takes what belongs to a second effect, and no exchange of one for one finds back.
-    """
-    if not current.slots or not current.slots[0].law or cross.excess(current) <= LIMITS.least_excess:
-        return []
-    first = current.slots[0]
-    own = [slot for slot in cross.problem.slots if slot.name == first.name and not slot.law and not slot.plain]
-    trials = [cross.explain((slot,)) for slot in own]
-    return [min(trials, key=lambda each: each.loss)] if trials else []
-
-
-def _far_less(cross: CrossFit, anew: Explanation, current: Explanation) -> bool:
-    """Whether a set of no more names leaves half of what another does at most, or one of more leaves noise."""
-    few = len(anew.slots) <= len(current.slots) or cross.excess(anew) <= LIMITS.least_excess
-    return few and anew.loss - cross.floor <= LIMITS.outdone * (current.loss - cross.floor)
-
-
 def _no_worse(plain: Explanation, other: Explanation, rng: np.random.Generator) -> bool:
     """Whether plain effects do on held-out data what another set does, chance apart."""
     if plain.loss <= other.loss:
@@ -233,19 +216,18 @@ def _whole(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> E
 
 def _of_fewest_causes(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
     """The set with another law of one of its causes in the place of a second name, where that does as well: a cause
-    whose law is a mixture of two known ones is one cause."""
+    whose law is a mixture of two known ones is one cause, and so is one that is there twice, by a law each."""
     for own in reversed(current.slots):
         rest = tuple(slot for slot in current.slots if slot is not own)
-        laws = {(slot.name, slot.law) for slot in rest}
+        laws = {(slot.name, slot.law, slot.part) for slot in rest}
         if own.plain or own.name in {slot.name for slot in rest} or any(own.name in slot.brings for slot in rest):
             continue
         without, others = cross.explain(rest), {slot.name for slot in cross.problem.slots} - {s.name for s in rest}
-        trials = [
-            cross.explain((*rest, slot)) for slot in fitted(cross, rest, others) if (slot.name, slot.law) not in laws
-        ]
+        slots = fitted(cross, rest, others, by_part=True)
+        trials = [cross.explain((*rest, slot)) for slot in slots if (slot.name, slot.law, slot.part) not in laws]
         trials = [each for each in trials if does_as_well(each, current, without, rng)]
         if trials:
-            best = min(trials, key=lambda each: each.loss)
+            best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]))
             current = cross.explain(tuple(best.slots[-1] if slot is own else slot for slot in current.slots))
     return current
 

@@ -15,14 +15,15 @@ def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str
     return heads(cross, current.loss, [cross.explain((*current.slots, slot)) for slot in slots])
 
 
-def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str]) -> list[Slot]:
-    """Of each law of each candidate the variant that fits the training runs best beside the rest."""
-    best: dict[tuple[str, str], tuple[float, Slot]] = {}
+def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str], by_part: bool = False) -> list[Slot]:
+    """Of each law of each candidate, with `by_part` of each of the things that it may speak of, the variant that fits
+    the training runs best beside the rest."""
+    best: dict[tuple[str, str, str], tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
         if slot.name in taken:
             continue
         loss, _ = cross.train_loss((*rest, slot))
-        key = (slot.name, slot.law)
+        key = (slot.name, slot.law, slot.part if by_part else "")
         if key not in best or loss < best[key][0]:
             best[key] = (loss, slot)
     return [slot for _, slot in best.values()]

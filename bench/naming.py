@@ -60,7 +60,7 @@ def datasets(smoke: bool) -> list[tuple[str, list[Run]]]:
                 for k, columns in enumerate(
                     make_dataset(
                         FIRST_SEED + seed, "quiet", [(cause, 1.0)] if cause else [], length=SMOKE if smoke else LENGTH
-                    )
+                    )[: 6 if smoke else None]
                 )
             ],
         )

@@ -109,6 +109,7 @@ def test_outcomes():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_users_path_ends_as_expected(tmp_path):
     """Files, `check`, `gap` and `gap` with the written model: a null stays quiet, a hook block is named."""
     folder = write_set(tmp_path / "null", SETS["null_04"], SETS["null_04"].seed(1))

@@ -7,14 +7,20 @@ import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
 from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.estimates import of_part, together
 from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
+from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.proof import at_the_floor
+from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.units import CM3_PER_REV
 
 
 @pytest.mark.long
@@ -24,6 +30,39 @@ def test_a_mixture_of_two_laws_of_a_cause_is_one_name():
     assert found.effects[0].rivals == ()
     assert found.holdout.size_after.value < 0.05 * found.holdout.size_before.value
     assert len(found.effects[0].parameters) > 1  # the step of the layers, and what the load does
+
+
+@pytest.mark.parametrize(("seed", "flavour"), [(4408, "quiet"), pytest.param(4411, "paper", marks=pytest.mark.long)])
+def test_two_feedbacks_with_a_zero_each_are_one_cause_and_two_numbers(seed, flavour, crane_150t, crane2_model):
+    """The passive group's shows 2.5 cm^3 too little, the driving one's 2 cm^3 too much: neither is the other's."""
+    zeros = {"passive": -2.5 * CM3_PER_REV, "main": 2.0 * CM3_PER_REV, "active": 2.0 * CM3_PER_REV}
+    runs = [
+        replace(run, columns={
+            name: values + zeros[name.partition(".")[0]] if name.endswith(".displacement") else values
+            for name, values in run.columns.items()
+        })
+        for run in runs_with(seed, flavour)
+    ]  # fmt: skip
+    found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
+    assert names_of(found) == [{"swivel_offset"}]
+    assert at_the_floor(found.holdout)
+    known = found.effects[0].parameters
+    assert set(known) == {"D_0 of the passive group", "D_0 of the driving group"}
+    for part, true in (("passive", zeros["passive"]), ("driving", zeros["main"])):
+        assert known[f"D_0 of the {part} group"].value == pytest.approx(true, rel=0.1), part
+    in_file = {group: each.value for each in found.model.corrections for group in each.groups}
+    assert in_file["passive"] == pytest.approx(zeros["passive"], rel=0.1)
+    assert in_file["active"] == pytest.approx(zeros["active"], rel=0.1)
+
+
+def test_estimates_of_two_parts_of_the_machine_are_not_added():
+    one = {"p_0": ParameterEstimate(2e5, 3e3, "Pa")}
+    both = [Slot("pressure_offset", f"the {part} group, at port A", (k,), part=part) for k, part in enumerate("ab")]
+    assert of_part(both[0], both, one) == {"p_0 of the a group": one["p_0"]}
+    assert of_part(both[0], both[:1], one) == one
+    twice = together(one, one)  # two laws for the same part: what both of them have adds
+    assert twice["p_0"].value == pytest.approx(4e5)
+    assert twice["p_0"].std == pytest.approx(3e3 * np.sqrt(2.0))
 
 
 @pytest.mark.long

@@ -10,7 +10,7 @@ from winch_friction.identification.plateaus import Plateau
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import RPM
-from winch_friction.physics.winch import Crane, operating_point
+from winch_friction.physics.winch import Crane, higher_port, operating_point
 
 SPEED_STEP = 25.0 * RPM  # paper 2 eq 9
 _SAME_SPEED = 5.0 * RPM
@@ -142,6 +142,6 @@ def winch_points(
         direction=np.ones(len(speed)),
         speed=np.abs(speed),
         drum_torque=drum_torque,
-        groups=[(count, magnitude, magnitude, displacement)],
+        groups=[(count, magnitude, magnitude, displacement, higher_port(pressure))],
         motor_total=count,
     )

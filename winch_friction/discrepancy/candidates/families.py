@@ -63,6 +63,7 @@ def literature() -> list[Candidate]:
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},
             law_name="cracking pressure one way", continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
+        _of("case_pressure", "case_ports"),
         _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=no_load),
         # of shorter films Stribeck's curve speaks
         _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=no_load, continuous=()),

@@ -42,6 +42,8 @@ GROUP_SIGNALS = (
     _signal("pressure", "p", "Pa", "absolute pressure drop |p_A - p_B|"),
     _signal("pressure_sum", r"\Sigma p", "Pa", "p_A + p_B", 0.0),
     _signal("displacement", "D", "m^3/rad", "displacement per motor"),
+    # a step at p_A = p_B: equations multiply it by the pressure, which is zero there, and so have none
+    _signal("higher_port", "h", "1", "+1 where p_A is the higher pressure, -1 where p_B is", 1.0),
 )
 # what the model file carries as constants of the motor and the oil
 CONSTANTS = (
@@ -68,6 +70,7 @@ n = _BY_NAME["count"]
 p = _BY_NAME["pressure"]
 p_sum = _BY_NAME["pressure_sum"]
 D = _BY_NAME["displacement"]
+higher_port = _BY_NAME["higher_port"]
 X = _BY_NAME["max_displacement"]
 rho = _BY_NAME["density"]
 mu = _BY_NAME["viscosity"]

@@ -2,6 +2,11 @@
 
 from winch_friction.physics.winch.crane import Crane, Drum
 from winch_friction.physics.winch.drive import Drive
-from winch_friction.physics.winch.operating_point import operating_point, run_operating_points, sample_operating_point
+from winch_friction.physics.winch.operating_point import (
+    higher_port,
+    operating_point,
+    run_operating_points,
+    sample_operating_point,
+)
 
-__all__ = ["Crane", "Drive", "Drum", "operating_point", "run_operating_points", "sample_operating_point"]
+__all__ = ["Crane", "Drive", "Drum", "higher_port", "operating_point", "run_operating_points", "sample_operating_point"]

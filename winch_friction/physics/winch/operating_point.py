@@ -8,13 +8,15 @@ import numpy as np
 
 from winch_friction.physics.channels import WINCH
 from winch_friction.physics.friction.direction import smooth_sign, smooth_signs
-from winch_friction.physics.friction.symbols import WINCH_SIGNALS
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run, Sample
 from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
 _ORDER = tuple(signal.name for signal in WINCH_SIGNALS)
 _DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
+# of a motor group's last signals, for whoever does not give them
+_GROUP_DEFAULTS = tuple(signal.default for signal in GROUP_SIGNALS)
 # what of them is a channel of its own: taken from a sample or run as it is, where it is there
 CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
 # places for the one point of a sample, which a node needs at every step
@@ -32,14 +34,15 @@ def operating_point(
     direction: Any,
     speed: Any,
     drum_torque: Any,
-    groups: Sequence[tuple[Any, Any, Any, Any]] = (),
+    groups: Sequence[tuple[Any, ...]] = (),
     motor_total: Any,
     **optional: Any,
 ) -> tuple[Any, ...]:
     """The operating point as a flat tuple of floats or of arrays; SI.
 
-    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor. `optional` are
-    signals of the table that have a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
+    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor and which port's
+    pressure is the higher (`higher_port`; left out: port A's). `optional` are signals of the table that have a default:
+    acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
     """
     values = _DEFAULTS | optional
     if len(values) > len(_DEFAULTS):
@@ -48,7 +51,23 @@ def operating_point(
         "direction": direction, "speed_magnitude": abs(speed), "speed": speed, "drum_torque": drum_torque,
         "motor_total": motor_total,
     }  # fmt: skip
-    return tuple(values[name] for name in _ORDER) + tuple(value for group in groups for value in group)
+    return tuple(values[name] for name in _ORDER) + tuple(value for group in groups for value in _whole(group))
+
+
+def _whole(group: tuple[Any, ...]) -> tuple[Any, ...]:
+    """A group's signals with the defaults of those at the end that are not given."""
+    missing = _GROUP_DEFAULTS[len(group) :]
+    if len(group) > len(_GROUP_DEFAULTS) or None in missing:
+        raise TypeError(f"a group has {[signal.name for signal in GROUP_SIGNALS]}, not {len(group)} values")
+    return (*group, *missing)
+
+
+def higher_port(drop: Any) -> FloatArray:
+    """+1 where port A has the higher pressure, -1 where port B has; `drop` is p_A - p_B in Pa, of any shape.
+
+    So p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2. It steps where the pressures are equal and |p_A - p_B| is zero.
+    """
+    return np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
 
 
 def sample_operating_point(
@@ -65,7 +84,7 @@ def sample_operating_point(
     for name, g in sample.groups.items():
         a, b, count = g.pressure_a, g.pressure_b, crane.motor_count(name)
         total += count
-        x += count, abs(a - b), a + b, g.displacement
+        x += count, abs(a - b), a + b, g.displacement, -1.0 if a < b else 1.0
     x[_MOTOR_TOTAL] = total if sample.groups else crane.motor_total(())
     return tuple(x)
 
@@ -88,9 +107,10 @@ def run_operating_points(
 
 
 def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
-    """Motors, |p_A - p_B|, p_A + p_B and displacement of one group along a run."""
+    """Motors, |p_A - p_B|, p_A + p_B, displacement and the higher port of one group along a run."""
     a, b = run[f"{group}.pressure_a"], run[f"{group}.pressure_b"]
-    return np.full(len(run), crane.motor_count(group)), np.abs(a - b), a + b, run[f"{group}.displacement"]
+    count, drop = np.full(len(run), crane.motor_count(group)), a - b
+    return count, np.abs(drop), a + b, run[f"{group}.displacement"], higher_port(drop)
 
 
 def run_drum_torque(run: Run, crane: Crane, load: float = float("nan")) -> FloatArray:

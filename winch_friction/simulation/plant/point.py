@@ -25,10 +25,12 @@ class Point(NamedTuple):
     pressure_driven: float
     pressure_sum_driven: float
     displacement_driven: float
+    higher_port_driven: float
     count_passive: float
     pressure_passive: float
     pressure_sum_passive: float
     displacement_passive: float
+    higher_port_passive: float
 
 
 POINT_LENGTH = len(Point._fields)

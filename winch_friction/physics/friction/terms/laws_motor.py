@@ -3,7 +3,7 @@
 import sympy as sp
 
 from winch_friction.physics.friction.registry import register
-from winch_friction.physics.friction.symbols import D, X, n, oil_temperature, p, p_sum, s, w
+from winch_friction.physics.friction.symbols import D, X, higher_port, n, oil_temperature, p, p_sum, s, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term
 from winch_friction.physics.friction.terms.effects_winch import walther
 from winch_friction.physics.units import BAR, RPM
@@ -40,6 +40,8 @@ b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
 )
 c_hi = Parameter("c_hi", "m^3/rad", 5e-7, lower=-1e-4, upper=1e-4, doc="loss per pressure at the high port")
+K_pA = Parameter("K_pA", "m^3/rad", 5e-7, upper=1e-4, doc="loss per pressure at port A")
+K_pB = Parameter("K_pB", "m^3/rad", 5e-7, upper=1e-4, doc="loss per pressure at port B")
 
 
 def _motor(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], source: str, place: str = "motor") -> Term:
@@ -83,3 +85,9 @@ line_pressure_power = _motor(
     (p_l, n_l, b_l), "Blasius 1913 for 1.75, Hagen-Poiseuille for 1; a check valve opens one way", "fluid",
 )  # fmt: skip
 case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")
+# one port is always the same one, which the high port is not where either may be; together they are the sum of both
+_drop = higher_port * p
+case_ports = _motor(
+    "case_ports", K_pA.symbol * (p_sum + _drop) / 2 + K_pB.symbol * (p_sum - _drop) / 2, (K_pA, K_pB),
+    "loss with the pressure at port A and at port B, each by its own share of the case's",
+)  # fmt: skip

@@ -65,6 +65,16 @@ def test_estimates_of_two_parts_of_the_machine_are_not_added():
     assert twice["p_0"].std == pytest.approx(3e3 * np.sqrt(2.0))
 
 
+@pytest.mark.parametrize("seed", [915, pytest.param(916, marks=pytest.mark.long)])
+def test_a_loss_with_one_ports_pressure_is_named_where_either_port_may_be_the_higher(seed):
+    found = gap_of(seed, "quiet", ("case_pressure:port_b", 1.0))
+    (own,) = found.effects
+    assert (own.name, own.rivals, own.law_name) == ("case_pressure", (), "case_ports")
+    assert found.holdout.size_after.value < 0.1 * found.holdout.size_before.value
+    a, b = (own.parameters[name].value for name in ("K_pA", "K_pB"))
+    assert a < 0.1 * b
+
+
 @pytest.mark.long
 def test_a_long_delay_is_taken_out_of_the_runs():
     found = gap_of(911, "elastic_still", ("signal_delay:longer", 1.3))

@@ -127,6 +127,22 @@ def test_terms_read_the_sum_of_the_passive_sides_pressures(ahc, crane, model):
     np.testing.assert_allclose((truth["friction_torque"] - base)[moving][5:], added[moving][5:], atol=8.0)
 
 
+def test_a_term_of_one_port_follows_it_where_either_is_the_higher(ahc, crane, model):
+    ports = FrictionModel("ports", (*model.terms, term_named("case_ports")), (*model.values, 0.0, 2e-6),
+                          constants=model.constants)  # fmt: skip
+    truth = simulate(ahc.override({**CLEAN, "duration": 30.0}), crane, ports, seed=3).truth
+    columns = {"time": truth.time, "motor_speed": truth["motor_speed"]}
+    columns |= {f"active.{p}": truth[p] for p in ("pressure_a", "pressure_b", "displacement")}
+    columns |= {f"passive.{p}": truth[f"passive_{p}"] for p in ("pressure_a", "pressure_b", "displacement")}
+    x = run_operating_points(Run("x", columns), crane, drum_torque=truth["drum_torque"])
+    moving = np.abs(truth["motor_speed"]) > 20.0
+    b_higher = moving & (truth["pressure_b"] > truth["pressure_a"] + 10e5)
+    assert b_higher.sum() > 20
+    added = truth["direction"] * 2e-6 * (3 * truth["pressure_b"] + 8 * truth["passive_pressure_b"])
+    found = truth["friction_torque"] - np.asarray(model.torque(x))
+    np.testing.assert_allclose(found[moving][5:], added[moving][5:], atol=8.0)
+
+
 def test_memory_of_the_models_own_terms_is_carried(ahc, crane, model):
     stateful = [term for term in registered_terms().values() if term.state is not None]
     if not stateful:

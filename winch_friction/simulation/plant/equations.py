@@ -117,12 +117,12 @@ def operating_point(p, state, direction, acceleration, time, drum, oil_temperatu
         pressure_driven=abs(dp),
         pressure_sum_driven=pressure_sum,
         displacement_driven=p.displacement,
-        higher_port_driven=-1.0 if dp < 0.0 else 1.0,
+        higher_port_driven=math.copysign(1.0, dp),
         count_passive=p.passive_count,
         pressure_passive=abs(dp_passive),
         pressure_sum_passive=passive_sum,
         displacement_passive=p.passive_displacement,
-        higher_port_passive=-1.0 if dp_passive < 0.0 else 1.0,
+        higher_port_passive=math.copysign(1.0, dp_passive),
     )
 
 

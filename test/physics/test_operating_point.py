@@ -1,0 +1,58 @@
+"""The operating point knows which port's pressure is the higher: what is lost with one port's is that port's."""
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
+from winch_friction.physics.signals import GroupSample, Run, Sample
+from winch_friction.physics.winch import operating_point, run_operating_points, sample_operating_point
+
+K_A, K_B = 1e-6, 3e-6
+A, B = np.array([120e5, 25e5, 70e5]), np.array([25e5, 90e5, 70e5])  # A higher, B higher, equal
+SPEED = 40.0
+
+
+@pytest.fixture(scope="module")
+def ports():
+    return FrictionModel("ports", (term_named("case_ports"),), (K_A, K_B))
+
+
+@pytest.fixture(scope="module")
+def lost(crane_150t):
+    """N m at the shaft."""
+    return crane_150t.motor_count("active") * (K_A * A + K_B * B)
+
+
+def test_a_run_and_its_samples_lose_what_each_port_loses(ports, lost, crane_150t):
+    size = len(A)
+    columns = {"active.pressure_a": A, "active.pressure_b": B, "active.displacement": np.full(size, 3e-5)}
+    run = Run("ports", {"time": np.arange(size) * 0.1, "motor_speed": np.full(size, SPEED), **columns})
+    x = run_operating_points(run, crane_150t, drum_torque=np.zeros(size))
+    np.testing.assert_allclose(ports.torque(x), lost, rtol=1e-12)
+    functions = ports.compile(1)
+    for k, torque in enumerate(lost):
+        sample = Sample(time=0.1 * k, motor_speed=SPEED, groups={"active": GroupSample(A[k], B[k], 3e-5)})
+        point = sample_operating_point(sample, crane_150t, drum_torque=0.0, speed=SPEED)
+        assert point[len(WINCH_SIGNALS) :] == tuple(float(each[k]) for each in x[len(WINCH_SIGNALS) :])
+        assert functions.scalar_torque(point, ports.values, ()) == pytest.approx(torque, rel=1e-12)
+
+
+def test_a_loss_with_one_port_has_no_step_where_the_pressures_are_equal(ports):
+    def torque(drop):
+        port = -1.0 if drop < 0.0 else 1.0
+        point = operating_point(
+            direction=1.0, speed=SPEED, drum_torque=0.0, motor_total=3, groups=[(3, abs(drop), 140e5, 3e-5, port)]
+        )
+        return float(ports.torque(point))
+
+    assert torque(-1.0) == pytest.approx(torque(1.0), abs=1e-4)
+
+
+def test_port_a_is_the_higher_where_nobody_says():
+    common = {"direction": 1.0, "speed": SPEED, "drum_torque": 0.0, "motor_total": 3}
+    four = (3, 95e5, 145e5, 3e-5)
+    assert operating_point(**common, groups=[four, four]) == operating_point(**common, groups=[(*four, 1.0)] * 2)
+    for group in (four[:3], (*four, 1.0, 1.0)):
+        with pytest.raises(TypeError, match=f"{len(GROUP_SIGNALS) - 1}|displacement"):
+            operating_point(**common, groups=[group])

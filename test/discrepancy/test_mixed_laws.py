@@ -66,8 +66,9 @@ def test_estimates_of_two_parts_of_the_machine_are_not_added():
 
 
 @pytest.mark.parametrize("seed", [915, pytest.param(916, marks=pytest.mark.long)])
-def test_a_loss_with_one_ports_pressure_is_named_where_either_port_may_be_the_higher(seed):
-    found = gap_of(seed, "quiet", ("case_pressure:port_b", 1.0))
+def test_a_loss_with_one_ports_pressure_is_named_where_either_may_be_the_higher(seed, crane_150t, crane2_model):
+    runs = runs_with(seed, "bare", ("case_pressure:port_b", 1.0), length=0.3)
+    found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
     (own,) = found.effects
     assert (own.name, own.rivals, own.law_name) == ("case_pressure", (), "case_ports")
     assert found.holdout.size_after.value < 0.1 * found.holdout.size_before.value

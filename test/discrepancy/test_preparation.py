@@ -4,13 +4,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gap_rig import runs_with
 
+from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.balance import measured_groups
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.prepare import _followed
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.discrepancy.regressors import least_noise_of
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import Run
 
 
@@ -135,3 +138,16 @@ def test_what_weighs_more_than_a_wire_can_is_none(crane_150t):
 def test_a_slow_log_closes_no_better_than_it_is_followed(period, least):
     """bar: what of it is used may bend so far between two samples, and nothing smaller is anybody's effect there."""
     assert least_noise_of(SimpleNamespace(groups=[None], dt=period)) == pytest.approx(least)
+
+
+def test_where_port_b_is_the_higher_the_operating_point_has_its_pressure(crane_150t, crane2_model):
+    prepared = meet(runs_with(917, "quiet", length=0.3), crane_150t, crane2_model).prepared
+    names, seen = [signal.name for signal in GROUP_SIGNALS], 0
+    for run in prepared:
+        for k, group in enumerate(run.groups):
+            start = len(WINCH_SIGNALS) + k * len(names)
+            at = dict(zip(names, run.point[start : start + len(names)], strict=True))
+            port_b = 0.5 * (at["pressure_sum"] - at["higher_port"] * at["pressure"])
+            np.testing.assert_allclose(port_b, 0.5 * (group.pressure_sum - group.pressure), rtol=1e-9)
+            seen += int(np.sum(port_b > 0.5 * at["pressure_sum"] + 5e5))
+    assert seen > 100

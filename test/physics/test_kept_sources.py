@@ -10,10 +10,12 @@ import pytest
 from winch_friction.physics.friction import sources
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.friction.registry import registered_terms
+from winch_friction.physics.friction.symbols import layout
 from winch_friction.records.model_file import load_model
 
 PARTS = ("scalar_torque", "scalar_torque_and_gradient", "scalar_contributions", "scalar_state_rates",
          "vector_torque", "vector_gradient", "vector_contributions", "vector_state_rates")  # fmt: skip
+LENGTH = len(layout(2))  # of an operating point with two groups
 CONSTANTS = (("density", 870.0), ("gear_ratio", 20.0), ("max_displacement", 3e-5), ("viscosity", 0.04))
 
 
@@ -43,7 +45,8 @@ def test_every_term_is_read_as_it_was_made(name, folder, monkeypatch):
     own = [getattr(made, part) for part in PARTS]
     without_sympy(monkeypatch)
     read = CompiledTerms((registered_terms()[name],), 2, CONSTANTS)
-    point = [0.9, 60.0, 54.0, 5e5, 0.3, 41.0, 12.0, 700.0, 2.0, 50.0, 11.0, 6, 1e7, 2e7, 3e-5, 5, 1.5e7, 2e7, 2e-5]
+    point = [0.9, 60.0, 54.0, 5e5, 0.3, 41.0, 12.0, 700.0, 2.0, 50.0, 11.0]
+    point += [6, 1e7, 2e7, 3e-5, 1.0, 5, 1.5e7, 2e7, 2e-5, -1.0]
     theta, z = [each.typical for each in made.parameters], [0.3] * len(made.initial_states)
     arrays = [np.linspace(each, 1.1 * each, 7) for each in point]
     for part, function in zip(PARTS, own, strict=True):
@@ -64,7 +67,7 @@ def test_another_equation_or_constant_is_another_file(folder):
 
 @pytest.mark.parametrize("damage", ["", "# wrong\nraise SystemExit\n", "half", b"\xff\xfe\x00"])
 def test_a_damaged_file_is_made_anew(damage, folder):
-    point, model = [1.0] * 19, load_model("a6vm215_crane2")
+    point, model = [1.0] * LENGTH, load_model("a6vm215_crane2")
     expected = crane2().scalar_torque(point, model.values, ())
     (file,) = folder.iterdir()
     whole = file.read_text()
@@ -79,7 +82,7 @@ def test_without_a_place_to_write_it_works(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("in the way")
     sources._folder.cache_clear()
     try:
-        assert np.isfinite(crane2().scalar_torque([1.0] * 19, load_model("a6vm215_crane2").values, ()))
+        assert np.isfinite(crane2().scalar_torque([1.0] * LENGTH, load_model("a6vm215_crane2").values, ()))
     finally:
         sources._folder.cache_clear()
     assert [each.name for each in tmp_path.iterdir()] == ["file"]
@@ -99,7 +102,8 @@ def test_two_processes_agree(tmp_path):
     """What one process has made is what the next computes with, to the last bit."""
     code = (
         "from winch_friction.records.model_file import load_model; m = load_model('a6vm215_crane2'); "
-        "print(repr(m.compile(2).scalar_torque_and_gradient([0.3 + 0.7 * k for k in range(19)], m.values, ())))"
+        f"x = [0.3 + 0.7 * k for k in range({LENGTH})]; "
+        "print(repr(m.compile(2).scalar_torque_and_gradient(x, m.values, ())))"
     )
     environment = {"XDG_CACHE_HOME": str(tmp_path), "PATH": "", "PYTHONPATH": str(Path(__file__).parents[2])}
     said = {

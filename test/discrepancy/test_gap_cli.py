@@ -143,10 +143,12 @@ def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_pat
 
 
 def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
-    size = {"value": 3.0, "std": 0.1, "unit": "Pa"}
+    size = {"value": 3.0e5, "std": 1.234e4, "unit": "Pa"}
     found = {"R_line": size, "free_line_pressure_drop_displacement_1": size}
     assert (
         _parameters({"law_kind": "free", "parameters": found})
-        == "R_line = 3 Pa, a curve (in the page and in model.yaml)"
+        == "R_line = 3 ± 0.12 bar, a curve (in the page and in model.yaml)"
     )
-    assert _parameters({"law_kind": "literature", "parameters": {"free_play": size}}) == "free_play = 3 Pa"
+    assert _parameters({"law_kind": "literature", "parameters": {"free_play": size}}) == "free_play = 3 ± 0.12 bar"
+    share = {"value": 0.0123, "std": 0.0004, "unit": "1"}
+    assert _parameters({"law_kind": "literature", "parameters": {"e_p": share}}) == "e_p = 0.0123 ± 0.0004"

@@ -7,20 +7,22 @@ import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
-from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
+from winch_friction.discrepancy.candidates.signals import BALANCING, DELAY, SPEED, signal_candidates
 from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.estimates import of_part, together
+from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.proof import at_the_floor
+from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import CM3_PER_REV
+from winch_friction.records.crane_file import load_crane
 
 
 @pytest.mark.long
@@ -51,8 +53,11 @@ def test_two_feedbacks_with_a_zero_each_are_one_cause_and_two_numbers(seed, flav
     for part, true in (("passive", zeros["passive"]), ("driving", zeros["main"])):
         assert known[f"D_0 of the {part} group"].value == pytest.approx(true, rel=0.1), part
     in_file = {group: each.value for each in found.model.corrections for group in each.groups}
-    assert in_file["passive"] == pytest.approx(zeros["passive"], rel=0.1)
-    assert in_file["active"] == pytest.approx(zeros["active"], rel=0.1)
+    # what is said is what the file holds, after its last fit as well
+    assert in_file["passive"] == pytest.approx(known["D_0 of the passive group"].value, rel=1e-9)
+    assert in_file["active"] == pytest.approx(known["D_0 of the driving group"].value, rel=1e-9)
+    for part, group in (("passive", "passive"), ("driving", "main")):
+        assert abs(known[f"D_0 of the {part} group"].value - zeros[group]) < 4.0 * known[f"D_0 of the {part} group"].std
 
 
 def test_estimates_of_two_parts_of_the_machine_are_not_added():
@@ -63,6 +68,26 @@ def test_estimates_of_two_parts_of_the_machine_are_not_added():
     twice = together(one, one)  # two laws for the same part: what both of them have adds
     assert twice["p_0"].value == pytest.approx(4e5)
     assert twice["p_0"].std == pytest.approx(3e3 * np.sqrt(2.0))
+
+
+def test_an_estimate_is_read_from_the_one_correction_that_says_it():
+    own = {each.law_name: each for each in feedback_candidates()}
+    shape = Shape("the driving group", {"groups": BALANCING})
+    sides = Sides(load_crane("crane_150t"), ("main",), ("passive",))
+    before = Correction("displacement_offset", 1e-7, groups=("main",))
+    found = {"D_0": ParameterEstimate(2e-7, 1e-9, "m^3/rad"), "D_b": ParameterEstimate(3e-7, 1e-9, "m^3/rad")}
+    slot = Slot("swivel_offset", shape.label, (0,), origin=(own[""], shape))
+    places = in_file(slot, {"D_0": found["D_0"]}, sides, {key_of(before): before})
+    now = Correction("displacement_offset", 3.5e-7, 2e-9, groups=("main",))
+    assert places["D_0"].key == key_of(now)
+    assert places["D_0"].read(now, "m^3/rad").value == pytest.approx(2.5e-7)  # beside what the model had
+    assert places["D_0"].read(now, "m^3/rad").std == pytest.approx(2e-9)
+    bow = Slot("swivel_offset", shape.label, (0, 1), origin=(own["bows over the stroke"], shape))
+    both = in_file(bow, found, sides, {})
+    assert both["D_b"] is None  # it is a gain and a curvature
+    assert both["D_0"] == replace(places["D_0"], before=0.0)
+    assert agreed(places, places) == places
+    assert agreed(places, both)["D_0"] is None  # one of the two knew another beginning
 
 
 @pytest.mark.parametrize("seed", [915, pytest.param(916, marks=pytest.mark.long)])

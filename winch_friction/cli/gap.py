@@ -200,9 +200,16 @@ def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
 
 
 def _parameters(effect: dict[str, Any]) -> str:
-    """Values with units; of a curve that the data drew only that it is one: its rises by themselves say little."""
+    """Values with deviations, in the units that people read them in; of a curve that the data drew only that it is one:
+    its rises by themselves say little."""
+    from winch_friction.report.tables import for_people, number, value_for_people
+
+    def amount(found: dict[str, Any]) -> str:
+        value, std = (value_for_people(found[part], found["unit"]) for part in ("value", "std"))
+        return f"{number(value, 3)} ± {number(std, 2)} {for_people(found['unit'])}".removesuffix(" –")
+
     of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
-    said = [f"{k} = {p['value']:.3g} {p['unit']}" for k, p in effect["parameters"].items() if k not in of_curve]
+    said = [f"{k} = {amount(found)}" for k, found in effect["parameters"].items() if k not in of_curve]
     return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
 
 

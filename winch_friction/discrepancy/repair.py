@@ -3,7 +3,7 @@ inertia has wrong becomes a correction, and all of it is fitted once more as the
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.estimates import estimates_of, of_part, together
+from winch_friction.discrepancy.estimates import InFile, agreed, estimates_of, in_file, of_part, together
 from winch_friction.discrepancy.expansion import Given, meet
 from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
 from winch_friction.discrepancy.search import Search
@@ -35,11 +35,13 @@ REPAIRED, REFITTED = "_repaired", "_refitted"  # behind the name of the given mo
 
 @dataclass(frozen=True)
 class Repair:
-    """The repaired model, the parameters of each effect, and what was cut at a bound."""
+    """The repaired model, the parameters of each effect, what was cut at a bound, and which corrections of the model
+    say the parameters of an effect."""
 
     model: FrictionModel
     parameters: dict[str, dict[str, ParameterEstimate]]
     cut: tuple[str, ...] = ()
+    said: dict[str, dict[str, InFile | None]] = field(default_factory=dict)
 
 
 @dataclass
@@ -105,11 +107,14 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     for k, each in enumerate(seed.corrections, start=len(base.names) - len(seed.corrections)):
         own.corrections.append(_changed(each, each.value + value[k], float(std[k])))
     parameters: dict[str, dict[str, ParameterEstimate]] = {}
-    sides = _sides(search.given)
+    said: dict[str, dict[str, InFile | None]] = {}
+    sides, had = _sides(search.given), {key_of(each): each for each in seed.corrections}
     for slot in explanation.slots:
         where = [columns.index(c) for c in slot.columns]
         found = estimates_of(slot, value[where], std[where], cross)
         parameters[slot.name] = together(parameters.get(slot.name, {}), of_part(slot, explanation.slots, found))
+        places = of_part(slot, explanation.slots, in_file(slot, found, sides, had))
+        said[slot.name] = agreed(said.get(slot.name, {}), places)
         _add(own, slot, found, sides, seed)
     if search.reversal is not None:
         finding = search.reversal
@@ -128,7 +133,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     for lost in search.flow:
         for each in lost.corrections:
             own.add_correction(each)
-    return _model_of(own, seed, search.given.crane, parameters, provenance)
+    return replace(_model_of(own, seed, search.given.crane, parameters, provenance), said=said)
 
 
 def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:
@@ -263,14 +268,20 @@ def _misfit(given: Given) -> float:
 
 
 def _reported(best: Repair, seed: FrictionModel) -> dict[str, dict[str, ParameterEstimate]]:
-    """The estimates of new terms as the polished model has them."""
-    model = best.model
+    """The estimates as the polished model has them: those of new terms, and those that one correction says."""
+    model, corrections = best.model, {key_of(each): each for each in best.model.corrections}
     new = {
         name: (value, float(std))
         for name, value, std in zip(model.parameter_names, model.values, model.std, strict=True)
         if name not in seed.parameter_names
     }
+
+    def now(effect: str, name: str, e: ParameterEstimate) -> ParameterEstimate:
+        said = best.said.get(effect, {}).get(name)
+        if said is not None and said.key in corrections:
+            return said.read(corrections[said.key], e.unit)
+        return ParameterEstimate(*new[name], e.unit) if name in new else e
+
     return {
-        effect: {name: ParameterEstimate(*new[name], e.unit) if name in new else e for name, e in found.items()}
-        for effect, found in best.parameters.items()
+        effect: {name: now(effect, name, e) for name, e in found.items()} for effect, found in best.parameters.items()
     }

@@ -28,7 +28,7 @@ from winch_friction.discrepancy.engine.selection import (
     select,
 )
 from winch_friction.discrepancy.engine.trials import heads
-from winch_friction.discrepancy.outdone import _asked, outdone
+from winch_friction.discrepancy.outdone import _asked, _closed, outdone
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -533,6 +533,16 @@ def test_a_law_that_picks_runs_is_asked_where_it_leaves_next_to_nothing(left, cl
     other = Scored(LAG, 1.0, 0.0, 2.0 * noise_alone, np.zeros(40))
     found = _asked(lambda without: [picks, other] if not without else [other], cross, named, closed)
     assert (picks in found) is stays
+
+
+@pytest.mark.parametrize(("kept", "locked", "closed"), [(0.0, 0.0, True), (2.0, 0.0, False), (0.0, 3.0, False)])
+def test_the_locked_runs_alone_do_not_close_a_gap(kept, locked, closed):
+    """Of the training runs a name may leave no more than the verdict allows: its company may have been dropped."""
+    cross = crossfit(3.0 * WAVE + kept * OTHER + noise(), features={"speed": OTHER, "acceleration": np.abs(SPEED)})
+    final = cross.explain(SLOTS[:1])
+    search = _Found(cross, Selection(cross.explain(()), final, (Finding(SLOTS[0], (), 0.0, 0.5, 1.0),)))
+    trial = Trial(search, None, None, side(3.0 * WAVE + noise(), locked * OTHER + noise(1)))
+    assert _closed(trial, np.random.default_rng(0)) is closed
 
 
 def test_a_second_law_of_a_cause_brings_no_other_names():

@@ -43,6 +43,50 @@ def test_once_is_enough():
     assert once.refined(once.shapes([])[0]) is once
 
 
+def law(name):
+    return next(each for each in all_candidates() if each.law_name == name)
+
+
+def driven(fastest=200.0, oil=40.0):
+    """A run with these speeds and this oil."""
+    return SimpleNamespace(speed=np.linspace(-fastest, fastest, 500), channels={"oil_temperature": np.full(500, oil)})
+
+
+@pytest.mark.parametrize(("name", "shape", "limits"), [
+    ("notch_power", "w_np", (1.0, 300.0)), ("high_pressure_power", "n_hp", (1.2, 6.0)),
+])  # fmt: skip
+@pytest.mark.parametrize("end", [0, -1])
+def test_a_finer_shape_keeps_to_what_is_declared(name, shape, limits, end):
+    """A file would hold a value that its own term calls impossible."""
+    runs = [driven(fastest=2000.0)]
+    own = law(name)
+    finer = own.refined(own.shapes(runs)[end]).shapes(runs)
+    assert len(finer) > len(own.shapes(runs))
+    assert all(limits[0] <= each.values[shape] <= limits[1] for each in finer)
+
+
+@pytest.mark.parametrize(("name", "fastest", "most"), [
+    ("notch_power", 120.0, 120.0), ("notch_any_stroke", 170.0, 170.0), ("stribeck_gauss", 50.0, 25.0),
+])  # fmt: skip
+def test_a_laws_own_speed_is_one_that_the_runs_have_seen(name, fastest, most):
+    """A notch's maximum, and half as far the width of a Stribeck curve: beyond it the law has lost its shape. On the
+    grid, and finer."""
+    runs = [driven(fastest)]
+    own = law(name)
+    finer = own.refined(own.shapes(runs)[-1]).shapes(runs)
+    speeds = [v for each in finer for k, v in each.values.items() if k.startswith(("w_", "v_"))]
+    assert 0.75 * most < max(speeds) < most
+
+
+@pytest.mark.parametrize(("oil", "widest"), [(20.0, 32.0), (40.0, 8.0), (60.0, None)])
+def test_a_stribeck_curve_that_follows_the_oil_is_one_at_the_oil_of_the_runs(oil, widest):
+    """Where the model's terms hold at 15 degC and the oil is at 60, it is nine times as wide as it says: wider than all
+    that was driven, what is left of it goes with the load, whatever the viscosity."""
+    kept = [each.values for each in law("viscosity_hersey").shapes([driven(100.0, oil)])]
+    assert max((v["C4_h"] for v in kept if v["T_vh"] == 15.0), default=None) == widest
+    assert max(v["C4_h"] for v in kept if v["T_vh"] == 50.0) == 32.0
+
+
 def test_every_curve_and_surface_has_a_name_of_its_own():
     """By it a slot is found again, and a table in a model file."""
     names = [name_of(row) for row in (*CURVES, *SURFACES)]

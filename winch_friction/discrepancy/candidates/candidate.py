@@ -52,6 +52,7 @@ class Shape:
 
 
 Shapes = Callable[[Sequence[PreparedRun]], list[Shape]]
+Possible = Callable[[Values, Sequence[PreparedRun]], bool]
 
 
 @dataclass(frozen=True)
@@ -154,6 +155,7 @@ class Candidate:
     own_size: bool = False  # its typical sizes are stated for this very machine
     plain: bool = False  # a base term that a bare model simply lacks, of any size
     brings: tuple[str, ...] = ()  # lower-order effects that belong to it
+    possible: Possible | None = None  # whether over these runs a shape is still that of its cause; None: any is
     continuous: tuple[str, ...] = ()  # shape parameters on a grid over a positive quantity, refined once found
     finer: "Callable[[], Candidate | None] | None" = None  # the same curve bent at more places, once it is found
     reversal_gain: float | None = None  # share of the error just after reversals that names it there; None: never
@@ -221,7 +223,15 @@ def _finer(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> l
     # one axis at a time where there are several: neighbours of neighbours would be too many
     points = itertools.product(*axes.values()) if len(axes) < 2 else _one_by_one(axes, shape)
     finer = [{**shape.values, **dict(zip(axes, point, strict=True))} for point in points]
-    return given + [replace(shape, label=label_of(values), values=values) for values in finer if values != shape.values]
+    own = [values for values in finer if values != shape.values and _believed(candidate, values, runs)]
+    return given + [replace(shape, label=label_of(values), values=values) for values in own]
+
+
+def _believed(candidate: Candidate, values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """Whether a finer shape keeps to what is declared of its parameters, and is still that of its cause."""
+    declared = {p.name: p for p in candidate.term.parameters} if candidate.term else {}
+    inside = all(declared[k].lower <= v <= declared[k].upper for k, v in values.items() if k in declared)
+    return inside and (candidate.possible is None or candidate.possible(values, runs))
 
 
 def _one_by_one(axes: Mapping[str, Sequence[float]], shape: Shape) -> list[tuple[float, ...]]:

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Shapes, label_of
+from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes, label_of
 from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, no_load, term_columns
+from winch_friction.discrepancy.candidates.speeds_seen import POSSIBLE
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -88,16 +89,14 @@ def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Cand
     member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
     if cause == "viscosity_temperature":  # the term is a difference and has no sign, but thick oil never drags less
         member = replace(member, shapes=partial(_positive, member.shapes))
-    if cause == "stribeck":
-        member = replace(member, shapes=partial(_inside_the_speeds, member.shapes))
+    possible = POSSIBLE.get(cause)
+    if possible is not None:
+        member = replace(member, possible=possible, shapes=partial(_possible, possible, member.shapes))
     return replace(member, name=cause)
 
 
-def _inside_the_speeds(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
-    """Stribeck speeds that the runs go well beyond: a wider curve is a constant, and that is Coulomb friction."""
-    top = max((float(np.percentile(np.abs(run.speed), 99)) for run in runs), default=np.inf)
-    wide = [any(name.startswith("v_") and v >= 0.5 * top for name, v in each.values.items()) for each in shapes(runs)]
-    return [shape for shape, out in zip(shapes(runs), wide, strict=True) if not out]
+def _possible(possible: Possible, shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
+    return [shape for shape in shapes(runs) if possible(shape.values, runs)]
 
 
 def _positive(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:

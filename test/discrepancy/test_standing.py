@@ -63,7 +63,7 @@ def test_a_refit_that_harms_the_locked_runs_is_not_written():
 @pytest.mark.long
 @pytest.mark.parametrize(("effect", "seed"), [("power_loss", 19_500_024), ("pressure_memory", 19_500_021)])
 def test_a_law_without_its_shape_is_no_name_for_what_none_knows(effect, seed):
-    """A loss of load times speed is no notch whose maximum lies at 500 rad/s where the motors do 200, and what remembers
+    """Load times speed is no notch whose maximum lies at 500 rad/s where the motors do 200, and what remembers
     the pressure no viscosity whose Stribeck curve is wider than all that was driven."""
     result, _ = _answer("drawn_outside", seed, (effect, 1.0))
     assert result.verdict == "unexplained"

@@ -52,19 +52,6 @@ def driven(fastest=200.0, oil=40.0):
     return SimpleNamespace(speed=np.linspace(-fastest, fastest, 500), channels={"oil_temperature": np.full(500, oil)})
 
 
-@pytest.mark.parametrize(("name", "shape", "limits"), [
-    ("notch_power", "w_np", (1.0, 300.0)), ("high_pressure_power", "n_hp", (1.2, 6.0)),
-])  # fmt: skip
-@pytest.mark.parametrize("end", [0, -1])
-def test_a_finer_shape_keeps_to_what_is_declared(name, shape, limits, end):
-    """A file would hold a value that its own term calls impossible."""
-    runs = [driven(fastest=2000.0)]
-    own = law(name)
-    finer = own.refined(own.shapes(runs)[end]).shapes(runs)
-    assert len(finer) > len(own.shapes(runs))
-    assert all(limits[0] <= each.values[shape] <= limits[1] for each in finer)
-
-
 @pytest.mark.parametrize(("name", "fastest", "most"), [
     ("notch_power", 120.0, 120.0), ("notch_any_stroke", 170.0, 170.0), ("stribeck_gauss", 50.0, 25.0),
 ])  # fmt: skip

@@ -223,15 +223,9 @@ def _finer(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> l
     # one axis at a time where there are several: neighbours of neighbours would be too many
     points = itertools.product(*axes.values()) if len(axes) < 2 else _one_by_one(axes, shape)
     finer = [{**shape.values, **dict(zip(axes, point, strict=True))} for point in points]
-    own = [values for values in finer if values != shape.values and _believed(candidate, values, runs)]
-    return given + [replace(shape, label=label_of(values), values=values) for values in own]
-
-
-def _believed(candidate: Candidate, values: Values, runs: Sequence[PreparedRun]) -> bool:
-    """Whether a finer shape keeps to what is declared of its parameters, and is still that of its cause."""
-    declared = {p.name: p for p in candidate.term.parameters} if candidate.term else {}
-    inside = all(declared[k].lower <= v <= declared[k].upper for k, v in values.items() if k in declared)
-    return inside and (candidate.possible is None or candidate.possible(values, runs))
+    if candidate.possible is not None:
+        finer = [values for values in finer if candidate.possible(values, runs)]
+    return given + [replace(shape, label=label_of(values), values=values) for values in finer if values != shape.values]
 
 
 def _one_by_one(axes: Mapping[str, Sequence[float]], shape: Shape) -> list[tuple[float, ...]]:

@@ -145,7 +145,8 @@ def _effect(search: Search, laws: Sequence[Finding], repaired: Repair, tied: Com
     estimates = repaired.parameters.get(name, {})
     return Effect(
         name, tied.rivals, _and(each.slot.label for each in laws),
-        " + ".join(dict.fromkeys(each.latex for each in candidates)), estimates, found.p_value, found.gain, found.selection_frequency,
+        " + ".join(dict.fromkeys(each.latex for each in candidates)), estimates,
+        found.p_value, found.gain, found.selection_frequency,
         law_name=_law_name(candidates),
         free=any(each.free for each in candidates),
         combination=known_combination(search, found, estimates, tied.partners, repaired.model),

@@ -39,7 +39,7 @@ from winch_friction.discrepancy.proof import (
     prove,
     worse_runs,
 )
-from winch_friction.discrepancy.standing import _each_proven, _sets
+from winch_friction.discrepancy.standing import _each_proven, _sets, several_leave_more_than_noise
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
@@ -396,6 +396,21 @@ def test_a_name_may_not_leave_a_fifth_of_the_locked_gap(left, enough):
     """3 of a wave: 1.6 leaves more than 15 % of its square, and more than twice the floor; 1.0 is at the floor."""
     after = side(3.0 * np.sqrt(2) * WAVE + noise(), left * np.sqrt(2) * WAVE + noise(1), floor=0.8)
     assert bool(leaves_too_much(after)) is enough
+
+
+@pytest.mark.parametrize(
+    ("names", "left", "stands"),
+    [(("one", "two"), 1.1, True), (("one", "two"), 1.6, False), (("one", "one"), 1.6, True), (("one",), 1.6, True)],
+)
+def test_several_names_leave_no_more_than_noise(names, left, stands):
+    slots = tuple(Slot(name, "", (k,)) for k, name in enumerate(names))
+    after = replace(side(3.0 * WAVE, noise(), floor=0.8), least_noise=0.0)
+    after = replace(after, size_after=replace(after.size_after, value=left * after.floor))
+    trial = SimpleNamespace(holdout=after, search=SimpleNamespace(explanation=SimpleNamespace(slots=slots)))
+    assert (several_leave_more_than_noise(trial) == "") is stands
+    plain = tuple(replace(slot, plain=True) for slot in slots)  # what a bare model lacks is no discovery
+    trial.search.explanation.slots = plain
+    assert several_leave_more_than_noise(trial) == ""
 
 
 @dataclass(frozen=True)

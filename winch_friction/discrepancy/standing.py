@@ -15,6 +15,7 @@ from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
 from winch_friction.discrepancy.search import Search
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.winch import Crane
 
@@ -31,7 +32,10 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     for each in _sets(search, rng):
         full, why = _stands(each, refit, trial_of, rng)
         if full is not None:
-            return _each_proven(full, refit, trial_of, rng)
+            proven = _each_proven(full, refit, trial_of, rng)
+            why = several_leave_more_than_noise(proven)
+            if not why:
+                return proven
         whys.append(why)
     beside = replace(nameless(search), ripple=search.ripple, flow=search.flow)
     if search.ripple or search.flow:
@@ -47,6 +51,18 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
     harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)
     return as_given(split, options, judged.search, rng) if harmful else judged
+
+
+def several_leave_more_than_noise(trial: Trial) -> str:
+    """Why several names do not stand although each takes its part of the locked gap; empty where they do.
+
+    One name's law may be inexact; of several the second is as likely what the first one's law has wrong.
+    """
+    names = {slot.name for slot in trial.search.explanation.slots if not slot.plain}
+    left = trial.holdout.size_after.value
+    if len(names) < 2 or left <= LIMITS.several_leave * trial.holdout.floor:
+        return ""
+    return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {trial.holdout.floor:.3g}"
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:

@@ -693,3 +693,18 @@ def test_a_curve_is_a_rival_of_a_curve_although_another_law_speaks_for_its_cause
     )  # fmt: skip
     found, _ = rivals_of(stub, explain((own,)), explain(()), 0, rng)
     assert [slot.name for slot in found] == rivals
+
+
+def test_what_a_set_has_no_room_for_is_said(monkeypatch):
+    cross = crossfit(noise())
+    none = cross.explain(())
+    many = tuple(Slot(name, "", ()) for name in ("second", "third", "fourth", "fifth"))
+    monkeypatch.setattr(selection_module, "rivals_of", lambda *_, **__: (many, 1.0))
+    found = selection_module._found(cross, replace(none, slots=(Slot("first", "", ()),)), 0, {"first": 0.01}, None)
+    assert [slot.name for slot in found.rivals] == ["second", "third"]
+    assert found.no_room == ("fourth", "fifth")
+    own = Company(("second", "third"), (), found.no_room)
+    assert own.note("first") == "first: fourth, fifth do as well on these runs, but a set has no room for them"
+    assert Company((), (), ("fourth",)).note("first").endswith("fourth does as well on these runs, "
+                                                                "but a set has no room for it")
+    assert Company((), ()).note("first") == ""

@@ -86,7 +86,8 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         next_scenario=experiment.text if experiment else "",
         notes=(
             *_notes(split.runs, given.loads), *repaired.cut,
-            *(each.note for own in tied.values() for each in own.partners), *([drift] if drift else []), *left,
+            *(each.note for own in tied.values() for each in own.partners),
+            *filter(None, (own.note(name) for name, own in tied.items())), *([drift] if drift else []), *left,
         ),
     )  # fmt: skip
 

@@ -174,10 +174,18 @@ def _displacement_columns(model: FrictionModel, run: PreparedRun, values: Values
 
 @dataclass(frozen=True)
 class Company:
-    """The other names of a finding, those that do best first, and which of them are there by a tie."""
+    """The other names of a finding, the best first, which of them are there by a tie, and which have no room."""
 
     rivals: tuple[str, ...]
     partners: tuple[Partner, ...]
+    no_room: tuple[str, ...] = ()
+
+    def note(self, name: str) -> str:
+        """What is to be said of the names that have no room beside this one; empty without any."""
+        if not self.no_room:
+            return ""
+        do, them = ("does", "it") if len(self.no_room) == 1 else ("do", "them")
+        return f"{name}: {', '.join(self.no_room)} {do} as well on these runs, but a set has no room for {them}"
 
 
 def company(search: Search, found: Finding) -> Company:
@@ -196,7 +204,7 @@ def company(search: Search, found: Finding) -> Company:
         if tie.second.name in ours and slot.name == tie.first.name and slot.label.startswith(tie.first.label)
     }  # fmt: skip
     if not pairs:
-        return Company(names, ())
+        return Company(names, (), found.no_room)
     others = [slot for slot in search.selection.final.slots if slot is not found.slot]
     fixed = [_fixed(*slot.origin) for slot in (*others, *slots)]
     fixed += [_fixed(ours[name], _shape_of(ours[name], tie.second, runs)) for name, (_, tie) in pairs.items()]
@@ -212,7 +220,8 @@ def company(search: Search, found: Finding) -> Company:
             losses[tie.second.name] = trial.loss if k == 0 else float("inf")
             partners.append(_partner(tie, cross, (first, *trials)[k], trial))
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
-    return Company(tuple(best), tuple(each for each in partners if each.name in best))
+    no_room = (*(name for name in losses if name not in best), *found.no_room)
+    return Company(tuple(best), tuple(each for each in partners if each.name in best), no_room)
 
 
 def _shape_of(candidate: Candidate, member: Member, runs: Sequence[PreparedRun]) -> Shape:

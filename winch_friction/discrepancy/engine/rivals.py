@@ -35,7 +35,7 @@ def rivals_of(
             equal.append((charged(without.loss, trial.loss, trial.slots[-1]), trial.slots[-1]))
     equal.sort(key=lambda pair: pair[0])
     frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
-    return tuple(slot for _, slot in equal if slot is not own)[: LIMITS.most_names - 1], frequency
+    return tuple(slot for _, slot in equal if slot is not own), frequency
 
 
 def _closest(trials: Sequence[Explanation]) -> list[Explanation]:

@@ -32,13 +32,14 @@ class Considered:
 
 @dataclass(frozen=True)
 class Finding:
-    """One missing effect, its rivals, and the evidence for it."""
+    """One missing effect, its rivals, and the evidence for it; `no_room`: more rivals than a set has room for."""
 
     slot: Slot
     rivals: tuple[Slot, ...]
     p_value: float
     gain: float
     selection_frequency: float
+    no_room: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,9 @@ def with_fewer(cross: CrossFit, selection: Selection, slots: Sequence[Slot], rng
 def _one_set_each(found: Sequence[Finding]) -> tuple[Finding, ...]:
     """The findings; what could stand for the second law of a cause is no other name for it."""
     before = [{each.slot.name for each in found[:k]} for k in range(len(found))]
-    return tuple(replace(f, rivals=()) if f.slot.name in b else f for f, b in zip(found, before, strict=True))
+    return tuple(
+        replace(f, rivals=(), no_room=()) if f.slot.name in b else f for f, b in zip(found, before, strict=True)
+    )
 
 
 def _forward(
@@ -274,4 +277,6 @@ def _found(
     rivals, frequency = rivals_of(cross, current, without, k, rng, same=bool(bringers))
     name = own.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
-    return Finding(own, rivals, p, float(cross.gain(without, current)), frequency)
+    room = LIMITS.most_names - 1
+    more = tuple(slot.name for slot in rivals[room:])
+    return Finding(own, rivals[:room], p, float(cross.gain(without, current)), frequency, more)

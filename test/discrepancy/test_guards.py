@@ -10,6 +10,7 @@ from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
+from winch_friction.discrepancy.engine import selection as selection_module
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
@@ -40,6 +41,7 @@ from winch_friction.discrepancy.proof import (
     worse_runs,
 )
 from winch_friction.discrepancy.standing import _each_proven, _sets, several_leave_more_than_noise
+from winch_friction.discrepancy.ties import Company
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
@@ -408,6 +410,9 @@ def test_several_names_leave_no_more_than_noise(names, left, stands):
     after = replace(after, size_after=replace(after.size_after, value=left * after.floor))
     trial = SimpleNamespace(holdout=after, search=SimpleNamespace(explanation=SimpleNamespace(slots=slots)))
     assert (several_leave_more_than_noise(trial) == "") is stands
+    brought = (Slot("slope", "", (0,), brings=("level",)), Slot("level", "", (1,)))  # one effect of two orders
+    trial.search.explanation.slots = brought
+    assert several_leave_more_than_noise(trial) == ""
     plain = tuple(replace(slot, plain=True) for slot in slots)  # what a bare model lacks is no discovery
     trial.search.explanation.slots = plain
     assert several_leave_more_than_noise(trial) == ""
@@ -700,11 +705,11 @@ def test_what_a_set_has_no_room_for_is_said(monkeypatch):
     none = cross.explain(())
     many = tuple(Slot(name, "", ()) for name in ("second", "third", "fourth", "fifth"))
     monkeypatch.setattr(selection_module, "rivals_of", lambda *_, **__: (many, 1.0))
-    found = selection_module._found(cross, replace(none, slots=(Slot("first", "", ()),)), 0, {"first": 0.01}, None)
+    found = selection_module._found(
+        cross, replace(none, slots=(Slot("first", "", ()),)), 0, {"first": 0.01}, np.random.default_rng(0)
+    )
     assert [slot.name for slot in found.rivals] == ["second", "third"]
     assert found.no_room == ("fourth", "fifth")
     own = Company(("second", "third"), (), found.no_room)
-    assert own.note("first") == "first: fourth, fifth do as well on these runs, but a set has no room for them"
-    assert Company((), (), ("fourth",)).note("first").endswith("fourth does as well on these runs, "
-                                                                "but a set has no room for it")
+    assert own.note("first") == "first: as well on these runs, but without room in a set: fourth, fifth"
     assert Company((), ()).note("first") == ""

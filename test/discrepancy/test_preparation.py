@@ -1,5 +1,6 @@
 """What of a record is used: nothing where the direction of motion, and with it that of friction, is uncertain."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,10 +8,11 @@ import pytest
 from gap_rig import runs_with
 
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.preparation.balance import measured_groups
+from winch_friction.discrepancy.preparation.balance import measured_groups, without_error
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.prepare import _followed
+from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.discrepancy.regressors import least_noise_of
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
@@ -151,3 +153,18 @@ def test_where_port_b_is_the_higher_the_operating_point_has_its_pressure(crane_1
             np.testing.assert_allclose(port_b, 0.5 * (group.pressure_sum - group.pressure), rtol=1e-9)
             seen += int(np.sum(port_b > 0.5 * at["pressure_sum"] + 5e5))
     assert seen > 100
+
+
+def test_an_error_of_a_stroke_leaves_the_pressure_and_takes_the_displacement():
+    """Both are the same torque of the motors; only their own friction, of pressure and of displacement, differs."""
+    ones = np.ones(3)
+    own = GroupSignals("main", 11, 9e6 * ones, 1e7 * ones, 5e5 * ones, 3e-5 * ones, True, 9e6 * ones)
+    other = replace(own, name="passive", balances=False, count=5)
+    torque = 5 * 3e-5 * 9e6
+    main, passive = without_error((own, other), 0.0, 0.1 * torque)
+    assert main is own
+    np.testing.assert_allclose(passive.displacement, 2.7e-5)
+    np.testing.assert_allclose(passive.pressure, 9e6)
+    np.testing.assert_allclose(without_error((own, other), 0.1 * torque)[1].pressure, 8.1e6)
+    at_rest = replace(other, pressure=0.0 * ones)
+    np.testing.assert_allclose(without_error((own, at_rest), 0.0, 5.0)[1].displacement, 3e-5)

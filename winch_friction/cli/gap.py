@@ -206,7 +206,8 @@ def _parameters(effect: dict[str, Any]) -> str:
 
     def amount(found: dict[str, Any]) -> str:
         value, std = (value_for_people(found[part], found["unit"]) for part in ("value", "std"))
-        return f"{number(value, 3)} ± {number(std, 2)} {for_people(found['unit'])}".removesuffix(" –")
+        sure = f" ± {number(std, 2)}" if std > 0.0 else ""
+        return f"{number(value, 3)}{sure} {for_people(found['unit'])}".removesuffix(" –")
 
     of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
     said = [f"{k} = {amount(found)}" for k, found in effect["parameters"].items() if k not in of_curve]

@@ -35,10 +35,12 @@ def estimates_of(slot: Slot, value: FloatArray, std: FloatArray, cross: CrossFit
 
 def of_part(slot: Slot, slots: Sequence[Slot], found: Mapping[str, _Known]) -> Mapping[str, _Known]:
     """What is known of each parameter, under names of their own where the same cause has others for another part of the
-    machine: a zero of one feedback and a zero of another are two numbers."""
-    if len({each.part for each in slots if each.name == slot.name}) < 2:
+    machine: a zero of one feedback and a zero of another are two numbers, and one of all of them is a third."""
+    parts = {each.part for each in slots if each.name == slot.name}
+    if len(parts) < 2:
         return found
-    return {f"{name} of {slot.label.partition(',')[0]}": each for name, each in found.items()}
+    beside = ", beside that of all" if slot.part and "" in parts else ""
+    return {f"{name} of {slot.label.partition(',')[0]}{beside}": each for name, each in found.items()}
 
 
 def together(first: Estimates, second: Estimates) -> dict[str, ParameterEstimate]:
@@ -71,11 +73,13 @@ def in_file(slot: Slot, found: Estimates, sides: Sides, had: Mapping[str, Correc
     candidate, shape = slot.origin
     if candidate.corrects is None:
         return dict.fromkeys(found)
-    made = candidate.corrects(found, shape, sides)
+    # as small as nothing: what is near a bound would be cut there, and only half of the step be seen
+    small = {name: replace(each, value=STEP * each.value) for name, each in found.items()}
+    made = candidate.corrects(small, shape, sides)
     slopes: dict[str, dict[str, float]] = {}
-    for name, each in found.items():
+    for name, each in small.items():
         step = STEP * each.value or STEP * each.std
-        moved = candidate.corrects({**found, name: replace(each, value=each.value + step)}, shape, sides)
+        moved = candidate.corrects({**small, name: replace(each, value=each.value + step)}, shape, sides)
         slopes[name] = {
             key_of(old): (new.value - old.value) / step
             for old, new in zip(made, moved, strict=True)
@@ -90,7 +94,7 @@ def in_file(slot: Slot, found: Estimates, sides: Sides, had: Mapping[str, Correc
 
 
 def agreed(first: Mapping[str, InFile | None], second: Mapping[str, InFile | None]) -> dict[str, InFile | None]:
-    """Where the estimates of a cause with two laws stand: what both of them have is one estimate, in one correction or
-    in none."""
+    """Where the estimates of a cause with two laws stand: what both of them have is one estimate, in one correction;
+    None, which leaves it as the search had it, where they are in two."""
     both = {name: place if first[name] == place else None for name, place in second.items() if name in first}
     return {**first, **second, **both}

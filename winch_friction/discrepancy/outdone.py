@@ -56,8 +56,9 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
     left = search.cross.excess(search.explanation)
-    asked = len(slots) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
-    closed = len(slots) == 1 and _closed(trial, rng)
+    causes = {slot.name for slot in slots}
+    asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
+    closed = bool(asked) and len(causes) == 1 and _closed(trial, rng)
     near = partial(near_laws, search, split.train, rng)
     laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
     why = outdone(laws, search.cross, search.selection, closed)
@@ -92,18 +93,19 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     if not laws or not slots:
         return ""
     law = laws[0]
-    given = len(slots) == 1 and not slots[0].free
+    one = len({slot.name for slot in slots}) == 1
+    given = one and not any(slot.free for slot in slots)
     share = LIMITS.outdone if given or closed else 1.0
     if law.loss - cross.floor > share * (named.loss - cross.floor):
         return ""
-    if len(slots) == 1:
+    if one:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
         many = [slot for slot in rivals if _has_laws(slot, cross)]
         own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
         if own and law.loss - cross.floor > LIMITS.outdone * (min(own) - cross.floor):
             return ""
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
-    together = "together " if len(slots) > 1 else ""
+    together = "" if one else "together "
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
 
 

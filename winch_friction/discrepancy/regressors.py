@@ -205,14 +205,14 @@ def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Acc
     """What an explanation's effects add to what the driving motors carry, and to the passive side's signals; errors of
     the driving motors' own signals add nothing.
     """
-    missing, error = np.zeros(len(run.time)), np.zeros(len(run.time))
+    missing, error, of_stroke = (np.zeros(len(run.time)) for _ in range(3))
     at = len(layout.base.names)
     for slot in explanation.slots:
         width = len(slot.columns)
         candidate, shape = slot.origin
         if candidate.kind != "signal" or shape.carried:
             columns = slot_columns(run, slot) * layout.scales[list(slot.columns)]
-            total = error if shape.carried else missing
+            total = missing if not shape.carried else of_stroke if candidate.of_stroke else error
             total += columns @ explanation.beta[at : at + width]
         at += width
-    return Accounted(missing, error)
+    return Accounted(missing, error, of_stroke)

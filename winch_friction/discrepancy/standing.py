@@ -58,7 +58,8 @@ def several_leave_more_than_noise(trial: Trial) -> str:
 
     One name's law may be inexact; of several the second is as likely what the first one's law has wrong.
     """
-    names = {slot.name for slot in trial.search.explanation.slots if not slot.plain}
+    slots = trial.search.explanation.slots
+    names = {own.name for own in slots if not own.plain and not any(own.name in each.brings for each in slots)}
     left = trial.holdout.size_after.value
     if len(names) < 2 or left <= LIMITS.several_leave * trial.holdout.floor:
         return ""
@@ -129,7 +130,10 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
             continue
         without = trial_of(_without(search, slot))
         mends = any(each.law for each in without.search.selection.final.slots) and at_the_floor(without.holdout)
-        minor = is_minor(refit.holdout, without.holdout, full.holdout) and not leaves_too_much(without.holdout)
+        # a second law of a cause is no second name: what it takes may be little beside what the first one does
+        same = slot.name in without.search.selection.final.names
+        minor = not same and is_minor(refit.holdout, without.holdout, full.holdout)
+        minor = minor and not leaves_too_much(without.holdout)
         if mends or minor or not adds(without.holdout, full.holdout, rng):
             full = without
     if len(full.search.selection.final.slots) < count:

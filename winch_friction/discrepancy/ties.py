@@ -182,10 +182,8 @@ class Company:
 
     def note(self, name: str) -> str:
         """What is to be said of the names that have no room beside this one; empty without any."""
-        if not self.no_room:
-            return ""
-        do, them = ("does", "it") if len(self.no_room) == 1 else ("do", "them")
-        return f"{name}: {', '.join(self.no_room)} {do} as well on these runs, but a set has no room for {them}"
+        said = f"{name}: as well on these runs, but without room in a set: {', '.join(self.no_room)}"
+        return said if self.no_room else ""
 
 
 def company(search: Search, found: Finding) -> Company:
@@ -252,11 +250,15 @@ def known_combination(
         estimate, name = estimates[linear[0]], linear[0]
         parts = [name, *(_times(each.factor, "1", each.parameter) for each in own)]
         return Combination(" ".join(parts), estimate.value, estimate.std, estimate.unit, own[0].tie.why)
-    return _best_pair(_covariance(search, found, linear, repaired), estimates, linear) if len(linear) > 1 else None
+    if len(linear) < 2:
+        return None
+    return _best_pair(_covariance(search, found, estimates, linear, repaired), estimates, linear)
 
 
-def _covariance(search: Search, found: Finding, linear: Sequence[str], repaired: FrictionModel) -> FloatArray:
-    """Of the estimates as they are reported: a new term's from the polished model, others' from the search."""
+def _covariance(
+    search: Search, found: Finding, estimates: Estimates, linear: Sequence[str], repaired: FrictionModel
+) -> FloatArray:
+    """Of the estimates as reported: a new term's from the polished model, of others the search's correlation."""
     new = set(repaired.parameter_names) - set(search.given.model.parameter_names)
     if set(linear) <= new and repaired.covariance is not None:
         at = [repaired.parameter_names.index(name) for name in linear]
@@ -265,8 +267,9 @@ def _covariance(search: Search, found: Finding, linear: Sequence[str], repaired:
     declared = [p.name for p in found.slot.origin[0].linear]
     own = [found.slot.columns[declared.index(name)] for name in linear]
     at = [cross.problem.columns(final.slots).index(c) for c in own]
-    scale = cross.problem.layout.scales[own]
-    return np.asarray(cross.covariance(final)[np.ix_(at, at)] * np.outer(scale, scale))
+    covariance = cross.covariance(final)[np.ix_(at, at)]
+    size = np.array([estimates[name].std for name in linear]) / np.sqrt(np.diag(covariance))
+    return np.asarray(covariance * np.outer(size, size))
 
 
 def _best_pair(covariance: FloatArray, estimates: Estimates, linear: Sequence[str]) -> Combination | None:

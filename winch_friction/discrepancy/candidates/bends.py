@@ -131,6 +131,6 @@ def bends_over(runs: Sequence[PreparedRun]) -> list[Candidate]:
                   bent_pressure_columns, lambda _: pressures, _to_pressure, law_name="bends at a pressure"),
         in_groups("swivel_offset", r"\sum_g n_g\,\Delta p_g\,(D_0 + \sum_k b_{Dk}\,(D_g - D_k)_+)", (D_0, *BENDS),
                   curve_columns, lambda _: strokes, _to_curve, law_name="a curve over the stroke", blind=_few_strokes,
-                  free=True),
+                  free=True, of_stroke=True),
     ]  # fmt: skip
     return [each for each, shapes in zip(found, (pressures, strokes), strict=True) if shapes]

@@ -47,8 +47,8 @@ class Shape:
 
     @property
     def part(self) -> str:
-        """Which of the motor groups it speaks of, where it speaks of some."""
-        return f"{self.values['groups']:g}" if "groups" in self.values else ""
+        """Which of the motor groups it speaks of; empty where it speaks of all."""
+        return f"{self.values['groups']:g}" if self.values.get("groups") else ""
 
 
 Shapes = Callable[[Sequence[PreparedRun]], list[Shape]]
@@ -153,6 +153,7 @@ class Candidate:
     # -- what is believed of it
     plausible: float = 6.0  # typical sizes
     own_size: bool = False  # its typical sizes are stated for this very machine
+    of_stroke: bool = False  # an error of the displacement's feedback, not of a pressure
     plain: bool = False  # a base term that a bare model simply lacks, of any size
     brings: tuple[str, ...] = ()  # lower-order effects that belong to it
     possible: Possible | None = None  # whether over these runs a shape is still that of its cause; None: any is

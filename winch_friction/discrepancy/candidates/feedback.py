@@ -1,6 +1,7 @@
 """Candidates in the feedback of the displacement: its zero, what the oil's warmth adds, and a bow over the stroke."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -83,7 +84,7 @@ def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
 def feedback_candidates() -> list[Candidate]:
     """A zero error, one that shifts with the oil, and a bow between ends at which the feedback is right."""
     swivel = r"\sum_g n_g\,\Delta p_g\,"
-    return [
+    found = [
         in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
                   to(("displacement_offset", D_0))),
         in_groups("swivel_offset", swivel + r"(D_0 + D_T(\vartheta-40))", (D_0, D_T), partial(warm_columns, _swivel),
@@ -95,3 +96,4 @@ def feedback_candidates() -> list[Candidate]:
                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
                   blind=_few_strokes),
     ]  # fmt: skip
+    return [replace(each, of_stroke=True) for each in found]

@@ -11,7 +11,7 @@ def other_starts(cross: CrossFit, current: Explanation) -> list[Explanation]:
     """Sets to begin from once more; none where the current one leaves no more than noise."""
     if not current.slots or cross.excess(current) <= LIMITS.least_excess:
         return []
-    return [*_by_own_law(cross, current), *_part_by_part(cross, current)]
+    return [*_part_by_part(cross, current), *_by_own_law(cross, current)]
 
 
 def _by_own_law(cross: CrossFit, current: Explanation) -> list[Explanation]:
@@ -30,18 +30,22 @@ def _part_by_part(cross: CrossFit, current: Explanation) -> list[Explanation]:
     feedbacks that are off seldom follow one law, and what is best for one alone need not be its law beside the other.
     """
     starts = []
-    for name in dict.fromkeys(slot.name for slot in current.slots if slot.part):
+    for name in current.names:
         own = fitted(cross, (), {slot.name for slot in cross.problem.slots} - {name}, by_part=True)
-        pairs = [pair for pair in itertools.combinations(own, 2) if pair[0].part != pair[1].part]
+        parts = [slot for slot in own if slot.part]
+        pairs = [pair for pair in itertools.combinations(parts, 2) if pair[0].part != pair[1].part]
         if pairs:
             starts.append(min((cross.explain(pair) for pair in pairs), key=lambda each: each.loss))
     return starts
 
 
 def far_less(cross: CrossFit, anew: Explanation, current: Explanation) -> bool:
-    """Whether a set of no more names leaves half of what another does at most, or one of more leaves noise; of fewer
-    causes it need only leave less."""
-    if len(set(anew.names)) < len(set(current.names)) and anew.loss <= current.loss:
+    """Whether a set of no more laws leaves half of what another does at most, or one of more leaves noise; of fewer
+    causes it need only leave less.
+
+    Laws and not causes: around two laws of one cause that leave more than noise the next preparation is no better.
+    """
+    if len(anew.names) < len(current.names) and anew.loss <= current.loss:
         return True
     few = len(anew.slots) <= len(current.slots) or cross.excess(anew) <= LIMITS.least_excess
     return few and anew.loss - cross.floor <= LIMITS.outdone * (current.loss - cross.floor)

@@ -25,6 +25,7 @@ from winch_friction.physics.winch import Crane, higher_port, operating_point
 from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
 SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
+MOST_OF_STROKE = 0.5  # of a displacement, that an error may be of it: far more than any feedback is off
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent
 # least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
 SHOWS = 1.5
@@ -70,10 +71,18 @@ def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArra
     return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
 
 
-def without_error(groups: Groups, error: FloatArray | float) -> Groups:
-    """Groups whose passive pressures are rid of an error that amounts to a torque (N m) at the shaft."""
+def without_error(groups: Groups, error: FloatArray | float, of_stroke: FloatArray | float = 0.0) -> Groups:
+    """Groups whose passive pressures are rid of an error that amounts to a torque (N m) at the shaft, and whose passive
+    displacements are rid of one (`of_stroke`): the motors' own friction tells the two apart."""
     passive = sum(g.count * g.displacement for g in groups if not g.balances)
-    return tuple(g if g.balances else replace(g, pressure=g.pressure - error / passive) for g in groups)
+    torque = hydraulic_torque((g.count, g.displacement, g.pressure) for g in groups if not g.balances)
+    share = np.clip(of_stroke / np.where(np.abs(torque) > 0.0, torque, np.inf), -MOST_OF_STROKE, MOST_OF_STROKE)
+    return tuple(
+        g
+        if g.balances
+        else replace(g, pressure=g.pressure - error / passive, displacement=g.displacement * (1.0 - share))
+        for g in groups
+    )
 
 
 def with_predicted_pressure(groups: Groups, torque: FloatArray) -> Groups:
@@ -97,11 +106,12 @@ def _filled(values: FloatArray) -> FloatArray:
 @dataclass(frozen=True)
 class Accounted:
     """What effects found so far add along a run, N m at the shaft: load on the motors, and what the passive side's
-    signals have too much.
+    pressures and its displacements have too much.
     """
 
     missing_torque: FloatArray | float = 0.0
     passive_error: FloatArray | float = 0.0
+    passive_stroke_error: FloatArray | float = 0.0
 
 
 @dataclass(frozen=True)
@@ -178,7 +188,7 @@ class Balancing:
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self._measured
-        groups = without_error(groups, self.accounted.passive_error)
+        groups = without_error(groups, self.accounted.passive_error, self.accounted.passive_stroke_error)
         predicted = frictionless
         for _ in range(FIXED_POINT_STEPS):
             groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque)

@@ -42,7 +42,7 @@ GROUP_SIGNALS = (
     _signal("pressure", "p", "Pa", "absolute pressure drop |p_A - p_B|"),
     _signal("pressure_sum", r"\Sigma p", "Pa", "p_A + p_B", 0.0),
     _signal("displacement", "D", "m^3/rad", "displacement per motor"),
-    # a step at p_A = p_B: equations multiply it by the pressure, which is zero there, and so have none
+    # a step at p_A = p_B: an equation must multiply it by the pressure, which is zero there; no table may be over it
     _signal("higher_port", "h", "1", "+1 where p_A is the higher pressure, -1 where p_B is", 1.0),
 )
 # what the model file carries as constants of the motor and the oil

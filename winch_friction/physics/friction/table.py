@@ -24,7 +24,12 @@ ANCHORS = ("none", "low", "high")
 SIDES = {"both": 0, "hoisting": 1, "lowering": -1}
 # what a curve may be over, and what may multiply it: symbol or expression, and unit
 FACTORS: dict[str, tuple[sp.Expr, str]] = {
-    **{each.name: (each.symbol, each.unit) for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)},
+    # which port is the higher is a step that only a pressure beside it takes away
+    **{
+        each.name: (each.symbol, each.unit)
+        for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)
+        if each.name != "higher_port"
+    },
     "displacement_left": (symbols.X - symbols.D, "m^3/rad"),  # up to the largest
     "flow": (symbols.n * symbols.D * symbols.w, "m^3/s"),  # that a group of motors takes, of no leaks
 }

@@ -446,7 +446,7 @@ def test_with_a_curve_the_fewest_causes_are_tried_first(free, second, first):
 
 GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOTOR, shape="rising", anchor="low"))
 LAWED = replace(SLOTS[0], origin=(friction_candidate(GRIP), None))
-CURVE = replace(LAWED, free=True)
+CURVE, BENT = replace(LAWED, free=True), replace(LAWED, law="bent 1")
 ROOT, SQUARE = Law((Factor("root", "motor_speed"),), True), Law((Factor("square", "pressure"),), True)
 DATED = replace(CURVE, origin=(friction_candidate(tabulated(Table("aged", (("time", (0.0, 1e5, 1e6)),)))), None))
 WARMS = Law((Factor("fade", "run_time", (("c", 45.0),)),), True)
@@ -466,6 +466,9 @@ WAVE_OF_IT = Law((Factor("wave", "pressure", (("c", 5e6),)),), True)
     ((LAWED,), ROOT, 0.4, True, 2),
     ((LAWED,), SQUARE, 0.4, False, 2),  # which may be its own, bent
     ((LAWED,), SQUARE, 0.4, True, 1),  # whose cause has one law and no other
+    ((LAWED, BENT), ROOT, 0.9, False, 2),  # two laws of one cause are one name
+    ((LAWED, BENT), SQUARE, 0.4, False, 2),
+    ((LAWED, BENT), ROOT, 0.4, True, 2),
 ])  # fmt: skip
 def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law, share, falls, laws):
     """`share`: what the law leaves above the noise, of what the names do."""

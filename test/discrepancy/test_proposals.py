@@ -14,6 +14,7 @@ from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, factors
 from winch_friction.physics.dimensions import dimension_of, product
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.registry import known_for_now, load_file
+from winch_friction.physics.friction.symbols import layout
 
 
 def _laws():
@@ -40,7 +41,9 @@ def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
     assert product((term.parameters[0].unit, 1.0), *signals) == dimension_of("N*m")
     assert "what it is the data do not say" in term.source
     model = FrictionModel("m", (term,), tuple(p.typical for p in term.parameters), constants={"gear_ratio": 250.0})
-    assert np.isfinite(model.compile(2).scalar_torque([1.0] * 19, model.values, model.compile(2).initial_states))
+    assert np.isfinite(
+        model.compile(2).scalar_torque([1.0] * len(layout(2)), model.values, model.compile(2).initial_states)
+    )
 
 
 def test_text_and_arrays_say_the_same():
@@ -55,7 +58,7 @@ def test_text_and_arrays_say_the_same():
         values = tuple(p.typical for p in term.parameters)
         functions = FrictionModel("m", (term,), values).compile(1)
         at = [str(s) for s in functions._arguments[0]].index("L")
-        points = [[1.0] * at + [float(v)] + [1.0] * (14 - at) for v in x]
+        points = [[1.0] * at + [float(v)] + [1.0] * (len(layout(1)) - 1 - at) for v in x]
         scalar = [functions.scalar_torque(point, values, ()) for point in points]
         assert scalar == pytest.approx(shape(kind, x, dict(own), 0.02)), kind
 

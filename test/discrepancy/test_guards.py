@@ -362,6 +362,24 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
     assert [each.slot.name for each in proven.search.selection.found] == stay
 
 
+@pytest.mark.parametrize(("name", "stay"), [("other", 1), ("wave", 2)])
+def test_a_small_second_name_is_dropped_and_a_second_law_of_the_same_cause_is_not(name, stay):
+    cross = crossfit(2.0 * WAVE + OTHER + noise())
+    slots = (SLOTS[0], replace(SLOTS[1], name=name, law="bent"))
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(slots), found))
+
+    def trial_of(own):
+        """The second takes less than a hundredth of what the first does off the square of the locked gap."""
+        laws = [slot.law for slot in own.selection.final.slots]
+        left = 3.0 * WAVE * ("" not in laws) + 0.25 * OTHER * ("bent" not in laws) + noise(1)
+        return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
+
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    assert len(proven.search.selection.final.slots) == stay
+
+
 @pytest.mark.parametrize(("share", "name", "rivals"), [(0.3, "wave", {"other"}), (0.7, "other", {"wave"})])
 def test_what_did_as_well_alone_is_a_rival_of_what_stays(share, name, rivals):
     """Two causes of nearly one trace share a gap; the locked runs need one of them, the closer one, which need not be
@@ -611,6 +629,25 @@ def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatc
     monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, astray))
     monkeypatch.setattr(standing_module, "as_given", lambda _, __, own, rng: Trial(own, None, None, given))
     assert standing_module.standing(None, None, None, search, np.random.default_rng(0)).search.verdict.kind == kind
+
+
+@pytest.mark.parametrize(("left", "stand"), [(0.2, True), (2.0, False)])
+def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatch, left, stand):
+    """Though the locked runs bear them out and miss each of them."""
+    cross = crossfit(3.0 * WAVE + OTHER + noise())
+    final = cross.explain(SLOTS)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
+    search = _Whole(cross, Selection(cross.explain(()), final, found), Verdict(MISSING))
+    both = Trial(search, None, None, side(3.0 * WAVE + noise(), left * OTHER + noise(1)))
+    refit = side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1))
+    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
+    monkeypatch.setattr(standing_module, "_stands", lambda *_: (both, ""))
+    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
+    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
+    result = standing_module.standing(None, None, None, search, np.random.default_rng(0))
+    assert (result is both) is stand
+    assert ("together leave" in result.search.verdict.refused) is not stand
 
 
 def explanation(losses):

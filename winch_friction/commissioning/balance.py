@@ -17,7 +17,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.direction import smooth_signs
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import GRAVITY
-from winch_friction.physics.winch.operating_point import higher_port, operating_point
+from winch_friction.physics.winch.operating_point import group_point, operating_point
 
 EFFECTIVE = 40.0  # samples that a run counts for: neighbouring blocks repeat each other
 # ordinary errors, 1 sigma
@@ -132,12 +132,11 @@ def friction_point(view: RunView) -> tuple[Any, ...]:
     """The operating point along a view, within what a friction law means."""
     size = view.time.shape
     groups = [
-        (
+        group_point(
             np.full(size, g.count),
-            np.minimum(np.abs(g.drop), MOST_PRESSURE),
-            np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
+            np.clip(g.drop, -MOST_PRESSURE, MOST_PRESSURE),
             np.clip(g.displacement, 0.0, view.max_displacement),
-            higher_port(g.drop),
+            np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
         )
         for g in view.groups.values()
     ]

@@ -11,16 +11,15 @@ from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
-from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import search_runs
-from winch_friction.discrepancy.standing import nameless, standing, unexplained
+from winch_friction.discrepancy.standing import decided, nameless, standing, unexplained
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, UNEXPLAINED, decide
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
@@ -76,9 +75,7 @@ def _closed(trial: Trial, rng: np.random.Generator) -> bool:
     """
     if not at_the_floor(trial.holdout):
         return False
-    search, final = trial.search, trial.search.selection.final
-    left = dependences(search.cross, search.cross.remainder(final), rng)
-    return decide(search.cross, search.selection, left, search.ripple is not None).kind != UNEXPLAINED
+    return decided(trial.search, trial.search.selection, rng).verdict.kind != UNEXPLAINED
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

@@ -81,9 +81,13 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
 
 def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
     """The best with so many names, judged anew."""
-    cross, selection = search.cross, select(search.cross, rng, count)
-    left = dependences(cross, cross.remainder(selection.final), rng)
-    verdict = decide(cross, selection, left, search.ripple is not None)
+    return decided(search, select(search.cross, rng, count), rng)
+
+
+def decided(search: Search, selection: Selection, rng: np.random.Generator) -> Search:
+    """The search with a selection and the verdict that the training runs give it."""
+    left = dependences(search.cross, search.cross.remainder(selection.final), rng)
+    verdict = decide(search.cross, selection, left, search.ripple is not None)
     return replace(search, selection=selection, verdict=verdict, left=tuple(left))
 
 

@@ -10,7 +10,7 @@ from winch_friction.identification.plateaus import Plateau
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import RPM
-from winch_friction.physics.winch import Crane, higher_port, operating_point
+from winch_friction.physics.winch import Crane, group_point, operating_point
 
 SPEED_STEP = 25.0 * RPM  # paper 2 eq 9
 _SAME_SPEED = 5.0 * RPM
@@ -137,11 +137,10 @@ def winch_points(
 ) -> tuple[FloatArray, ...]:
     """Operating points of a winch in normal mode at direction +1, so that friction is its magnitude."""
     count = np.full(len(speed), float(motors))
-    magnitude = np.abs(pressure)
     return operating_point(
         direction=np.ones(len(speed)),
         speed=np.abs(speed),
         drum_torque=drum_torque,
-        groups=[(count, magnitude, magnitude, displacement, higher_port(pressure))],
+        groups=[group_point(count, pressure, displacement)],
         motor_total=count,
     )

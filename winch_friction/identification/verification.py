@@ -13,7 +13,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import GRAVITY, RPM
-from winch_friction.physics.winch import Crane, higher_port, operating_point
+from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.operating_point import run_drum_torque
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
@@ -148,13 +148,7 @@ def _points(
 ) -> tuple[Any, ...]:
     speed = _smooth(run, run["motor_speed"], 0)
     groups = [
-        (
-            np.full(len(run), float(crane.motor_count(name))),
-            np.abs(p),
-            np.abs(p),
-            run[f"{name}.displacement"],
-            higher_port(p),
-        )
+        group_point(np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"])
         for name, p in drop.items()
     ]
     return operating_point(

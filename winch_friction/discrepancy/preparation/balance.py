@@ -21,7 +21,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.units import BAR
-from winch_friction.physics.winch import Crane, higher_port, operating_point
+from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
 SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
@@ -236,14 +236,7 @@ class Balancing:
         size = len(self.grid.time)
         optional = {name: columns[name] for name in OPTIONAL if name in columns}
         signals = [
-            (
-                np.full(size, float(g.count)),
-                np.abs(g.pressure),
-                g.pressure_sum,
-                g.displacement,
-                higher_port(g.pressure),
-            )
-            for g in groups
+            group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum) for g in groups
         ]
         return operating_point(
             direction=motion.direction, speed=motion.state_speed, drum_torque=load.drum_torque,

@@ -3,10 +3,10 @@
 from winch_friction.physics.winch.crane import Crane, Drum
 from winch_friction.physics.winch.drive import Drive
 from winch_friction.physics.winch.operating_point import (
-    higher_port,
+    group_point,
     operating_point,
     run_operating_points,
     sample_operating_point,
 )
 
-__all__ = ["Crane", "Drive", "Drum", "higher_port", "operating_point", "run_operating_points", "sample_operating_point"]
+__all__ = ["Crane", "Drive", "Drum", "group_point", "operating_point", "run_operating_points", "sample_operating_point"]

@@ -11,7 +11,7 @@ from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.units import RPM
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import higher_port, operating_point
+from winch_friction.physics.winch.operating_point import group_point, operating_point
 
 TOP_SPEED = 2000.0 * RPM  # rad/s; supplier tables and the paper's tests end near it
 LOWEST_SPEED = 5.0 * RPM  # rad/s; at rest friction is whatever holds the load
@@ -63,7 +63,7 @@ def model_curve(
 
     def points(drop: FloatArray) -> tuple[FloatArray, ...]:
         groups = (
-            [(np.full_like(omega, count), abs(drop), abs(drop), np.full_like(omega, setting), higher_port(drop))]
+            [group_point(np.full_like(omega, count), drop, np.full_like(omega, setting))]
             if crane.drive.hydraulic
             else []
         )

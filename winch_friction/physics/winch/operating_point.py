@@ -41,8 +41,8 @@ def operating_point(
     """The operating point as a flat tuple of floats or of arrays; SI.
 
     `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor and which port's
-    pressure is the higher (`higher_port`; left out: port A's). `optional` are signals of the table that have a default:
-    acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
+    pressure is the higher (left out: port A's), in short a `group_point`. `optional` are signals of the table that have
+    a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
     """
     values = _DEFAULTS | optional
     if len(values) > len(_DEFAULTS):
@@ -62,12 +62,16 @@ def _whole(group: tuple[Any, ...]) -> tuple[Any, ...]:
     return (*group, *missing)
 
 
-def higher_port(drop: Any) -> FloatArray:
-    """+1 where port A has the higher pressure, -1 where port B has; `drop` is p_A - p_B in Pa, of any shape.
+def group_point(count: Any, drop: Any, displacement: Any, pressure_sum: Any = None) -> tuple[Any, ...]:
+    """A motor group's part of an operating point: `drop` is p_A - p_B in Pa, a float or an array; without p_A + p_B the
+    lower port's pressure is taken for zero.
 
-    So p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2. It steps where the pressures are equal and |p_A - p_B| is zero.
+    The higher port is +1 for port A and -1 for port B, so that p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2; it
+    steps where the pressures are equal and |p_A - p_B| is zero.
     """
-    return np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
+    size = np.abs(drop)
+    higher_port = np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
+    return count, size, size if pressure_sum is None else pressure_sum, displacement, higher_port
 
 
 def sample_operating_point(
@@ -107,10 +111,9 @@ def run_operating_points(
 
 
 def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
-    """Motors, |p_A - p_B|, p_A + p_B, displacement and the higher port of one group along a run."""
+    """`group_point` of one group along a run."""
     a, b = run[f"{group}.pressure_a"], run[f"{group}.pressure_b"]
-    count, drop = np.full(len(run), crane.motor_count(group)), a - b
-    return count, np.abs(drop), a + b, run[f"{group}.displacement"], higher_port(drop)
+    return group_point(np.full(len(run), crane.motor_count(group)), a - b, run[f"{group}.displacement"], a + b)
 
 
 def run_drum_torque(run: Run, crane: Crane, load: float = float("nan")) -> FloatArray:

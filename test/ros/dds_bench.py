@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,7 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 DOMAINS = 96  # from 2 on
 CRANE = load_crane("crane_150t")
 SAMPLE_PERIOD = 0.02  # s
+LATE = 0.06  # s that the stamps may fall behind the clock before samples are left out, as a busy source does
 
 
 def _own_domains() -> itertools.count:
@@ -61,6 +63,7 @@ class Bench:
         self.processes: dict[str, subprocess.Popen[str]] = {}
         self._publishers: dict[str, object] = {}
         self.time = time.time()
+        self._began = self.time  # every test meets the same swell, whenever it runs
 
     def start(self, executable: str, *arguments: str, name: str = "", **parameters: object) -> subprocess.Popen[str]:
         """A node of this package as a process; `arguments` go behind --ros-args."""
@@ -105,7 +108,7 @@ class Bench:
 
     def sample(self) -> Sample:
         """The swell now."""
-        return swell(self.time)
+        return replace(swell(self.time - self._began), time=self.time)
 
     def publisher(self, topic: str) -> Any:
         """The publisher of an input that was announced."""
@@ -121,15 +124,20 @@ class Bench:
         assert self.spin(40.0, lambda: speed.get_subscription_count() >= subscribers), "nobody subscribes to the speed"
         self.spin(0.3)
 
-    def drive(self, seconds: float, change: Callable[[Sample], None] = lambda _: None, namespace: str = "") -> None:
-        """Publish a steady swell in real time for a while, each sample changed by `change`."""
-        for _ in range(round(seconds / SAMPLE_PERIOD)):
+    def drive(
+        self, seconds: float, change: Callable[[Sample], None] = lambda _: None, namespace: str = ""
+    ) -> list[float]:
+        """Publish a steady swell in real time for a while, each sample changed by `change`; the stamps, s."""
+        stamps, ahead, last = [], self.time - time.monotonic(), self.time + seconds - 0.5 * SAMPLE_PERIOD
+        while self.time < last:
             began = time.monotonic()
-            self.time += SAMPLE_PERIOD
-            sample = swell(self.time)
+            self.time = max(self.time + SAMPLE_PERIOD, began + ahead - LATE)
+            stamps.append(self.time)
+            sample = self.sample()
             change(sample)
             self.publish(sample, namespace)
             self.spin(max(0.0, SAMPLE_PERIOD - (time.monotonic() - began)))
+        return stamps
 
     def stop(self, name: str, patience: float = 10.0) -> int:
         """End a process as Ctrl-C would; its exit status."""

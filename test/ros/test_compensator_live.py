@@ -174,7 +174,7 @@ def test_two_cranes_in_two_namespaces(bench: Bench) -> None:
     north, south = (bench.listen(f"{crane}/compensator/friction_torque") for crane in ("north", "south"))
     for crane in ("north", "south"):
         bench.announce(crane)
-    bench.drive(0.5, namespace="north")
+    sent = bench.drive(0.5, namespace="north")
     bench.spin(0.2)
-    assert len(north) >= 20
+    assert len(north) >= 0.8 * len(sent)
     assert south == []

@@ -17,6 +17,8 @@ PARTS = ("scalar_torque", "scalar_torque_and_gradient", "scalar_contributions", 
          "vector_torque", "vector_gradient", "vector_contributions", "vector_state_rates")  # fmt: skip
 LENGTH = len(layout(2))  # of an operating point with two groups
 CONSTANTS = (("density", 870.0), ("gear_ratio", 20.0), ("max_displacement", 3e-5), ("viscosity", 0.04))
+POINT = [0.9, 60.0, 54.0, 5e5, 0.3, 41.0, 12.0, 700.0, 2.0, 50.0, 11.0,
+         6, 1e7, 2e7, 3e-5, 1.0, 5, 1.5e7, 2e7, 2e-5, -1.0]  # fmt: skip
 
 
 @pytest.fixture
@@ -45,8 +47,7 @@ def test_every_term_is_read_as_it_was_made(name, folder, monkeypatch):
     own = [getattr(made, part) for part in PARTS]
     without_sympy(monkeypatch)
     read = CompiledTerms((registered_terms()[name],), 2, CONSTANTS)
-    point = [0.9, 60.0, 54.0, 5e5, 0.3, 41.0, 12.0, 700.0, 2.0, 50.0, 11.0]
-    point += [6, 1e7, 2e7, 3e-5, 1.0, 5, 1.5e7, 2e7, 2e-5, -1.0]
+    point = POINT
     theta, z = [each.typical for each in made.parameters], [0.3] * len(made.initial_states)
     arrays = [np.linspace(each, 1.1 * each, 7) for each in point]
     for part, function in zip(PARTS, own, strict=True):
@@ -54,6 +55,25 @@ def test_every_term_is_read_as_it_was_made(name, folder, monkeypatch):
         expected, found = function(x, theta, z), getattr(read, part)(x, theta, z)
         for a, b in zip(*(each if isinstance(each, tuple) else (each,) for each in (expected, found)), strict=True):
             np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("name", sorted(registered_terms()))
+def test_columns_are_made_once_for_every_machine(name, folder, monkeypatch):
+    term = registered_terms()[name]
+    _ = CompiledTerms((term,), 2, CONSTANTS).vector_columns
+    other = CompiledTerms((term,), 2, tuple((key, 1.3 * value) for key, value in CONSTANTS))
+    own, torque = tuple(p for p in term.parameters if not p.shape), other.vector_torque
+    without_sympy(monkeypatch)
+    rng = np.random.default_rng(5)
+    x = [rng.uniform(0.5, 1.5, 7) * each for each in POINT]
+    theta, z = [each.typical for each in other.parameters], [0.3] * len(other.initial_states)
+    found = np.array([np.broadcast_to(each, 7) for each in other.vector_columns(x, theta, z)])
+    still = [0.0 if each in own else value for each, value in zip(other.parameters, theta, strict=True)]
+    for row, parameter in zip(found, own, strict=True):
+        k = other.parameters.index(parameter)
+        alone = [*still[:k], theta[k], *still[k + 1 :]]
+        change = np.broadcast_to(torque(x, alone, z) - torque(x, still, z), 7)
+        np.testing.assert_allclose(row * theta[k], change, rtol=1e-9, atol=1e-12)
 
 
 def test_another_equation_or_constant_is_another_file(folder):

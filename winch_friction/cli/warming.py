@@ -1,6 +1,7 @@
 """Compiled code, made once and kept: what `make setup` and `winch-friction doctor` do so that no first start waits.
 
-An estimator's filter takes two seconds to compile and the simulated plant six; numba's own start, half a second, stays.
+An estimator's filter takes two seconds to compile, the simulated plant six, and the laws that a search for a missing
+effect compares five; numba's own start, half a second, stays.
 """
 
 import sys
@@ -13,7 +14,7 @@ def warmed() -> Iterator[tuple[str, float]]:
 
     Raises `ImportError` where numba is not installed, `OSError` or `RuntimeError` where nothing can be kept.
     """
-    for name, make in (("estimator's filter", _filter), ("simulated plant", _plant)):
+    for name, make in (("estimator's filter", _filter), ("simulated plant", _plant), ("laws of a search", _laws)):
         begin = time.perf_counter()
         make()
         yield name, time.perf_counter() - begin
@@ -32,6 +33,17 @@ def _plant() -> None:
 
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     Simulator(load_scenario("ahc_irregular"), crane, model).step(0.0)
+
+
+def _laws() -> None:
+    from winch_friction.discrepancy.candidates.catalogue import all_candidates
+    from winch_friction.discrepancy.candidates.families import outlines
+    from winch_friction.physics.friction.compiled import compiled
+
+    laws = [candidate.term for candidate in all_candidates() if candidate.term is not None and not candidate.term.table]
+    for group_count in (1, 2):
+        for term in (*laws, *outlines()):
+            compiled((term,), group_count, ()).vector_columns  # noqa: B018 - it is made by being asked for
 
 
 def main(say: Callable[[str], object] = print) -> int:

@@ -5,7 +5,7 @@ repaired model as a term of its own. Shapes are grids over decades of what is ph
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -19,9 +19,9 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.dimensions import quotient_unit
-from winch_friction.physics.friction import FrictionModel, Scope, term_named
+from winch_friction.physics.friction import FrictionModel, Scope, Term, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
-from winch_friction.physics.friction.table import FACTORS, Table, tabulated
+from winch_friction.physics.friction.table import FACTORS, Table, outlined, tabulated
 
 TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
 STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
@@ -182,29 +182,41 @@ def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequen
 
 
 def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candidate | None:
-    curve = len(row.signals) == 1
-    shares = _halved(row.knots) if curve and fine else row.knots if curve else LIMITS.surface_knots
+    curve, shares = len(row.signals) == 1, _shares(row, fine)
     knots = [_knots(_covered(signal, row.scope, runs), shares) for signal in row.signals]
     if any(len(at) < 3 or np.ptp(at) <= 1e-6 * np.abs(at).max() for at in knots):
         return None
     size = np.prod([max(float(np.median(np.abs(_covered(each, row.scope, runs)))), 1e-12) for each in row.times])
     torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
     count = max(float(np.median([sum(g.count for g in run.groups) or 1 for run in runs])), 1.0)
-    name = name_of(row)
-    table = Table(
-        name, tuple((s, tuple(float(k) for k in at)) for s, at in zip(row.signals, knots, strict=True)),
-        _unit(row.times), row.times, row.scope, row.opposing, row.shape, row.anchor,
-        typical=0.05 * torque / float(size) / (1.0 if row.scope is Scope.SHAFT else count),
-        source=f"a monotone {'curve' if len(knots) == 1 else 'surface'} over {' and '.join(row.signals)} through the "
-        "data",
-        place="motor" if row.scope is Scope.MOTOR else "gear and drum", side=row.side,
-    )  # fmt: skip
-    term = tabulated(table)
+    term = tabulated(_table(row, knots, 0.05 * torque / float(size) / (1.0 if row.scope is Scope.SHAFT else count)))
     return Candidate(
         row.cause, "", term.parameters, partial(term_columns, term), term=term, needs=row.needs,
-        hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=name, free=True, own_size=True,
+        hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=term.name, free=True, own_size=True,
         plausible=FAR, finer=partial(_free, row, runs, True) if curve and not fine else None,
     )  # fmt: skip
+
+
+def _table(row: Free, knots: Sequence[FloatArray], typical: float) -> Table:
+    drawn = "curve" if len(knots) == 1 else "surface"
+    return Table(
+        name_of(row), tuple((s, tuple(float(k) for k in at)) for s, at in zip(row.signals, knots, strict=True)),
+        _unit(row.times), row.times, row.scope, row.opposing, row.shape, row.anchor, typical,
+        place="motor" if row.scope is Scope.MOTOR else "gear and drum", side=row.side,
+        source=f"a monotone {drawn} over {' and '.join(row.signals)} through the data",
+    )  # fmt: skip
+
+
+def _shares(row: Free, fine: bool = False) -> tuple[float, ...]:
+    own = row.knots if len(row.signals) == 1 else LIMITS.surface_knots
+    return _halved(own) if fine else own
+
+
+def outlines() -> Iterator[Term]:
+    """The curves and surfaces as they are compiled, wherever data bend them."""
+    for row in (*CURVES, *SURFACES):
+        knots = np.arange(float(len(_shares(row))))
+        yield outlined(_table(row, [knots] * len(row.signals), 1.0))[0]
 
 
 def name_of(row: Free) -> str:

@@ -46,10 +46,10 @@ class CompiledTerms:
     @cached_property
     def expressions(self) -> tuple[sp.Expr, ...]:
         """Each term's torque at the shaft, summed over motors, as an expression of x, theta and z."""
-        return tuple(self._at_shaft(term) for term in self.terms)
+        return tuple(self._at_shaft(term, self._constant_values()) for term in self.terms)
 
-    def _at_shaft(self, term: Term) -> sp.Expr:
-        torque = term.torque.xreplace(self._constant_values())
+    def _at_shaft(self, term: Term, constants: dict[sp.Basic, sp.Basic]) -> sp.Expr:
+        torque = term.torque.xreplace(constants)
         if term.scope is Scope.MOTOR:
             return sp.Add(*(self._in_group(term, symbols.n * torque, g) for g in range(self.group_count)))
         return self._in_group(term, symbols.N * torque if term.scope is Scope.SYSTEM else torque, 0)
@@ -80,8 +80,9 @@ class CompiledTerms:
 
     @cached_property
     def columns(self) -> list[sp.Expr]:
-        """What each parameter that is no shape multiplies: the torque is linear in these."""
-        return [sp.diff(self.total, parameter.symbol) for parameter in self.parameters if not parameter.shape]
+        """What each parameter that is no shape multiplies, constants as symbols: the torque is linear in these."""
+        total = sp.Add(*(self._at_shaft(term, {}) for term in self.terms))
+        return [sp.diff(total, parameter.symbol) for parameter in self.parameters if not parameter.shape]
 
     @cached_property
     def speed_derivative(self) -> sp.Expr:
@@ -107,7 +108,11 @@ class CompiledTerms:
     @cached_property
     def _key(self) -> str:
         """Everything that the functions are made of."""
-        return repr((*map(_declared, self.terms), self.group_count, sorted(self.constants.items())))
+        return repr((*self._forms, sorted(self.constants.items())))
+
+    @property
+    def _forms(self) -> tuple[Any, ...]:
+        return *map(_declared, self.terms), self.group_count
 
     def _function(self, part: str, dialect: str) -> Callable[..., Any]:
         return function_of(f"{part} {dialect} {self._key}", dialect, lambda: self._lambdify(part, dialect))
@@ -145,8 +150,15 @@ class CompiledTerms:
 
     @cached_property
     def vector_columns(self) -> Callable[..., tuple[Any, ...]]:
-        """What each parameter that is no shape multiplies, over arrays (constant entries come back as scalars)."""
-        return self._function("columns", "numpy")
+        """What each parameter that is no shape multiplies, over arrays (constant entries come back as scalars).
+
+        A search asks for those of a hundred laws: made with the constants as arguments they serve every machine.
+        """
+        free = (*self._arguments, tuple(each.symbol for each in symbols.CONSTANTS))
+        values = tuple(map(float, self._constant_values().values()))
+        key = f"columns numpy {self._forms!r}"
+        made = function_of(key, "numpy", lambda: sp.lambdify(free, tuple(self.columns), modules=["numpy"], cse=True))
+        return lambda x, theta, z: made(x, theta, z, values)
 
     @cached_property
     def vector_contributions(self) -> Callable[..., tuple[Any, ...]]:

@@ -9,7 +9,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.rivals import does_as_well, rivals_of
-from winch_friction.discrepancy.engine.starts import far_less, other_starts
+from winch_friction.discrepancy.engine.starts import far_less, other_start
 from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -65,9 +65,9 @@ def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_ef
         if _no_worse(together, current, rng):
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
-    for start in other_starts(cross, current):
+    if (own := other_start(cross, current)) is not None:
         others = ([], {})
-        anew = _whole(cross, _forward(cross, base, start, rng, most, *others), rng)
+        anew = _whole(cross, _forward(cross, base, own, rng, most, *others), rng)
         if far_less(cross, anew, current):
             current, p_values = anew, p_values | others[1]
             considered += others[0]

@@ -27,7 +27,7 @@ from winch_friction.report.fleet import write_fleet_report
 QUICK = ("--resamples", "2", "--evaluations", "200", "-q")
 
 AXE = Path(__file__).with_name("axe.min.js")
-SIZES = (1400, 768, 420)  # px: a desk, a tablet, a phone
+DESK, TABLET, PHONE = 1400, 768, 420  # px
 SCHEMES = ("light", "dark")
 INK = {"light": "#1d2126", "dark": "#e4e7ea"}  # of the plots' text
 

@@ -7,7 +7,7 @@ import time
 import urllib.request
 
 import pytest
-from pages import INK, SCHEMES, SIZES, keep_screenshot, violations
+from pages import DESK, INK, PHONE, SCHEMES, TABLET, keep_screenshot, violations
 
 from winch_friction.cli.dashboard import serving
 
@@ -46,7 +46,7 @@ def stop():
     event.set()
 
 
-@pytest.mark.parametrize("width", SIZES)
+@pytest.mark.parametrize("width", [DESK, TABLET, PHONE])
 def test_the_page_is_accessible_at_every_size(visit, stop, width):
     with serving(frames(stop), 0) as address:
         page, said = visit(address, width, SCHEMES[0])

@@ -3,7 +3,7 @@
 import urllib.parse
 
 import pytest
-from pages import INK, KINDS, SCHEMES, SIZES, keep_screenshot, small_gap, violations
+from pages import DESK, INK, KINDS, PHONE, SCHEMES, TABLET, keep_screenshot, small_gap, violations
 
 pytestmark = pytest.mark.browser
 INKS = "[...document.querySelectorAll('.canvas')].filter((c) => c.layout).map((c) => c.layout.font.color)"
@@ -41,7 +41,7 @@ def path(kind, tmp_path_factory, request):
     return made
 
 
-@pytest.mark.parametrize("width", SIZES)
+@pytest.mark.parametrize("width", [DESK, pytest.param(TABLET, marks=pytest.mark.long), PHONE])
 def test_every_report_is_accessible_silent_and_drawn(kind, path, visit, width):
     """One load per size; the scheme is changed while somebody looks, as a desktop does in the evening."""
     page, said = visit(path.as_uri(), width, SCHEMES[0])

@@ -1,5 +1,6 @@
 """The command line's frame: exit statuses, one clear line for bad input, help without importing the verbs."""
 
+import os
 import subprocess
 import sys
 
@@ -91,6 +92,18 @@ def test_a_reader_that_has_gone_is_no_defect(arguments):
         started.stdout.close()
         said = started.stderr.read()
         assert (started.wait(60), said) == (0, b"")
+
+
+@pytest.mark.parametrize(("given", "used"), [(None, "1"), ("3", "3")])
+def test_small_matrices_take_one_thread_unless_somebody_says_otherwise(given, used, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["winch-friction", "--version"])
+    for name in main.SERIAL:
+        monkeypatch.delenv(name, raising=False)
+        if given:
+            monkeypatch.setenv(name, given)
+    with pytest.raises(SystemExit, match="0"):
+        main.main()
+    assert [os.environ[name] for name in main.SERIAL] == [used] * len(main.SERIAL)
 
 
 def test_the_module_is_the_command():

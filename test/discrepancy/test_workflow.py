@@ -10,7 +10,9 @@ from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text
 
 
-@pytest.mark.parametrize(("seed", "flavour"), [(4002, "rough"), (4003, "elastic_sea")])
+@pytest.mark.parametrize(
+    ("seed", "flavour"), [pytest.param(4002, "rough", marks=pytest.mark.long), (4003, "elastic_sea")]
+)
 def test_nothing_is_missing_when_only_the_parameters_differ(seed, flavour):
     result = gap_of(seed, flavour)
     assert result.verdict == "nothing_missing"

@@ -13,6 +13,8 @@ from winch_friction.cli.verbs import VerbGroup
 from winch_friction.physics.errors import InputError
 
 DONE, DEFECT, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+# matrices here are small: threads of BLAS would only wait for each other, on every core of the machine
+SERIAL = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 HELP = """Friction of a hydraulic winch: compensated and learned online, identified offline, questioned always.
 
 Examples, each with more under [bold]--help[/bold]:
@@ -109,7 +111,9 @@ def _said(message: str, status: int) -> int:
 
 
 def main() -> None:
-    """Entry point of the console script."""
+    """Entry point of the console script; whoever sets a number of threads keeps it."""
+    for name in SERIAL:  # before anything loads NumPy
+        os.environ.setdefault(name, "1")
     sys.exit(run(sys.argv[1:]))
 
 

@@ -32,9 +32,12 @@ demo: $(READY)
 test: $(READY) browser
 	$(MAKE) --no-print-directory -j 3 --output-sync=recurse lint test-nodes test-computing
 
+# where tests start nodes; to look through all the others takes each worker ten seconds
+ROS_TESTS := test/ros test/nodes test/campaign_faults test/docs/test_reference.py
+
 test-nodes: $(READY)
-	$(BIN)/python -m pytest -m "ros and slow" -n 2 --dist loadfile
-	$(BIN)/python -m pytest -m "ros and not slow" -n 2 --dist loadfile
+	$(BIN)/python -m pytest $(ROS_TESTS) -m "ros and slow" -n 2 --dist loadfile
+	$(BIN)/python -m pytest $(ROS_TESTS) -m "ros and not slow" -n 2 --dist loadfile
 
 test-computing: $(READY)
 	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n $$(( $$(nproc) < 3 ? $$(nproc) + 1 : 4 )) --dist loadfile --no-loadscope-reorder

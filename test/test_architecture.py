@@ -1,6 +1,7 @@
 """The house rules: imports go down only, rclpy in the nodes alone, the node path free of desk libraries."""
 
 import ast
+import re
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -68,3 +69,12 @@ def test_a_file_can_be_read_at_a_sitting():
     lines = sorted(len(path.read_text().splitlines()) for path in (ROOT / "winch_friction").rglob("*.py"))
     assert lines[len(lines) // 2] <= 120
     assert lines[-1] <= 300
+
+
+def test_make_looks_for_the_tests_of_nodes_where_they_are():
+    """A test that is marked and stands elsewhere would run nowhere."""
+    (places,) = re.findall(r"^ROS_TESTS := (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    looked_through = [ROOT / place for place in places.split()]
+    marked = [path for path in (ROOT / "test").rglob("test_*.py") if re.search(r"mark\.ros\b", path.read_text())]
+    assert len(marked) >= 3
+    assert [str(path) for path in marked if not {path, *path.parents} & set(looked_through)] == []

@@ -110,7 +110,7 @@ class CompiledTerms:
         """Everything that the functions are made of."""
         return repr((*self._forms, sorted(self.constants.items())))
 
-    @property
+    @cached_property
     def _forms(self) -> tuple[Any, ...]:
         return *map(_declared, self.terms), self.group_count
 

@@ -76,6 +76,8 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
         yield search
     else:
         yield search
+        if len(search.selection.final.names) < len(slots):  # one cause by two laws, but perhaps it is two
+            yield decided(search, select(search.cross, rng, apart=True), rng)
         yield from (_with_at_most(count, search, rng) for count in reversed(counts))
 
 

@@ -52,22 +52,25 @@ class Selection:
     considered: tuple[Considered, ...] = field(default_factory=tuple)
 
 
-def select(cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_effects) -> Selection:
-    """Add effects as long as one brings a significant and useful gain, then look for rivals of each."""
+def select(
+    cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_effects, apart: bool = False
+) -> Selection:
+    """Add effects as long as one brings a significant and useful gain, then look for rivals of each; `apart`: without
+    asking whether a second law of one cause would do in the place of another cause."""
     base = cross.explain(())
     considered: list[Considered] = []
     p_values: dict[str, float] = {}
-    current = _whole(cross, _forward(cross, base, base, rng, most, considered, p_values), rng)
+    current = _whole(cross, _forward(cross, base, base, rng, most, considered, p_values), rng, apart)
     start = _plain_together(cross, base, rng)
     if start.slots:
         others: tuple[list[Considered], dict[str, float]] = ([], {})
-        together = _whole(cross, _forward(cross, base, start, rng, most, *others), rng)
+        together = _whole(cross, _forward(cross, base, start, rng, most, *others), rng, apart)
         if _no_worse(together, current, rng):
             current = together
             considered, p_values = [*considered, *others[0]], p_values | others[1]
     if (own := other_start(cross, current)) is not None:
         others = ([], {})
-        anew = _whole(cross, _forward(cross, base, own, rng, most, *others), rng)
+        anew = _whole(cross, _forward(cross, base, own, rng, most, *others), rng, apart)
         if far_less(cross, anew, current):
             current, p_values = anew, p_values | others[1]
             considered += others[0]
@@ -211,15 +214,17 @@ def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
     return current
 
 
-def _whole(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
+def _whole(cross: CrossFit, current: Explanation, rng: np.random.Generator, apart: bool) -> Explanation:
     """The set as it is answered: without what is superfluous, of as few causes as do it, with what its members bring
     along."""
-    return _with_company(cross, _of_fewest_causes(cross, _pruned(cross, current, rng), rng))
+    needed = _pruned(cross, current, rng)
+    return _with_company(cross, needed if apart else _of_fewest_causes(cross, needed, rng))
 
 
 def _of_fewest_causes(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> Explanation:
-    """The set with another law of one of its causes in the place of a second name, where that does as well: a cause
-    whose law is a mixture of two known ones is one cause, and so is one that is there twice, by a law each."""
+    """The set with another law of one of its causes in the place of a second name, where that does as well and leaves
+    no more than twice as much above the floor: a cause whose law is a mixture of two known ones is one cause, and so is
+    one that is there twice, by a law each; but a share of a large effect may be all of a small one."""
     for own in reversed(current.slots):
         rest = tuple(slot for slot in current.slots if slot is not own)
         laws = {(slot.name, slot.law, slot.part) for slot in rest}
@@ -228,7 +233,8 @@ def _of_fewest_causes(cross: CrossFit, current: Explanation, rng: np.random.Gene
         without, others = cross.explain(rest), {slot.name for slot in cross.problem.slots} - {s.name for s in rest}
         slots = fitted(cross, rest, others, by_part=True)
         trials = [cross.explain((*rest, slot)) for slot in slots if (slot.name, slot.law, slot.part) not in laws]
-        trials = [each for each in trials if does_as_well(each, current, without, rng)]
+        enough = max(cross.excess(current), LIMITS.least_excess) / LIMITS.outdone
+        trials = [t for t in trials if cross.excess(t) <= enough and does_as_well(t, current, without, rng)]
         if trials:
             best = min(trials, key=lambda each: charged(without.loss, each.loss, each.slots[-1]))
             current = cross.explain(tuple(best.slots[-1] if slot is own else slot for slot in current.slots))

@@ -98,6 +98,19 @@ def test_a_causes_own_curve_stands_for_a_second_name_where_it_does_as_well(curve
     assert [slot.name for slot in select(cross, rng).final.slots] == causes
 
 
+@pytest.mark.parametrize(
+    ("size", "apart", "causes"),
+    [(3.0, False, ["wave", "wave"]), (3.0, True, ["wave", "other"]), (20.0, False, ["wave", "other"])],
+)
+def test_two_laws_of_one_cause_leave_no_more_than_two_causes(size, apart, causes):
+    """A hundredth of a large effect, which is nothing beside it, may be twice the noise."""
+    third = np.tile(np.sin(np.linspace(0.0, 57.0, BLOCKS)), RUNS)
+    slots = (*(replace(slot, most=90.0) for slot in SLOTS), Slot("wave", "", (3,), most=90.0, law="bent"))
+    y = 30.0 * WAVE + size * OTHER + noise()
+    cross, rng = crossfit(y, slots=slots, more=OTHER + 0.1 * third), np.random.default_rng(1)
+    assert [slot.name for slot in select(cross, rng, apart=apart).final.slots] == causes
+
+
 def test_a_bent_law_that_takes_of_a_second_effect_is_no_dead_end():
     """No exchange of one for one leads from the bent law and a decoy to the two that are there."""
     third = np.tile(np.sin(np.linspace(0.0, 57.0, BLOCKS)), RUNS)
@@ -459,6 +472,8 @@ def test_with_a_curve_the_fewest_causes_are_tried_first(free, second, first):
     search = _Found(cross, replace(selection, final=replace(cross.explain(SLOTS), slots=slots)))
     tried = [[slot.name for slot in each.selection.final.slots] for each in _sets(search, np.random.default_rng(1))]
     assert tried[0] == first
+    if second == "wave":  # one cause by two laws: then the two causes that it may be
+        assert tried.pop(1) == ["wave", "other"]
     assert sorted(map(len, tried)) == [1, 2]
 
 

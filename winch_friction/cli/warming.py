@@ -1,7 +1,7 @@
 """Compiled code, made once and kept: what `make setup` and `winch-friction doctor` do so that no first start waits.
 
 An estimator's filter takes two seconds to compile, the simulated plant six, and the laws that a search for a missing
-effect compares five; numba's own start, half a second, stays.
+effect compares seven; numba's own start, half a second, stays.
 """
 
 import sys
@@ -40,7 +40,7 @@ def _laws() -> None:
     from winch_friction.discrepancy.candidates.families import outlines
     from winch_friction.physics.friction.compiled import compiled
 
-    laws = [candidate.term for candidate in all_candidates() if candidate.term is not None and not candidate.term.table]
+    laws = [candidate.term for candidate in all_candidates() if candidate.term is not None]
     for group_count in (1, 2):
         for term in (*laws, *outlines()):
             compiled((term,), group_count, ()).vector_columns  # noqa: B018 - it is made by being asked for

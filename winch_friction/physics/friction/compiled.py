@@ -115,13 +115,14 @@ class CompiledTerms:
         return *map(_declared, self.terms), self.group_count
 
     def _function(self, part: str, dialect: str) -> Callable[..., Any]:
-        return function_of(f"{part} {dialect} {self._key}", dialect, lambda: self._lambdify(part, dialect))
+        key = f"{part} {dialect} {self._key}"
+        return function_of(key, dialect, lambda: self._lambdify(part, dialect, self._arguments))
 
-    def _lambdify(self, part: str, dialect: str) -> Callable[..., Any]:
+    def _lambdify(self, part: str, dialect: str, arguments: Sequence[tuple[sp.Symbol, ...]]) -> Callable[..., Any]:
         # several values as a tuple: numba would put a list on the heap, three times what the equations cost
         expression = getattr(self, part)
         several = tuple(expression) if isinstance(expression, Sequence) else expression
-        return sp.lambdify(self._arguments, several, modules=[dialect], cse=True)
+        return sp.lambdify(arguments, several, modules=[dialect], cse=True)
 
     @cached_property
     def scalar_torque(self) -> Callable[..., float]:
@@ -157,7 +158,7 @@ class CompiledTerms:
         free = (*self._arguments, tuple(each.symbol for each in symbols.CONSTANTS))
         values = tuple(map(float, self._constant_values().values()))
         key = f"columns numpy {self._forms!r}"
-        made = function_of(key, "numpy", lambda: sp.lambdify(free, tuple(self.columns), modules=["numpy"], cse=True))
+        made = function_of(key, "numpy", lambda: self._lambdify("columns", "numpy", free))
         return lambda x, theta, z: made(x, theta, z, values)
 
     @cached_property

@@ -41,22 +41,42 @@ def path(kind, tmp_path_factory, request):
     return made
 
 
-@pytest.mark.parametrize("width", [DESK, pytest.param(TABLET, marks=pytest.mark.long), PHONE])
-def test_every_report_is_accessible_silent_and_drawn(kind, path, visit, width):
-    """One load per size; the scheme is changed while somebody looks, as a desktop does in the evening."""
-    page, said = visit(path.as_uri(), width, SCHEMES[0])
+def test_every_report_is_accessible_silent_and_drawn(kind, path, visit):
+    """Opened on a desk, then as wide as a phone is: layout and plots follow whoever narrows the window."""
+    page, said = visit(path.as_uri(), DESK, SCHEMES[0])
     assert page.inner_text("section h2 >> nth=0") in ("Decision", "Result")
+    assert_drawn(page)
+    assert page.locator("figure:not(.plot)").count() == 0  # no still picture is left
+    assert_fits_and_is_accessible(page, kind, DESK)
+    page.set_viewport_size({**page.viewport_size, "width": PHONE})
+    assert_fits_and_is_accessible(page, kind, PHONE)
+    assert said == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("width", [TABLET, PHONE])
+def test_every_report_opens_at_every_width(kind, path, visit, width):
+    """From the start as wide as a tablet or a phone."""
+    page, said = visit(path.as_uri(), width, SCHEMES[0])
+    assert_drawn(page)
+    assert_fits_and_is_accessible(page, kind, width)
+    assert said == []
+
+
+def assert_drawn(page):
     drawn = page.evaluate("globalThis.drawEveryPlot ? drawEveryPlot() : 0")
     page.wait_for_function(f"document.querySelectorAll('.canvas .plot-container').length === {drawn}")
     assert drawn >= 1
-    assert page.locator("figure:not(.plot)").count() == 0  # no still picture is left
+
+
+def assert_fits_and_is_accessible(page, kind, width):
+    """In both schemes, changed while somebody looks, as a desktop does in the evening."""
     for scheme in SCHEMES:
         page.emulate_media(color_scheme=scheme)
         page.wait_for_function(f"{INKS}.every((ink) => ink === {INK[scheme]!r})")
         assert violations(page) == []
         keep_screenshot(page, kind, width, scheme)
-    assert said == []
-    assert page.evaluate(CUT_OFF) == []
+    page.wait_for_function(f"!{CUT_OFF}.length")
     page.wait_for_function(f"!{UNSEEN}.length")
     page.evaluate("document.querySelectorAll('.scroll').forEach((each) => each.scrollTo(1e4, 0))")
     page.wait_for_function(f"!{UNSEEN}.length")

@@ -10,7 +10,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
-LENGTH = 0.6  # of a campaign's runs, to be quick
+LENGTH = 0.45  # of a campaign's runs, to be quick
 
 
 def runs_with(seed: int, flavour: str, *effects: tuple[str, float], length: float = LENGTH) -> list[Run]:
@@ -20,10 +20,13 @@ def runs_with(seed: int, flavour: str, *effects: tuple[str, float], length: floa
 
 
 @cache
-def gap_of(seed: int, flavour: str, *effects: tuple[str, float], plan: bool = False) -> GapResult:
+def gap_of(
+    seed: int, flavour: str, *effects: tuple[str, float], plan: bool = False, length: float = LENGTH
+) -> GapResult:
     """The workflow's result, once per test session; laws for what has no name are test_proposals' matter."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-    return find_gap(runs_with(seed, flavour, *effects), crane, model, GapOptions(plan=plan, proposals=False))
+    runs = runs_with(seed, flavour, *effects, length=length)
+    return find_gap(runs, crane, model, GapOptions(plan=plan, proposals=False))
 
 
 def names_of(result: GapResult) -> list[set[str]]:

@@ -13,7 +13,7 @@ from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 
-FRESH = 0.75  # of a campaign's length: the same plant and the same plan in another sea, with other noise
+FRESH = 0.55  # of a campaign's length: the same plant and the same plan in another sea, with other noise
 # a load, a signal, a term and a state, each of which goes its own way into the file; the oil's stiffness is among MORE
 CASES = [
     ("tare_load", "quiet"), ("pressure_offset", "rough"), ("churning", "paper"), ("presliding", "quiet"),

@@ -515,6 +515,22 @@ def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law
     assert bool(outdone(laws_near, cross, Selection(named, named, found))) is falls
 
 
+@pytest.mark.parametrize(("slots", "law", "falls"), [
+    ((LAWED,), ROOT, False), ((CURVE,), ROOT, False), ((CURVE,), SQUARE, False), (SLOTS, ROOT, True),
+])  # fmt: skip
+def test_of_nothing_that_is_left_no_law_takes_half(slots, law, falls):
+    """Both leave less than the floor, the law a little less still: names of one cause stand, two names are too many."""
+    cross = crossfit(noise())
+    floor = cross.floor
+    cross.problem = replace(
+        cross.problem, layout=replace(cross.problem.layout, slots=(*SLOTS, replace(SLOTS[0], law="bent 1")))
+    )
+    named = replace(explanation(np.full(40, (floor - 5.0) / 40)), slots=slots)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    scored = Scored(law, 1.0, 0.0, floor - 6.0, np.zeros(40))
+    assert bool(outdone([scored], cross, Selection(named, named, found), closed=len(slots) == 1)) is falls
+
+
 @pytest.mark.parametrize(("own", "falls"), [(0.9, False), (1.1, False), (2.5, True)])
 def test_a_law_of_a_curves_own_signals_speaks_for_it_beside_one_with_something_added(own, falls):
     """The other leaves 0.6 of what the curve does; half as much again is no reason, a quarter is."""

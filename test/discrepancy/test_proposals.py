@@ -76,7 +76,7 @@ def test_the_file_of_terms_declares_the_very_term(tmp_path):
 def drag(tmp_path_factory) -> Path:
     """The verdict on runs with a drag that grows with the wire paid out, as files."""
     folder = tmp_path_factory.mktemp("drag")
-    paths = write_csv(folder, make_dataset(77, "si_files", [("wire_out_drag", 1.0)], length=0.5))
+    paths = write_csv(folder, make_dataset(77, "si_files", [("wire_out_drag", 1.0)], length=0.4))
     out = folder / "gap"
     assert winch_friction(["gap", *map(str, paths), "--out", str(out), "--no-report"]) == 0
     return out

@@ -81,8 +81,9 @@ def test_two_clear_levels_are_told_and_one_is_not():
 
 
 def test_what_a_logged_signal_tells_is_no_state():
-    def run(load, mode=("main",), swash=2e-5):
+    def run(load, mode=("main",), swash=2e-5, layer=0):
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
+        channels |= {"wire_layer": np.full(5, layer)} if layer else {}
         group = SimpleNamespace(balances=True, displacement=np.full(5, swash), pressure=np.zeros(5))
         return SimpleNamespace(channels=channels, used=np.ones(5, bool), mode=mode, groups=[group])
 
@@ -95,6 +96,12 @@ def test_what_a_logged_signal_tells_is_no_state():
         (60e3, 20e3, 20e3, 25e3, 70e3), (two, one, one, two, one), (3e-5, 3.2e-5, 2e-5, 2.1e-5, 2e-5), strict=True
     )]  # fmt: skip
     assert told_by_a_signal(full, there)
+    layers = [
+        run(load, layer=layer) for load, layer in zip((60e3, 20e3, 20e3, 25e3, 70e3), (3, 3, 2, 4, 2), strict=True)
+    ]
+    assert told_by_a_signal(layers, there)  # all runs on layer 3, which is neither the lowest nor the highest
+    layers[3].channels["wire_layer"][:] = 3
+    assert not told_by_a_signal(layers, there)
     same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
     assert told_by_a_signal(same, there)
 

@@ -23,7 +23,7 @@ from winch_friction.discrepancy.candidates.signals import (
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
 from winch_friction.physics.corrections import straight, unbent
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.units import CM3_PER_REV
+from winch_friction.physics.units import CM3_PER_REV, RPM
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
 
@@ -48,11 +48,11 @@ def test_a_gain_that_grows_is_taken_out_exactly(error):
     np.testing.assert_allclose(straight(A * (1.0 + error * A), error), A, rtol=1e-12)
 
 
-def machine(motors, swept, gear, radius, inertia=1.54):
+def machine(motors, swept, gear, radius, inertia=1.54, rpm=2100.0):
     group = SimpleNamespace(count=motors)
     return SimpleNamespace(
         constants=(("max_displacement", swept),), groups=[group], gear_ratio=gear, radius=np.array([radius]),
-        inertia=inertia,
+        inertia=inertia, speed=np.linspace(-rpm, rpm, 2001) * RPM,
     )  # fmt: skip
 
 
@@ -66,6 +66,11 @@ def test_typical_sizes_are_those_of_the_machine():
     assert line.scale(line.linear[0], small) == pytest.approx(line.linear[0].typical / whole**2)
     churning = next(each for each in all_candidates() if each.name == "churning" and not each.law_name)
     assert churning.scale(churning.linear[0], small) == pytest.approx(churning.linear[0].typical * 80 / 215)
+    slow = machine_sizes([machine(4, 80 * CM3_PER_REV, 150.0, 0.4, 0.14, rpm=1000.0)])  # it is stated at 2000 rpm
+    assert churning.scale(churning.linear[0], slow) == pytest.approx(
+        2.0**1.9 * churning.scale(churning.linear[0], small), rel=0.01
+    )
+    assert {name for name in slow if slow[name] != pytest.approx(small[name], rel=0.01)} == {"churning"}
     assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
     assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)
     assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical
@@ -160,3 +165,20 @@ def test_a_feedback_may_bow_by_what_its_zero_may_be_off():
     (curve,) = [each for each in bends_over(runs) if each.name == "swivel_offset"]
     turn = 2.0 * (6.0 / 250.0) / 0.25
     assert all(curve.plausible * bend.typical >= 0.999 * turn for bend in curve.linear[1:])
+
+
+@pytest.mark.parametrize(("rate", "small"), [(50.0, True), (26.0, True), (24.0, False), (20.0, False)])
+def test_a_delay_within_a_sample_is_how_the_log_was_made(rate, small):
+    delay = next(each for each in all_candidates() if each.name == "signal_delay")
+    runs = [SimpleNamespace(dt=1.0 / rate, channels={"heave_velocity": np.zeros(3)})]
+    labels = [shape.label for shape in delay.shapes(runs)]
+    assert {"small, of the speed", "small, of the pressures"} & set(labels) == (
+        {"small, of the speed", "small, of the pressures"} if small else set()
+    )
+    assert delay.untestable(labelled(runs)) is None
+    assert "speed late, about 100 ms" in labels
+
+
+def labelled(runs):
+    """The same with what every candidate asks of runs."""
+    return [SimpleNamespace(**vars(run), present=frozenset(), groups=[1]) for run in runs]

@@ -24,7 +24,7 @@ SIZE = 0.3  # at full size the safety envelope of 1.3 x the seed would clip the 
 SEED = 71
 RATE = 50.0  # Hz
 AS_FAST_AS_IT_GOES = 1000.0  # simulated seconds per second
-LOOP_TIME, SETTLED = 35.0, 15.0  # s of each sea in the loop, and when its start is over
+LOOP_TIME, SETTLED = 25.0, 12.0  # s of each sea in the loop, and when its start is over
 MOVING = 10.0  # rad/s
 START, DAY = 1_706_745_600.0, 86400.0  # s
 

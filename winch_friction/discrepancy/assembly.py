@@ -17,6 +17,7 @@ from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Given, meet
 from winch_friction.discrepancy.holdout import Split
+from winch_friction.discrepancy.instants import placed
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
@@ -47,6 +48,7 @@ class Trial:
 
 def tried(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
     """The file that a search would write, put to all runs."""
+    search = placed(search, split)
     repaired = draft(search, search.explanation, _provenance(split.train, search.verdict, options))
     repaired = polished(repaired, search.given.model, split.runs, split.train, crane)
     after = meet(split.runs, crane, read_back(repaired.model))

@@ -92,18 +92,23 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     law = laws[0]
     one = len({slot.name for slot in slots}) == 1
     given = one and not any(slot.free for slot in slots)
-    share = LIMITS.outdone if given or closed else 1.0
-    if law.loss - cross.floor > share * (named.loss - cross.floor):
+    left, left_by_law = _above_floor(cross, named.loss), _above_floor(cross, law.loss)
+    if left_by_law >= LIMITS.outdone * left if given or closed else left_by_law > left:
         return ""
     if one:
         rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
         many = [slot for slot in rivals if _has_laws(slot, cross)]
         own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
-        if own and law.loss - cross.floor > LIMITS.outdone * (min(own) - cross.floor):
+        if own and left_by_law >= LIMITS.outdone * _above_floor(cross, min(own)):
             return ""
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "" if one else "together "
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
+
+
+def _above_floor(cross: CrossFit, loss: float) -> float:
+    """What a loss leaves above the noise; of nothing, nobody takes half."""
+    return max(loss - cross.floor, 0.0)
 
 
 def _asked(
@@ -111,7 +116,8 @@ def _asked(
 ) -> list[Scored]:
     """The laws that a set of names is held against, `near` gives them without some kinds of factors."""
     laws = near(())
-    surely = laws and laws[0].loss - cross.floor <= LIMITS.surely_outdone * (named.loss - cross.floor)
+    left = LIMITS.surely_outdone * _above_floor(cross, named.loss)
+    surely = laws and _above_floor(cross, laws[0].loss) < left
     return near(PICKING) if closed and laws and not surely else laws
 
 

@@ -29,6 +29,7 @@ from winch_friction.physics.friction.table import Table, tabulated
 BRAKE, SOME_RUNS, SINCE = "brake_drag", "in some runs", "since a date"
 SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
 NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
+NUMBERED = ("wire_layer",)  # whose values are names: the middle one may be wrong
 THEN = "_then"  # behind the name of a parameter that is there for a time
 MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
 
@@ -218,5 +219,7 @@ def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
         )
         yes, no = medians[there], medians[~there]
         if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
+            return True
+        if name in NUMBERED and len(set(yes)) == 1 and yes[0] not in no:
             return True
     return False

@@ -11,12 +11,15 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction, declared_correction
 from winch_friction.physics.friction.term import Parameter, Term
+from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 from winch_friction.physics.winch import Crane
 
 Values = Mapping[str, float]
@@ -28,7 +31,9 @@ SOURCE, CUT = "winch-friction gap", "cut at its bound from"
 MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flow"
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
-LINE = "line_pressure_drop"
+LINE, CHURNING = "line_pressure_drop", "churning"
+CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
+SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
 
@@ -100,7 +105,8 @@ def correction(name: str, estimate: ParameterEstimate, factor: float = 1.0, **ti
 def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
     motor's torque with its displacement, masses with what the winch lifts at one pressure, a resistance (also one that
-    is stated at a fixed flow, under `LINE`) with the square of its flow. Empty where no run shows motors.
+    is stated at a fixed flow, under `LINE`) with the square of its flow, and what is stated at a fixed speed, under
+    `CHURNING`, as much at a slow machine's own top speed. Empty where no run shows motors.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
@@ -110,7 +116,10 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
     lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
     torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
-    return {**torques, LINE: whole**-2, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
+    top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
+    churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
+    stated_at = {LINE: whole**-2, CHURNING: churned}
+    return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 
 def single_shape(_: Sequence[PreparedRun]) -> list[Shape]:
@@ -179,7 +188,7 @@ class Candidate:
         """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""
         if self.own_size:
             return parameter.typical
-        return parameter.typical * sizes.get(LINE if self.name == LINE else parameter.unit, 1.0)
+        return parameter.typical * sizes.get(self.name, sizes.get(parameter.unit, 1.0))
 
     @property
     def latex(self) -> str:

@@ -28,6 +28,7 @@ from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import BAR
 
 DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
+SMALL = 0.8  # of the typical delay: the largest that the columns of a small one can be
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
 DELAY = "signal_delay"
 OIL = ("oil_temperature",)
@@ -183,9 +184,12 @@ def delay_columns(run: PreparedRun, values: Values) -> FloatArray:
 
 
 def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-    shapes = [Shape("small, of the speed", SMALL_DELAY, (-0.8, 0.8))]
-    if any("heave_velocity" in run.channels for run in runs):
-        shapes.append(Shape("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-0.8, 0.8)))
+    shapes = []
+    # one that is less than a sample is how the log was made: nulls at 20 Hz "had" 26 ms of the pressures
+    if max(run.dt for run in runs) < SMALL * tau.typical:
+        shapes.append(Shape("small, of the speed", SMALL_DELAY, (-SMALL, SMALL)))
+        if any("heave_velocity" in run.channels for run in runs):
+            shapes.append(Shape("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-SMALL, SMALL)))
     for step in DELAYS:
         near, far = step / NEXT / tau.typical, NEXT * step / tau.typical
         late = {"ahead": step, "behind": 0.0, "late": SPEED}

@@ -40,7 +40,7 @@ from winch_friction.discrepancy.proof import (
     prove,
     worse_runs,
 )
-from winch_friction.discrepancy.standing import _each_proven, _sets, several_leave_more_than_noise
+from winch_friction.discrepancy.standing import _by_another_signal, _each_proven, _sets, several_leave_more_than_noise
 from winch_friction.discrepancy.ties import Company
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.friction import Scope
@@ -447,6 +447,23 @@ def test_several_names_leave_no_more_than_noise(names, left, stands):
     plain = tuple(replace(slot, plain=True) for slot in slots)  # what a bare model lacks is no discovery
     trial.search.explanation.slots = plain
     assert several_leave_more_than_noise(trial) == ""
+
+
+@pytest.mark.parametrize(("own", "other", "fewer", "more", "stays"), [
+    ("stribeck", "pressure_offset", 1.6, 1.1, True),  # reads the speed and the load, which no zero reads
+    ("stribeck", "pressure_offset", 1.2, 1.0, False),  # but the zero alone is at the noise
+    ("stribeck", "pressure_offset", 2.0, 1.4, False),  # or both together are not
+    ("port_turbulence", "line_pressure_drop", 1.6, 1.1, False),  # nothing that the line's own law does not read
+    ("viscosity_temperature", "brake_drag", 1.6, 1.1, True),
+])  # fmt: skip
+def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(own, other, fewer, more, stays):
+    """`fewer` and `more`: what is left without the name and with it, in floors."""
+    slots = [Slot(each.name, "", (0,), origin=(each, None)) for name in (own, other)
+             for each in all_candidates() if each.name == name and not each.law_name]  # fmt: skip
+    rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=slots[1:])))
+    sides = [SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0) for left in (fewer, more)]
+    trials = [SimpleNamespace(search=rest, holdout=side) for side in sides]
+    assert _by_another_signal(slots[0], *trials) is stays
 
 
 @dataclass(frozen=True)

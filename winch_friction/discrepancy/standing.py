@@ -19,6 +19,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.winch import Crane
 
+CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
 _TrialOf = Callable[[Search], Trial]
 
 
@@ -140,11 +141,22 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
         same = slot.name in without.search.selection.final.names
         minor = not same and is_minor(refit.holdout, without.holdout, full.holdout)
         minor = minor and not leaves_too_much(without.holdout)
-        if mends or minor or not adds(without.holdout, full.holdout, rng):
+        inexact = (mends or minor) and not _by_another_signal(slot, without, full)
+        if inexact or not adds(without.holdout, full.holdout, rng):
             full = without
     if len(full.search.selection.final.slots) < count:
         full = replace(full, search=_judged_anew(full.search, rng))
     return full
+
+
+def _by_another_signal(slot: Slot, without: Trial, full: Trial) -> bool:
+    """Whether a name brings the locked gap down to its floor, where the others leave more, by a signal that they do not
+    read: then it is no inexactness of theirs."""
+    fewer, more = (each.holdout.size_after.value / each.holdout.floor for each in (without, full))
+    if not more <= LIMITS.several_leave < fewer:
+        return False
+    read = {signal for own in without.search.selection.final.slots for signal in own.origin[0].signals}
+    return not {*slot.origin[0].signals} <= read | CONSTANT
 
 
 def _least_missed_first(search: Search) -> list[Slot]:

@@ -449,6 +449,25 @@ def test_several_names_leave_no_more_than_noise(names, left, stands):
     assert several_leave_more_than_noise(trial) == ""
 
 
+@pytest.mark.parametrize(("second", "names"), [("wear_drift", ["wave", "other"]), ("brake_drag", ["wave"])])
+def test_a_small_second_name_stays_by_another_signal(second, names):
+    """Beside an error of a transducer one that drifts with the dates, and one that is there always."""
+    causes = [next(each for each in all_candidates() if each.name == name) for name in ("pressure_offset", second)]
+    slots = tuple(replace(slot, origin=(cause, None)) for slot, cause in zip(SLOTS, causes, strict=True))
+    cross = crossfit(30.0 * WAVE + 1.6 * OTHER + noise())
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(slots), found))
+
+    def trial_of(own):
+        there = own.selection.final.names
+        left = 30.0 * WAVE * ("wave" not in there) + 1.6 * OTHER * ("other" not in there) + noise(1)
+        return Trial(own, None, None, replace(side(30.0 * WAVE + noise(), left), least_noise=0.1))
+
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    assert list(proven.search.selection.final.names) == names
+
+
 @pytest.mark.parametrize(("own", "other", "fewer", "more", "stays"), [
     ("stribeck", "pressure_offset", 1.6, 1.1, True),  # reads the speed and the load, which no zero reads
     ("stribeck", "pressure_offset", 1.2, 1.0, False),  # but the zero alone is at the noise

@@ -474,6 +474,8 @@ def test_a_small_second_name_stays_by_another_signal(second, names):
     ("stribeck", "pressure_offset", 2.0, 1.4, False),  # or both together are not
     ("port_turbulence", "line_pressure_drop", 1.6, 1.1, False),  # nothing that the line's own law does not read
     ("viscosity_temperature", "brake_drag", 1.6, 1.1, True),
+    ("signal_delay", "layer_radius", 2.0, 0.8, True),  # shows while the speed changes, as no radius does
+    ("inertia_error", "signal_delay", 2.0, 0.8, False),
 ])  # fmt: skip
 def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(own, other, fewer, more, stays):
     """`fewer` and `more`: what is left without the name and with it, in floors."""

@@ -20,6 +20,7 @@ from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEX
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
+WHILE_SPEED_CHANGES = ("signal_delay", "inertia_error")
 _TrialOf = Callable[[Search], Trial]
 
 
@@ -155,8 +156,13 @@ def _by_another_signal(slot: Slot, without: Trial, full: Trial) -> bool:
     fewer, more = (each.holdout.size_after.value / each.holdout.floor for each in (without, full))
     if not more <= LIMITS.several_leave < fewer:
         return False
-    read = {signal for own in without.search.selection.final.slots for signal in own.origin[0].signals}
-    return not {*slot.origin[0].signals} <= read | CONSTANT
+    read = {signal for own in without.search.selection.final.slots for signal in _reads(own)}
+    return not _reads(slot) <= read | CONSTANT
+
+
+def _reads(slot: Slot) -> set[str]:
+    """The signals that a name's law reads; what only shows while the speed changes reads the acceleration."""
+    return {*slot.origin[0].signals, *(["acceleration"] if slot.name in WHILE_SPEED_CHANGES else [])}
 
 
 def _least_missed_first(search: Search) -> list[Slot]:

@@ -11,7 +11,8 @@ from campaign.gap_hard_cases import all_cases, runs_of
 from campaign.rig import DRAWN, make_dataset
 from winch_friction.discrepancy.assembly import LEFT_AS_GIVEN
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.detectors.reversals import blurred_travel, too_short
+from winch_friction.discrepancy.candidates.speeds_seen import blurred_travel
+from winch_friction.discrepancy.detectors.reversals import too_short
 from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
@@ -80,6 +81,8 @@ def test_the_blurred_travel_is_that_of_three_samples(rate):
     bristles = next(each for each in all_candidates() if each.name == "presliding")
     refused = [shape.values["d_z"] for shape in bristles.shapes([]) if too_short(bristles, shape, [run])]
     assert refused == ([0.009] if rate == 50.0 else [0.009, 0.02, 0.04, 0.09])
+    long = next(each for each in all_candidates() if each.law_name == "over a long travel")
+    assert [shape.values["d_z"] for shape in long.shapes([run])] == ([0.3, 1.0, 3.0] if rate == 50.0 else [1.0, 3.0])
     assert blurred_travel([SimpleNamespace(speed=np.full(200, 3.0), dt=0.02)]) == 0.0
 
 

@@ -47,6 +47,7 @@ def literature() -> list[Candidate]:
         _of("stribeck", "stribeck_lorentz", {"v_l": STRIBECK_SPEEDS}),
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
+        _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
         wear("wear_saturating", shapes=_lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
         wear("wear_sudden", shapes=_between_runs),
         wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),

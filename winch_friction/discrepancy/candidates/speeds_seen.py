@@ -12,6 +12,8 @@ from winch_friction.discrepancy.candidates.candidate import Possible, Values
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction.terms.laws_fluid import POLE, VOGEL_46
 
+CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
+BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 
@@ -41,4 +43,25 @@ def notch(values: Values, runs: Sequence[PreparedRun]) -> bool:
     return all(v < _top(runs) for name, v in values.items() if name.startswith("w_"))
 
 
-POSSIBLE: Mapping[str, Possible] = {"stribeck": stribeck, "viscosity_temperature": hersey, "notch_loss": notch}
+def blurred_travel(runs: Sequence[PreparedRun]) -> float:
+    """Travel of the shaft in rad within three samples of a reversal, median: shorter than that nothing is told from an
+    instant that is not known better; 0 without a reversal."""
+    travels = []
+    for run in runs:
+        speed, look = run.speed, max(round(BEYOND / run.dt), 2)
+        at = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+        at = at[(at >= look) & (at < len(speed) - look)]
+        real = at[(np.abs(speed[at - look]) > MOVING_SPEED) & (np.abs(speed[at + look]) > MOVING_SPEED)]
+        travels += [float(np.abs(speed[k + 1 : k + 4]).sum() * run.dt) for k in real]
+    return float(np.median(travels)) if travels else 0.0
+
+
+def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """A travel well beyond that in which nobody knows when the shaft turned: shorter ones are looked for just after
+    reversals alone (`detectors.reversals`)."""
+    return values["d_z"] > CLEAR * blurred_travel(runs)
+
+
+POSSIBLE: Mapping[str, Possible] = {
+    "stribeck": stribeck, "viscosity_temperature": hersey, "notch_loss": notch, "presliding": presliding,
+}  # fmt: skip

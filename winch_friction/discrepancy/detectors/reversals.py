@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
+from winch_friction.discrepancy.candidates.speeds_seen import blurred_travel
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.interval import chance_of_no_gain
@@ -22,7 +23,6 @@ from winch_friction.discrepancy.thresholds import LIMITS
 
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
 FEWEST_BLOCKS = 200
-BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 
 
 @dataclass(frozen=True)
@@ -50,19 +50,6 @@ class ReversalFinding:
             for each in (self.base, self.fitted)
         )
         return chance_of_no_gain(without, with_it, blocks.segment, blocks.run, rng) <= LIMITS.proof_p
-
-
-def blurred_travel(runs: Sequence[PreparedRun]) -> float:
-    """Travel of the shaft in rad within three samples of a reversal, median: shorter than that nothing is told from an
-    instant that is not known better; 0 without a reversal."""
-    travels = []
-    for run in runs:
-        speed, look = run.speed, max(round(BEYOND / run.dt), 2)
-        at = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
-        at = at[(at >= look) & (at < len(speed) - look)]
-        real = at[(np.abs(speed[at - look]) > MOVING_SPEED) & (np.abs(speed[at + look]) > MOVING_SPEED)]
-        travels += [float(np.abs(speed[k + 1 : k + 4]).sum() * run.dt) for k in real]
-    return float(np.median(travels)) if travels else 0.0
 
 
 def too_short(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> bool:

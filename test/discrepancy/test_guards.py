@@ -449,6 +449,27 @@ def test_several_names_leave_no_more_than_noise(names, left, stands):
     assert several_leave_more_than_noise(trial) == ""
 
 
+@pytest.mark.parametrize(("alone", "rivals"), [(0.02, ["other"]), (2.0, [])])
+def test_a_dropped_name_that_does_as_well_alone_is_a_rival(alone, rivals):
+    """Training runs have both, locked runs are at their noise with the one: are they with the other?"""
+    cross = crossfit(5.0 * WAVE + 0.8 * OTHER + noise())
+    slots = tuple(replace(slot, law="another") for slot in SLOTS)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(slots), found))
+
+    def trial_of(own):
+        names = own.selection.final.names
+        left = {(): 5.0, ("other",): alone}.get(tuple(names), 0.0) * WAVE + noise(1)
+        return Trial(own, None, None, replace(side(5.0 * WAVE + noise(), left), least_noise=0.1))
+
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    (finding,) = proven.search.selection.found
+    assert finding.slot.name == "wave"
+    assert [each.name for each in finding.rivals] == rivals
+    assert proven.search.verdict.kind == (AMBIGUOUS if rivals else MISSING)
+
+
 @pytest.mark.parametrize(("second", "names"), [("wear_drift", ["wave", "other"]), ("brake_drag", ["wave"])])
 def test_a_small_second_name_stays_by_another_signal(second, names):
     """Beside an error of a transducer one that drifts with the dates, and one that is there always."""

@@ -1,6 +1,6 @@
 """Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -130,7 +130,7 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
     take nothing off them surely, or no more than the others' laws may be inexact by, or, beside a name whose law is
     not the catalogue's own and may want mending, those without which nothing would be missing.
     """
-    count = len(full.search.selection.final.slots)
+    every, dropped = full.search, list[Slot]()
     for slot in _least_missed_first(full.search):
         search, final = full.search, full.search.selection.final
         brought = any(slot.name in each.brings for each in final.slots)
@@ -145,9 +145,30 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
         inexact = (mends or minor) and not _by_another_signal(slot, without, full)
         if inexact or not adds(without.holdout, full.holdout, rng):
             full = without
-    if len(full.search.selection.final.slots) < count:
+            dropped.append(slot)
+    if dropped:
         full = replace(full, search=_judged_anew(full.search, rng))
+        full = _with_those_as_good_alone(full, every, dropped, trial_of, rng)
     return full
+
+
+def _with_those_as_good_alone(
+    one: Trial, every: Search, dropped: Sequence[Slot], trial_of: _TrialOf, rng: np.random.Generator
+) -> Trial:
+    """The trial of one name with those dropped names as its rivals that leave by themselves no more of the locked runs:
+    these do not say which of the two it is, and that one came first says nothing.
+    """
+    (finding, *more), search = one.search.selection.found, one.search
+    known = {finding.slot.name, *(slot.name for slot in finding.rivals)}
+    for slot in dropped:
+        if more or slot.plain or slot.name in known or len(known) > LIMITS.most_named:
+            continue
+        alone = every
+        for other in every.selection.final.slots:
+            alone = alone if other is slot else _without(alone, other)
+        if not adds(trial_of(alone).holdout, one.holdout, rng):
+            finding, known = replace(finding, rivals=(*finding.rivals, slot)), known | {slot.name}
+    return replace(one, search=_of(search, replace(search.selection, found=(finding, *more))))
 
 
 def _by_another_signal(slot: Slot, without: Trial, full: Trial) -> bool:

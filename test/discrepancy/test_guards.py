@@ -536,6 +536,15 @@ def test_with_a_curve_the_fewest_causes_are_tried_first(free, second, first):
     assert sorted(map(len, tried)) == [1, 2]
 
 
+def test_a_rival_is_asked_where_the_locked_runs_refuse_the_one_name():
+    cross = crossfit(3.0 * WAVE + noise(), other=WAVE + 0.02 * OTHER)
+    selection = select(cross, np.random.default_rng(1), 1)
+    ((own, rivals),) = [(found.slot.name, [slot.name for slot in found.rivals]) for found in selection.found]
+    assert {own, *rivals} == {"wave", "other"}
+    sets = _sets(_Found(cross, selection), np.random.default_rng(1))
+    assert [each.selection.final.names for each in sets] == [(own,), *((name,) for name in rivals)]
+
+
 GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOTOR, shape="rising", anchor="low"))
 LAWED = replace(SLOTS[0], origin=(friction_candidate(GRIP), None))
 CURVE, BENT = replace(LAWED, free=True), replace(LAWED, law="bent 1")

@@ -81,6 +81,9 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
         if len(search.selection.final.names) < len(slots):  # one cause by two laws, but perhaps it is two
             yield decided(search, select(search.cross, rng, apart=True), rng)
         yield from (_with_at_most(count, search, rng) for count in reversed(counts))
+    if len(slots) == 1:  # what the locked runs refuse of one law they may grant a rival that does as well
+        for rival in search.selection.found[0].rivals:
+            yield decided(search, with_fewer(search.cross, search.selection, (rival,), rng), rng)
 
 
 def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:

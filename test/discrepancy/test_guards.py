@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy.assembly import Trial, _concluded
+from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine import selection as selection_module
@@ -53,7 +54,9 @@ OTHER = np.tile(np.cos(np.linspace(0.0, 31.0, BLOCKS)), RUNS)
 RUN = np.repeat(np.arange(RUNS), BLOCKS)
 POSITION = np.tile(np.arange(BLOCKS), RUNS)
 SEGMENT = RUN * 10 + POSITION // 30
-SLOTS = (Slot("wave", "", (1,), most=50.0), Slot("other", "", (2,), most=50.0))
+SLOTS = tuple(  # of causes that read no signal
+    Slot(name, "", (k,), most=50.0, origin=(Candidate(name), None)) for k, name in ((1, "wave"), (2, "other"))
+)
 
 
 def crossfit(y, features=None, other=OTHER, slots=SLOTS, more=None):
@@ -489,23 +492,27 @@ def test_a_small_second_name_stays_by_another_signal(second, names):
     assert list(proven.search.selection.final.names) == names
 
 
-@pytest.mark.parametrize(("own", "other", "fewer", "more", "stays"), [
-    ("stribeck", "pressure_offset", 1.6, 1.1, True),  # reads the speed and the load, which no zero reads
-    ("stribeck", "pressure_offset", 1.2, 1.0, False),  # but the zero alone is at the noise
-    ("stribeck", "pressure_offset", 2.0, 1.4, False),  # or both together are not
-    ("port_turbulence", "line_pressure_drop", 1.6, 1.1, False),  # nothing that the line's own law does not read
-    ("viscosity_temperature", "brake_drag", 1.6, 1.1, True),
-    ("signal_delay", "layer_radius", 2.0, 0.8, True),  # shows while the speed changes, as no radius does
-    ("inertia_error", "signal_delay", 2.0, 0.8, False),
+@pytest.mark.parametrize(("own", "other", "fewer", "more", "refuses", "stays"), [
+    ("stribeck", "pressure_offset", 1.6, 1.1, False, True),  # reads the speed and the load, which no zero reads
+    ("stribeck", "pressure_offset", 1.2, 1.0, False, False),  # but the zero alone is at the noise
+    ("stribeck", "pressure_offset", 1.2, 1.0, True, True),  # though not in the training runs
+    ("stribeck", "pressure_offset", 2.0, 1.4, True, False),  # or both together are not
+    ("port_turbulence", "line_pressure_drop", 1.6, 1.1, True, False),  # nothing that the line's own law does not read
+    ("viscosity_temperature", "brake_drag", 1.6, 1.1, False, True),
+    ("signal_delay", "layer_radius", 2.0, 0.8, False, True),  # shows while the speed changes, as no radius does
+    ("inertia_error", "signal_delay", 2.0, 0.8, True, False),
 ])  # fmt: skip
-def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(own, other, fewer, more, stays):
-    """`fewer` and `more`: what is left without the name and with it, in floors."""
+def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(
+    own, other, fewer, more, refuses, stays, monkeypatch
+):
+    """`fewer` and `more`: what is left without the name and with it, in floors; `refuses`: the training verdict."""
     slots = [Slot(each.name, "", (0,), origin=(each, None)) for name in (own, other)
              for each in all_candidates() if each.name == name and not each.law_name]  # fmt: skip
     rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=slots[1:])))
     sides = [SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0) for left in (fewer, more)]
     trials = [SimpleNamespace(search=rest, holdout=side) for side in sides]
-    assert _by_another_signal(slots[0], *trials) is stays
+    monkeypatch.setattr(standing_module, "refused", lambda trial, rng: refuses)
+    assert _by_another_signal(slots[0], *trials, np.random.default_rng(0)) is stays
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
 from winch_friction.discrepancy.search import search_runs
-from winch_friction.discrepancy.standing import decided, nameless, standing, unexplained
+from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, UNEXPLAINED
+from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.winch import Crane
 
@@ -75,7 +75,7 @@ def _closed(trial: Trial, rng: np.random.Generator) -> bool:
     """
     if not at_the_floor(trial.holdout):
         return False
-    return decided(trial.search, trial.search.selection, rng).verdict.kind != UNEXPLAINED
+    return not refused(trial, rng)
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

@@ -145,7 +145,7 @@ def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.G
         same = slot.name in without.search.selection.final.names
         minor = not same and is_minor(refit.holdout, without.holdout, full.holdout)
         minor = minor and not leaves_too_much(without.holdout)
-        inexact = (mends or minor) and not _by_another_signal(slot, without, full)
+        inexact = (mends or minor) and not _by_another_signal(slot, without, full, rng)
         if inexact or not adds(without.holdout, full.holdout, rng):
             full = without
             dropped.append(slot)
@@ -174,14 +174,21 @@ def _with_those_as_good_alone(
     return replace(one, search=_of(search, replace(search.selection, found=(finding, *more))))
 
 
-def _by_another_signal(slot: Slot, without: Trial, full: Trial) -> bool:
-    """Whether a name brings the locked gap down to its floor, where the others leave more, by a signal that they do not
-    read: then it is no inexactness of theirs."""
-    fewer, more = (each.holdout.size_after.value / each.holdout.floor for each in (without, full))
-    if not more <= LIMITS.several_leave < fewer:
-        return False
+def _by_another_signal(slot: Slot, without: Trial, full: Trial, rng: np.random.Generator) -> bool:
+    """Whether a name brings the locked gap down to its floor, where the others leave more of it or more of the training
+    runs than the verdict allows, by a signal that they do not read: then it is no inexactness of theirs."""
     read = {signal for own in without.search.selection.final.slots for signal in _reads(own)}
-    return not _reads(slot) <= read | CONSTANT
+    if _reads(slot) <= read | CONSTANT:
+        return False
+    fewer, more = (each.holdout.size_after.value / each.holdout.floor for each in (without, full))
+    if more > LIMITS.several_leave:
+        return False
+    return fewer > LIMITS.several_leave or refused(without, rng)
+
+
+def refused(trial: Trial, rng: np.random.Generator) -> bool:
+    """Whether a trial's names leave more of the training runs than the verdict allows."""
+    return decided(trial.search, trial.search.selection, rng).verdict.kind == UNEXPLAINED
 
 
 def _reads(slot: Slot) -> set[str]:

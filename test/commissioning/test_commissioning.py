@@ -9,6 +9,7 @@ import pytest
 from spoils import spoils
 
 from campaign import rig
+from campaign.second_rig import SETS, write_set
 from winch_friction.commissioning.check import quick_check, shipped_cranes
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.finding import first_contradiction
@@ -71,6 +72,17 @@ def test_the_first_cause_is_the_true_one(seed, flavour, tmp):
         if found is None or found.cause != each.cause or found.channel not in each.channels:
             wrong.append((each.name, found.sentence if found else "nothing"))
     assert len(wrong) <= (1.0 - RIGHT) * len(chosen), wrong
+
+
+def test_the_weight_of_the_wire_is_no_mistake(tmp):
+    """Two hundred metres of wire are heavier than the load of 4 t at the hook, where the load cell weighs."""
+    folder = tmp / "heavy_wire"
+    write_set(folder, SETS["tare_wire"], SETS["tare_wire"].seed(34))
+    crane, model = load_crane(str(folder / "crane.yaml")), load_model(str(folder / "model.yaml"))
+    runs = [read_run(path) for path in sorted((folder / "runs").iterdir())]
+    assert first_contradiction(quick_check(runs, crane, model)) is None
+    unknown = replace(crane, wire_mass=0.0)  # nobody knows what it weighs: the runs are not this crane's
+    assert first_contradiction(quick_check(runs, unknown, model)) is not None
 
 
 def test_another_crane_is_named(tmp):

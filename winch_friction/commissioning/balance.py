@@ -43,6 +43,7 @@ FRICTION_NOISE = 0.08  # of the friction
 CAUCHY = 3.0  # sigma beyond which a block counts less
 FEWEST = 5  # moving blocks; a run with fewer tells nothing
 MOST_STRETCH = 4.0  # sigma; a load or an offset farther off is no ordinary error
+MOST_WIRE, HEAVIER_WIRE = 0.3, 1.2  # of the rated torque, for a `wire_out` that is none; of the weight that is stated
 FREE_OFFSET = 1.2  # of the rated torque, where no load is logged: what hangs there, which cannot push the wire
 
 
@@ -87,6 +88,7 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
             _Error("friction at low speed", sign * rated * np.exp(-relative / SLOW_SPEED), SLOW_FRICTION, -MISSING),
             _Error("load", load, LOAD_SHARE, -MOST_STRETCH, MOST_STRETCH),
             _offset(len(drive), rated, known, bool(view.groups)),
+            _unweighed(view, rated),
             _Error("inertia", inertial, INERTIA_SHARE, -LEAST_INERTIA / INERTIA_SHARE, MOST_INERTIA / INERTIA_SHARE),
             _Error("load inertia", swing, swings, -1.0 / swings, 2.0 / swings),
         )
@@ -189,6 +191,13 @@ def _offset(size: int, rated: float, known: bool, hydraulic: bool) -> _Error:
     if known:
         return _Error("offset", torque, OFFSET_SHARE, -MOST_STRETCH, MOST_STRETCH)
     return _Error("offset", torque, FREE_OFFSET, -OFFSET_SHARE if hydraulic else -1.0, 1.0)
+
+
+def _unweighed(view: RunView, rated: float) -> _Error:
+    """The wire paid out, which a load cell at the hook does not weigh: as heavy as the crane file says, where both are
+    known."""
+    weight = np.zeros(len(view.time)) if view.wire is None else np.nan_to_num(view.wire) * view.lever
+    return _Error("weight of the wire", np.clip(weight, 0.0, MOST_WIRE * rated), 1.0, 0.0, HEAVIER_WIRE)
 
 
 def _fit(

@@ -7,6 +7,7 @@ import numpy as np
 
 from winch_friction.physics.plausible import LIMITS
 from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
 BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an encoder's steps
@@ -39,7 +40,7 @@ class RunView:
 
     `load` is NaN where it is not logged; `load_torque` N m at the shaft stands in for it where it is measured. `rates`
     are other channels' words on the speed: shaft speed rad/s (`shaft_angle`, `speed_reference`) or wire speed m/s, up
-    positive (`wire_out`, `heave_velocity`).
+    positive (`wire_out`, `heave_velocity`). `wire` is the weight of the wire paid out, N; None where it is not known.
     """
 
     name: str
@@ -60,6 +61,7 @@ class RunView:
     load_torque: FloatArray | None = None
     oil: FloatArray | None = None
     rates: Mapping[str, FloatArray] = field(default_factory=dict)
+    wire: FloatArray | None = None
     seen_torque: float = np.inf  # N m, the largest of all runs
 
     @property
@@ -139,6 +141,7 @@ def view_of(run: Run, crane: Crane) -> RunView:
         load_torque=_load_torque(blocks, crane, layer),
         oil=blocks.mean("oil_temperature") if "oil_temperature" in run else None,
         rates=_rates(blocks, heave),
+        wire=crane.wire_mass * GRAVITY * blocks.mean("wire_out") if "wire_out" in run and crane.wire_mass else None,
     )
     return _thinned(view)
 
@@ -266,6 +269,7 @@ def select(view: RunView, keep: slice | np.ndarray) -> RunView:
         heave_acceleration=view.heave_acceleration[keep],
         motor_torque=cut(view.motor_torque),
         load_torque=cut(view.load_torque),
+        wire=cut(view.wire),
         oil=cut(view.oil),
         groups={
             name: replace(g, drop=g.drop[keep], pressure_sum=g.pressure_sum[keep], displacement=g.displacement[keep])

@@ -3,6 +3,7 @@
 import json
 import struct
 import threading
+import time
 
 import pytest
 
@@ -16,6 +17,7 @@ client = pytest.importorskip("websockets.sync.client")
 
 def hear(address, topic, channels, messages):
     """Advertised channels, and messages of one topic until there are ten."""
+    wanted = {}
     with client.connect(address, subprotocols=["foxglove.sdk.v1"], close_timeout=0.5) as link:
         while len(messages) < 10:
             frame = link.recv(timeout=30.0)
@@ -23,10 +25,17 @@ def hear(address, topic, channels, messages):
                 assert struct.unpack_from("<I", frame, 1)[0] == 7
                 messages.append(frame[13:])
                 continue
-            for each in json.loads(frame).get("channels", []):
+            said = json.loads(frame)
+            for each in said.get("channels", []):
                 channels[each["topic"]] = each
                 if each["topic"] == topic:
-                    link.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 7, "channelId": each["id"]}]}))
+                    wanted = {"op": "subscribe", "subscriptions": [{"id": 7, "channelId": each["id"]}]}
+                    link.send(json.dumps(wanted))
+            if (
+                said.get("op") == "status" and wanted
+            ):  # the SDK advertises a channel before it takes subscriptions to it
+                time.sleep(0.1)
+                link.send(json.dumps(wanted))
 
 
 def test_live_topics_are_advertised_and_heard(bench, monkeypatch):

@@ -31,9 +31,8 @@ def hear(address, topic, channels, messages):
                 if each["topic"] == topic:
                     wanted = {"op": "subscribe", "subscriptions": [{"id": 7, "channelId": each["id"]}]}
                     link.send(json.dumps(wanted))
-            if (
-                said.get("op") == "status" and wanted
-            ):  # the SDK advertises a channel before it takes subscriptions to it
+            # the SDK advertises a channel a moment before it takes subscriptions to it, and says that there is none
+            if said.get("op") == "status" and wanted:
                 time.sleep(0.1)
                 link.send(json.dumps(wanted))
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.measuring import Pace, Row, sea
+from bench.measuring import Pace, Row, end, sea
 from winch_friction.physics.errors import InputError
 
 RATES = (50, 100, 200, 500)  # Hz
@@ -138,10 +138,7 @@ def measure(smoke: bool = False) -> list[Row]:
         return [row for rate in rates for row in _rows(driver, processes, samples, rate, turns, duration)]
     finally:
         driver.close()
-        for each in processes.values():
-            each.terminate()
-        for each in processes.values():
-            each.wait(20.0)
+        end(list(processes.values()))
 
 
 def _rows(driver: Driver, processes: dict[str, Any], samples: list[Any], rate: int, turns: int, duration: float

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.measuring import Pace, Row, sea
+from bench.measuring import Pace, Row, end, sea
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run, Sample
 
@@ -105,7 +105,7 @@ class Driver:
                     return time.time() - begin
             raise RuntimeError(f"{name}: no answer within {STARTING:g} s")
         finally:
-            _end([process])
+            end([process])
 
     def soak(self, samples: list[Sample], duration: float) -> tuple[int, dict[str, int], int]:
         """Speeds sent at 200 Hz, how many of them each node answered, and how often the sender was kept waiting; both
@@ -135,7 +135,7 @@ class Driver:
             found = {name: len(sent & (stamps | self.taken(name))) for name, stamps in answered.items()}
             return len(sent), found, pace.pauses
         finally:
-            _end(processes)
+            end(processes)
 
 
 def measure(smoke: bool = False) -> list[Row]:
@@ -184,10 +184,3 @@ def _started(command: list[str]) -> Any:
         [*command, "--ros-args", "-r", "__ns:=/live"], cwd=Path(__file__).resolve().parents[1],
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
-
-
-def _end(processes: list[Any]) -> None:
-    for each in processes:
-        each.terminate()
-    for each in processes:
-        each.wait(20.0)

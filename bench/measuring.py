@@ -1,8 +1,9 @@
 """Two things measured side by side in one process: the ratio survives a noisy machine, single times do not."""
 
 import gc
+import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from statistics import median
@@ -18,6 +19,7 @@ from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 
 PATIENCE = 5.0  # periods; a stamp that advances by one of ten counts as standing still
+ENDING = 20.0  # s for a process to end by itself
 REPEATS = 7  # the median of seven ratios stands three disturbed pairs
 
 
@@ -125,3 +127,16 @@ def sea(duration: float = 60.0) -> tuple[Crane, FrictionModel, Run, list[Sample]
 def sea_seconds(smoke: bool) -> float:
     """How long a sea the steps are measured over."""
     return 2.0 if smoke else 60.0
+
+
+def end(processes: Sequence[subprocess.Popen[Any]]) -> None:
+    """Ask processes to end, and make those that do not within `ENDING`: how a node ends is the tests' matter, and a
+    relay that meets its signal while it starts to wait may never hear of it."""
+    for each in processes:
+        each.terminate()
+    for each in processes:
+        try:
+            each.wait(ENDING)
+        except subprocess.TimeoutExpired:
+            each.kill()
+            each.wait()

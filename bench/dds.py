@@ -17,6 +17,7 @@ import numpy as np
 
 from bench.measuring import Pace, Row, end, sea
 from winch_friction.physics.errors import InputError
+from winch_friction.records.domain import unused_domain
 
 RATES = (50, 100, 200, 500)  # Hz
 TURNS, TURN = 3, 4.0  # turns of s for each
@@ -117,7 +118,7 @@ def measure(smoke: bool = False) -> list[Row]:
     if importlib.util.find_spec("rclpy") is None:
         raise InputError("the benchmark dds needs rclpy, which is not installed: pip install '.[ros]'")
     os.environ |= {
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(unused_domain()), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
     }  # fmt: skip
     there = sea(20.0)[3]

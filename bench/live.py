@@ -18,6 +18,7 @@ import numpy as np
 from bench.measuring import Pace, Row, end, sea
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run, Sample
+from winch_friction.records.domain import unused_domain
 
 RATE = 200.0  # Hz
 SLOW = 50.0  # Hz, while nodes start: the sender must not take the processor from them
@@ -143,7 +144,7 @@ def measure(smoke: bool = False) -> list[Row]:
     if importlib.util.find_spec("rclpy") is None:
         raise InputError("the benchmark live needs rclpy, which is not installed: pip install '.[ros]'")
     os.environ |= {
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(unused_domain()), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
     }  # fmt: skip
     samples, driver = there_and_back(sea(20.0)[2]), Driver()

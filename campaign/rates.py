@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from campaign.commit import commit
+from winch_friction.records.domain import unused_domain
 
 RATES = (50, 100, 200)  # Hz
 STARTING = 90.0  # s that the nodes get to start
@@ -41,8 +42,7 @@ class Row:
 
 def measure(rate: int, duration: float, priority: int) -> Row:
     """Run the three nodes at one rate, at this nice value."""
-    domain = str(10 + (os.getpid() + rate) % 80)
-    os.environ |= {"ROS_DOMAIN_ID": domain, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    os.environ |= {"ROS_DOMAIN_ID": str(unused_domain()), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     from campaign.rates_listener import Listener
 

@@ -26,6 +26,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
 from campaign.commit import commit  # noqa: E402
 from campaign.faults.voyages import voyage  # noqa: E402
 from campaign.teachers import lessons, table  # noqa: E402
+from winch_friction.records.domain import unused_domain  # noqa: E402
 
 OUT = Path("docs/campaign_soak.md")
 MOST_GROWTH = 5.0  # MB
@@ -182,7 +183,7 @@ def over_dds(minutes: float) -> list[tuple[str, float]]:
     """Growth in MB of the three processes over real time, after the first twentieth."""
     environment = {
         **os.environ,
-        "ROS_DOMAIN_ID": str(20 + os.getpid() % 70),
+        "ROS_DOMAIN_ID": str(unused_domain()),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
     }
     names = ("simulator", "compensator", "estimator")

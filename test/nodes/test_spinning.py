@@ -1,6 +1,5 @@
 """A node's own loop runs what rclpy's executor would: speeds, timers, services, in one thread."""
 
-import os
 import time
 
 import pytest
@@ -18,6 +17,7 @@ from std_srvs.srv import Trigger  # noqa: E402
 
 from winch_friction.nodes import loop as loop_module  # noqa: E402
 from winch_friction.nodes.loop import Loop  # noqa: E402
+from winch_friction.records.domain import unused_domain  # noqa: E402
 
 
 class Inputs:
@@ -29,7 +29,7 @@ class Inputs:
 @pytest.fixture
 def pair():
     context = Context()
-    rclpy.init(context=context, domain_id=1 + os.getpid() % 100)
+    rclpy.init(context=context, domain_id=unused_domain())
     ours, other = Node("ours", context=context), Node("other", context=context)
     ours.inputs = Inputs()
     yield ours, other

@@ -1,6 +1,5 @@
 """Real processes over DDS: every test has a domain of its own, on this machine alone."""
 
-import itertools
 import math
 import os
 import signal
@@ -27,33 +26,20 @@ from winch_friction.nodes.qos import OUTPUT  # noqa: E402
 from winch_friction.nodes.remote import RemoteNode  # noqa: E402
 from winch_friction.physics.signals import GroupSample, Sample  # noqa: E402
 from winch_friction.records.crane_file import load_crane  # noqa: E402
+from winch_friction.records.domain import unused_domain  # noqa: E402
 from winch_friction.records.topics import crane_topics, stamp_time  # noqa: E402
 
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-DOMAINS = 96  # from 2 on
 CRANE = load_crane("crane_150t")
 SAMPLE_PERIOD = 0.02  # s
 LATE = 0.06  # s that the stamps may fall behind the clock before samples are left out, as a busy source does
-
-
-def _own_domains() -> itertools.count:
-    """Domains that no other worker of this pytest uses, and hardly another pytest on this machine."""
-    workers, worker = (
-        int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")),
-        os.environ.get("PYTEST_XDIST_WORKER", "gw0"),
-    )
-    session = os.getppid() if workers > 1 else os.getpid()
-    return itertools.count(session * 13 * workers + int(worker[2:]), workers)
-
-
-_DOMAINS = _own_domains()
 
 
 class Bench:
     """A domain with a probe node: starts nodes as processes, publishes inputs, keeps what comes back."""
 
     def __init__(self, logs: Path) -> None:
-        self.domain = 2 + next(_DOMAINS) % DOMAINS
+        self.domain = unused_domain()
         self._logs = logs
         self._context = Context()
         rclpy.init(context=self._context, domain_id=self.domain)

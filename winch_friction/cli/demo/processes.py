@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from winch_friction.physics.errors import InputError
+from winch_friction.records.domain import unused_domain
 
 NODES = ("simulator", "compensator", "estimator")
-DOMAINS = 90  # domains above 101 collide with ephemeral ports
 GRACE = 15.0  # s that a process gets to end
 
 
@@ -22,7 +22,7 @@ def quiet_environment() -> dict[str, str]:
     environment = dict(os.environ)
     environment |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     environment.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    environment.setdefault("ROS_DOMAIN_ID", str(10 + os.getpid() % DOMAINS))
+    environment.setdefault("ROS_DOMAIN_ID", str(unused_domain()))
     return environment
 
 

@@ -196,6 +196,21 @@ def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at
     assert [each[1] for each in _agreed_modes([*sea[:1], *unsure, *cycles])] == pytest.approx([0.06] * 9)
 
 
+def test_a_mode_that_is_damped_like_a_filter_falls_where_other_runs_deny_it():
+    """A rigid wire: in heave compensation the mode takes a motion sensor's noise out, other runs would ring by it."""
+
+    def run(groups, ratio, left):
+        return SimpleNamespace(
+            groups=[None] * groups, wire_mode=Mode(6.0, ratio), load=np.full(3, 5e4), dt=0.01, swing_left=left
+        )
+
+    sea = [run(2, ratio, ()) for ratio in (0.3, 0.36, 0.4)]
+    rung, blurred = (40.0,) * 11, (0.7,) * 11
+    assert [each[1] for each in _agreed_modes([*sea, *(run(1, 0.0, rung) for _ in range(3))])] == [0.0] * 6
+    assert min(each[1] for each in _agreed_modes([*sea, *(run(1, 0.0, blurred) for _ in range(3))])) > 0.2
+    assert min(each[1] for each in _agreed_modes([*sea, run(1, 0.0, rung)])) > 0.2  # one alone may have another cause
+
+
 def test_a_run_that_cannot_tell_has_a_wire_that_follows_its_length_unless_the_others_deny_it():
     def run(ratio, follows):
         mode = Mode(8.0, ratio, follows)

@@ -76,6 +76,7 @@ def test_two_clear_levels_are_told_and_one_is_not():
         seeming = [two_levels(getattr(each, spread)(size=FULL), np.zeros(FULL)) is not None for each in draws]
         assert np.mean(seeming) < 0.01, spread
     assert two_levels(levels, np.full(FULL, 2.0)) is None  # nobody knows them well enough
+    assert two_levels(levels, np.full(FULL, 1.2)) is not None  # runs that agree are known better than they state
     alone = np.where(np.arange(FULL) == 3, 6.0, 0.0)
     assert two_levels(alone, small) is None  # one run is no state
 

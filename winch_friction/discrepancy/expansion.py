@@ -13,7 +13,7 @@ from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, shared_damping
-from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, TOLD, Mode
+from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
@@ -143,6 +143,8 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
         ratio = agreed_damping(swinging) or agreed_damping(every)
+        if ratio is not None and _outvoted(able, ratio):
+            ratio = None
     if ratio is None:
         return [Mode(run.wire_mode[0], 0.0) for run in prepared]
     said = [run.wire_mode[2] for run in prepared if run.wire_mode[2] is not None]
@@ -154,6 +156,13 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
         )
         for run in prepared
     ]  # fmt: skip
+
+
+def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
+    """Whether as many runs speak against a load that swings so damped as ring like one on a rope: a mode that is damped
+    more than any rope takes the noise of a motion sensor out of heave compensation, and tears the other runs apart."""
+    ringing = sum(0.0 < run.wire_mode[1] < MOST_DAMPED for run in able)
+    return sum(_denied(run, ratio) for run in able) >= max(ringing, 1)
 
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:

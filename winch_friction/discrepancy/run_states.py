@@ -191,9 +191,10 @@ def two_levels(levels: FloatArray, deviations: FloatArray) -> np.ndarray | None:
     parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
     low, high = min(parts, key=lambda pair: sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in pair))
     within = sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in (low, high)) / (len(order) - 2)
-    spread = max(float(np.sqrt(within)), float(np.median(deviations[known])))
+    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * float(np.median(deviations[known])))
     centres = levels[low].mean(), levels[high].mean()
-    if centres[1] - centres[0] < LIMITS.levels_apart * spread:
+    apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
+    if centres[1] - centres[0] < apart * spread:
         return None
     there = np.zeros(len(levels), bool)
     there[high if abs(centres[1]) >= abs(centres[0]) else low] = True

@@ -85,9 +85,12 @@ class Thresholds:
     # of the excess just after reversals that an effect must explain: over drawn cranes true ones did 0.35 to 0.97,
     # air in the oil, which none of them is, 0.24
     reversal_share: float = 0.33
-    # deviations between two levels of runs: of twelve that are spread somehow (normal, evenly, exponentially) fewer
-    # than 3 in a thousand seem to make two levels so far apart, of six 2 in a hundred
-    levels_apart: float = 10.0
+    # deviations between two levels of so many runs or more: of runs that are spread somehow (normal, evenly,
+    # exponentially) hardly 1 in a hundred, of six 2 in a hundred, seem to make two levels so far apart
+    levels_apart: tuple[tuple[int, float], ...] = ((10, 9.0), (6, 10.0))
+    # of a level's stated deviation, that runs of one level may differ by although these do not: the deviation allows
+    # for noise that is correlated over `prior_weight` blocks, and where the runs agree more closely than that it is not
+    levels_surer: float = 0.45
     other_level: float = 0.2  # of what lies between two levels, above which the one nearer to zero counts as well
     fewest_levels: int = 6  # runs, for two levels to be told
     # -- remainder

@@ -113,8 +113,12 @@ def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
 def at_the_floor(side: Side) -> bool:
     """Whether what is left is noise and what no balance of a winch closes, within its interval; a wide interval does
     not excuse what is plainly more."""
-    floor, after = side.floor, side.size_after
-    return after.interval[0] <= LIMITS.at_the_floor * floor and after.value <= LIMITS.far_off_the_floor * floor
+    return side.size_after.interval[0] <= LIMITS.at_the_floor * side.floor and not far_off(side)
+
+
+def far_off(side: Side) -> bool:
+    """Whether what is left is plainly more than noise and what no balance closes, however few segments show it."""
+    return side.size_after.value > LIMITS.far_off_the_floor * side.floor
 
 
 def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.ndarray, np.ndarray]:

@@ -7,20 +7,21 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
+from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.omnibus import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.holdout import Split
 from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.proof import adds, at_the_floor, is_minor, leaves_too_much, prove, worse_runs
+from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, is_minor, leaves_too_much, prove, worse_runs
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
-WHILE_SPEED_CHANGES = ("signal_delay", "inertia_error")
+WHILE_SPEED_CHANGES = (DELAY, "inertia_error")
 _TrialOf = Callable[[Search], Trial]
 
 
@@ -109,8 +110,22 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         worse = "".join(worse_runs(full.holdout, rng))
         return (None, worse) if worse else (full, "")
     proof = prove(names, refit.holdout, full.holdout, rng)
-    why = proof.why or leaves_too_much(full.holdout)
+    why = proof.why or leaves_too_much(full.holdout) or _within_a_sample(full)
     return (None, why) if why else (full, "")
+
+
+def _within_a_sample(trial: Trial) -> str:
+    """Why a delay is no name although it takes something off the locked gap; empty where it is one, or there is none.
+
+    Signals of one log are in step to half a sample: a counting encoder's mean is as old, and an analogue input waits
+    for the next one.
+    """
+    found = trial.repaired.parameters.get(DELAY, {})
+    step = max((run.dt for run in trial.holdout.runs), default=0.0)
+    most = max((abs(each.value) for each in found.values()), default=np.inf)
+    if most > LIMITS.in_step * step:
+        return ""
+    return f"a delay of {1e3 * most:.2g} ms is how a log of a sample every {1e3 * step:.3g} ms is made"
 
 
 def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Search:
@@ -232,13 +247,14 @@ def nameless(search: Search) -> Search:
 
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
-    """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise."""
+    """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
+    others, one of which may have met what none of the locked runs did, are not far off it."""
     search = trial.search
-    if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout):
+    if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout) and not far_off(trial.train):
         found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
-    after, noise = trial.holdout.size_after.value, trial.holdout.noise_floor
-    kept = f"the locked runs keep {after:.3g} where their noise is {noise:.3g}"
+    side, which = (trial.train, "training") if at_the_floor(trial.holdout) else (trial.holdout, "locked")
+    kept = f"the {which} runs keep {side.size_after.value:.3g} where their noise is {side.noise_floor:.3g}"
     return unexplained(search, "; ".join(filter(None, (why, kept))), rng)
 
 

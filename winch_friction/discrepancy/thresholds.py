@@ -124,6 +124,7 @@ class Thresholds:
     at_the_floor: float = (
         1.5  # times the floor (noise and what no balance closes) that nothing missing may leave (campaign)
     )
+    in_step: float = 0.5  # of a sample's time, by which the signals of one log may be off without being late
     # times the floor, that several names may leave: true pairs leave 0.9 to 1.15, wrong second names to 3.4 (campaign)
     several_leave: float = 1.3
     far_off_the_floor: float = 2.0  # times the floor: more is something, however few segments show it

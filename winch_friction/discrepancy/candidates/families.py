@@ -71,9 +71,10 @@ def literature() -> list[Candidate]:
         _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=no_load, continuous=()),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=no_load),
-        # under its tension the rope sinks into the layer below: a torque of the load alone, the same both ways
+        # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
             needs=("hook_load",), blind=_one_load),
+        _of("layer_radius", "layer_bedding", {"n_lb": (1.5, 2.0)}, needs=("hook_load", "wire_layer"), blind=_one_load),
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
             blind=no_load),
     ]  # fmt: skip

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth
+from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth, smooth_between_steps
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
@@ -55,7 +55,7 @@ def _measured(
             raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
     a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
     fed_back = columns[f"{name}.displacement"]
-    displacement = smooth(fed_back, 5 * window)
+    displacement = smooth_between_steps(fed_back, window, 5 * window)
     steady = float(np.median(displacement))
     if np.std(displacement) <= noise_level(fed_back):  # the feedback's noise alone: the motors are set and stay
         displacement = np.full(len(displacement), steady)

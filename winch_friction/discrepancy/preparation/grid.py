@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.ndimage import convolve1d, median_filter
+from scipy.ndimage import convolve1d, maximum_filter1d, median_filter
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
@@ -17,6 +17,8 @@ FEWEST_SMOOTHED = 5  # samples: a parabola through fewer smooths nothing
 USUAL_PERIOD = 0.02  # s, at which the widening for noise was found
 MAX_WIDENING = 3.0
 FINE_NOISE = 2e-3  # share of the largest speed that the shortest window copes with
+FEEDBACK_RESOLUTION = 2e-4  # of its largest value; 0.04 bar at 200 bar are nobody's effect
+STEPPED = 4.0  # times its noise, that a feedback may be off its smoothed value by chance, once in 16 000 samples
 SPIKE, SPIKE_WINDOW, MOST_SPIKES = 12.0, 2.0, 0.01  # robust deviations, s, share of the moving samples
 SPIKE_MARGIN = 0.1  # s left out on both sides
 FEWEST_FOR_SPIKES = 100  # samples
@@ -78,6 +80,18 @@ def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:
     smoothed[:half] = begin @ values[:window]
     smoothed[len(values) - half :] = end @ values[-window:]
     return smoothed
+
+
+def smooth_between_steps(values: FloatArray, window: int, widest: int) -> FloatArray:
+    """A set point's feedback over the widest window that still follows it: where it bends by more than its noise within
+    the widest, over the narrower one, and where it steps within that, as it was logged."""
+    noise = max(noise_level(values), FEEDBACK_RESOLUTION * float(np.abs(values).max()))
+    found = values
+    for samples in (window, widest):
+        smoothed = smooth(values, samples)
+        astray = np.abs(smoothed - values) > STEPPED * noise
+        found = np.where(maximum_filter1d(astray, samples), found, smoothed)
+    return found
 
 
 @lru_cache(maxsize=256)

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from winch_friction.physics.friction.registry import register
-from winch_friction.physics.friction.symbols import T_d, gear_ratio, shaft_angle, time, w
+from winch_friction.physics.friction.symbols import T_d, gear_ratio, shaft_angle, time, w, wire_layer
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
@@ -36,6 +36,8 @@ c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+e_lb = Parameter("e_lb", "1", 0.01, lower=-0.2, upper=0.2, doc="per layer below, at 500 kN m, share of T_d/i")
+n_lb = Parameter("n_lb", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 a_d = Parameter("a_d", "1", 0.01, lower=-0.2, upper=0.2, doc="sine amplitude over the drum's angle, share of T_d/i")
 b_d = Parameter("b_d", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude over the drum's angle, share of T_d/i")
 k_d = Parameter("k_d", "1", 1.0, lower=0.5, upper=100.0, shape=True, doc="periods per turn of the drum")
@@ -108,6 +110,14 @@ gear_asymmetry_power = register(
     Term(
         "gear_asymmetry_power", e_gp.symbol * LOAD_SCALE / gear_ratio * _load**n_ep.symbol, (e_gp, n_ep),
         Scope.SHAFT, "gear efficiency by direction, a power of the load", "gear and drum", opposing=False,
+    )
+)  # fmt: skip
+
+layer_bedding = register(
+    Term(
+        "layer_bedding", e_lb.symbol * LOAD_SCALE / gear_ratio * (wire_layer - 1) * _load**n_lb.symbol, (e_lb, n_lb),
+        Scope.SHAFT, "Dietz 1972: under the rope's tension each layer yields to those on it", "gear and drum",
+        opposing=False,
     )
 )  # fmt: skip
 

@@ -11,6 +11,9 @@ ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
 # small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
 # with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
 DENIED = 1.2
+# of those that agree, how many may swing as well but seem damped otherwise: a motion sensor's noise, an inertia that is
+# wrong and reversals all make them seem so, and which of them are alike is no chance: one in ten is within `ALIKE`
+MOST_ASTRAY = 0.5
 MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
 
 
@@ -46,7 +49,7 @@ def denies(left: Sequence[float], ratio: float) -> bool:
 def shared_damping(
     modes: Sequence[tuple[float, float, float]], untold: Sequence[Sequence[float]] = ()
 ) -> Callable[[float, float], float] | None:
-    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if most of them agree closely.
+    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if enough of them agree closely.
 
     `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. What else
     rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs would not
@@ -56,8 +59,7 @@ def shared_damping(
     if len(swinging) < FEWEST_ALIKE:
         return None
     frequency, ratio, mass = swinging.T
-    off = [np.abs(np.log(each / np.median(each))) for each in (2.0 * ratio * frequency * mass, ratio)]
-    alike = max((each <= ALIKE for each in off), key=np.sum)
+    alike = max((_closest(each) for each in (2.0 * ratio * frequency * mass, ratio)), key=np.sum)
     if alike.sum() < FEWEST_ALIKE or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
         return None
     agreed = agreed_damping(swinging[alike].tolist())
@@ -65,4 +67,10 @@ def shared_damping(
         return None
     rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
     against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
-    return agreed if 2 * alike.sum() > len(swinging) + against else None
+    return agreed if alike.sum() > against + MOST_ASTRAY * (~alike).sum() else None
+
+
+def _closest(values: np.ndarray) -> np.ndarray:
+    """Which of them lie within `ALIKE` of one of them, as many as can be."""
+    off = np.abs(np.log(values[:, None] / values))
+    return np.asarray(off[np.argmax((off <= ALIKE).sum(axis=1))] <= ALIKE)

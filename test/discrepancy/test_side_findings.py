@@ -70,7 +70,7 @@ def test_a_second_law_of_leakage_counts_where_other_runs_need_it_and_it_leaks_ou
     run, drop, thin = np.repeat(np.arange(6.0), 20), rng.uniform(10e5, 200e5, 120), rng.uniform(0.5, 2.0, 120)
     rates = [leakage_per_coefficient(law, drop, thin) / 3e-5 for law in LEAKAGE_LAWS]
     lost = 1e-11 * rates[0] + second * rates[1] + 0.02 * rng.standard_normal(120)
-    table = np.column_stack([run, lost, rng.uniform(-80.0, 80.0, 120), *rates])
+    table = np.column_stack([run, lost, rng.uniform(-80.0, 80.0, 120), np.zeros(120), *rates])
     monkeypatch.setattr(flow_balance, "_tables", lambda *_: table)
     found = lost_speed([], [SimpleNamespace(constants=(("max_displacement", 3e-5),))])
     assert sorted(found.leakage) == laws
@@ -96,6 +96,31 @@ def test_no_speed_is_lost_where_the_controller_knows_its_leakage():
     found = lost_speed(runs, prepared)
     assert abs(found.slip) < 0.05 * ORDINARY
     assert not found.found
+
+
+@pytest.mark.parametrize(("effects", "leaks"), [((("slip_leakage", 1.0),), True), ((), False)])
+def test_a_leak_shows_without_plateaus_where_the_speed_follows_its_command(effects, leaks, monkeypatch):
+    runs, prepared, *_ = _prepared("slow_log", *effects)
+    whole = lost_speed(runs, prepared)
+    monkeypatch.setattr(flow_balance, "STEADY_COMMAND", 0.0)
+    found = lost_speed(runs, prepared)
+    assert found.change == flow_balance.SLOW_COMMAND
+    assert len(found.beside) == 2  # the speed's scale and its lag
+    assert found.found is leaks
+    if leaks:
+        assert found.holds_on(runs[:4], prepared[:4])
+        assert found.slip == pytest.approx(whole.slip, rel=0.1)
+    assert flow_balance.untestable(runs, prepared) == []
+
+
+def test_a_command_that_never_rests_is_said_to_hide_a_leak(monkeypatch):
+    runs, prepared, *_ = _prepared("slow_log", ("slip_leakage", 1.0))
+    for name in ("STEADY_COMMAND", "SLOW_COMMAND"):
+        monkeypatch.setattr(flow_balance, name, 0.0)
+    assert lost_speed(runs, prepared) is None
+    (said,) = flow_balance.untestable(runs, prepared)
+    assert said.name == "slip_leakage"
+    assert "there are 0" in said.because
 
 
 def test_without_a_command_there_is_nothing_to_compare():

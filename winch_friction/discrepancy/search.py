@@ -101,6 +101,8 @@ def search_runs(
     flow = tuple(each for each in (leakage, air) if each is not None and each.found)
     if any(each.name == soft_oil.NAME for each in usable):
         blind += soft_oil.untestable(air)
+    if any(each.name == flow_balance.NAME for each in usable):
+        blind += flow_balance.untestable(own_runs, own_prepared)
     if verdict.kind == NOTHING and (reversal or ripple or flow):
         verdict = Verdict(MISSING)
     return Search(

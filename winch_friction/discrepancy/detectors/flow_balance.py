@@ -1,4 +1,5 @@
-"""Lost speed: the flow that a commanded speed should have needed against the speed that was reached, on plateaus.
+"""Lost speed: the flow that a commanded speed should have needed against the speed that was reached, on plateaus, or where
+there are too few of them wherever the speed follows its command.
 
 Leakage does not touch the torque balance. Where the commanded speed is logged, it shows as speed lost with pressure, in
 both directions alike, while a wrong speed scale changes sign with the direction.
@@ -12,7 +13,7 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from winch_friction.discrepancy.answer import Effect
-from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate, Untestable
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import viscosity
@@ -30,8 +31,10 @@ EQUATIONS = {
 }
 SETTLED = 1.5  # s of constant command before a sample counts as a plateau
 STEADY_COMMAND = 1.0  # rad/s^2
+# rad/s^2 up to which a command is followed where there are too few plateaus: faster, what is late is more than a lag
+SLOW_COMMAND = 30.0
 SEGMENT = 5.0  # s
-FEWEST_SEGMENTS = 20
+FEWEST_SEGMENTS, FEWEST_RUNS = 20, 3
 # speed that leakage may cost at 150 bar, 40 degC and full displacement before it is more than ordinary and left to the
 # pump's command, rad/s: what 6e-12 m^3/s/Pa cost a motor of 215 cm^3, and so much of a smaller or larger one
 ORDINARY = 2.6
@@ -54,8 +57,9 @@ class Leakage:
     p_value: float
     before: float
     after: float
-    scale: float = 0.0  # error of the speed's scale, that goes with it
-    scale_alone: float = 0.0  # without it
+    change: float = STEADY_COMMAND  # rad/s^2, largest of the command in what it was found in
+    beside: tuple[float, ...] = (0.0,)  # error of the speed's scale, and its lag in s, that go with it
+    alone: tuple[float, ...] = (0.0,)  # without it
 
     @property
     def gain(self) -> float:
@@ -88,12 +92,12 @@ class Leakage:
 
     def holds_on(self, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
         """Whether the leakage also explains the speed that other runs lose."""
-        table = _tables(runs, prepared)
+        table = _tables(runs, prepared, self.change)
         if not len(table):
             return False
-        lost, speed, _, rates = _parts(table)
-        before = lost - self.scale_alone * speed
-        after = lost - self.scale * speed
+        lost, motion, _, rates = _parts(table, self.change)
+        before = lost - motion @ self.alone
+        after = lost - motion @ self.beside
         for law, (value, _) in self.leakage.items():
             after = after - value * rates[law]
         return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
@@ -107,32 +111,47 @@ def detect(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | No
 
 def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage | None:
     """Leakage from commanded and reached speed, by the law that other runs bear out, or by two where they need both;
-    None where no command is logged or nothing is steady.
+    None where no command is logged, or too few stretches follow it.
     """
-    table = _tables(runs, prepared)
-    if len(table) < FEWEST_SEGMENTS or len(np.unique(table[:, 0])) < 3:
+    changes = [change for change in (STEADY_COMMAND, SLOW_COMMAND) if _enough(_tables(runs, prepared, change))]
+    if not changes:
         return None
-    lost, speed, of_run, rates = _parts(table)
-    before = _held_out(speed[:, None], lost, of_run)
+    lost, motion, of_run, rates = _parts(_tables(runs, prepared, changes[0]), changes[0])
+    before = _held_out(motion, lost, of_run)
     singles: list[tuple[str, ...]] = [(law,) for law in LEAKAGE_LAWS]
-    fits = {laws: _fitted(laws, speed, rates, lost, of_run) for laws in singles}
+    fits = {laws: _fitted(laws, motion, rates, lost, of_run) for laws in singles}
     laws = min(fits, key=lambda k: _rms(fits[k][2]))
     for other in [law for law in LEAKAGE_LAWS if law not in laws]:
         pair = (laws[0], other)
-        fits[pair] = _fitted(pair, speed, rates, lost, of_run)
-    allowed = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][1:]) > 0.0}
+        fits[pair] = _fitted(pair, motion, rates, lost, of_run)
+    first = motion.shape[1]  # of the laws' own coefficients
+    allowed = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][first:]) > 0.0}
     best = min(allowed, key=lambda k: _rms(allowed[k][2]))
     if len(best) > 1 and _rms(allowed[best][2]) < WORTH_A_LAW * _rms(allowed[laws][2]):
         laws = best
     coefficients, covariance, after = allowed[laws]
-    alone = float((speed @ lost) / max((speed**2).sum(), 1e-300))
     full = REFERENCE_PRESSURE / _full_displacement(prepared)
     std = np.sqrt(np.diag(covariance))
     return Leakage(
-        {law: (float(coefficients[k]), float(std[k])) for k, law in enumerate(laws, start=1)},
-        float(coefficients[1:].sum()) * full, float(np.sqrt(covariance[1:, 1:].sum())) * full,
-        sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after), float(coefficients[0]), alone,
+        {law: (float(coefficients[k]), float(std[k])) for k, law in enumerate(laws, start=first)},
+        float(coefficients[first:].sum()) * full, float(np.sqrt(covariance[first:, first:].sum())) * full,
+        sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after), changes[0],
+        tuple(map(float, coefficients[:first])), tuple(map(float, _fit(motion, lost)[0])),
     )  # fmt: skip
+
+
+def untestable(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> list[Untestable]:
+    """Why runs whose command is logged could not show what leaks, if they could not."""
+    table = _tables(runs, prepared, SLOW_COMMAND)
+    if _enough(table) or not any(REFERENCE in run and own.groups for run, own in zip(runs, prepared, strict=True)):
+        return []
+    need = f"{FEWEST_SEGMENTS} stretches of {SEGMENT:g} s in {FEWEST_RUNS} runs in which the speed follows its command"
+    seen = f"there are {len(table)} in {len(np.unique(table[:, 0]))} runs"
+    return [Untestable(NAME, EQUATIONS[NAME], need, f"a lost speed shows only there; {seen}")]
+
+
+def _enough(table: FloatArray) -> bool:
+    return len(table) >= FEWEST_SEGMENTS and len(np.unique(table[:, 0])) >= FEWEST_RUNS
 
 
 def _full_displacement(prepared: Sequence[PreparedRun]) -> float:
@@ -141,16 +160,17 @@ def _full_displacement(prepared: Sequence[PreparedRun]) -> float:
     return stated or max(float(np.max(_driving(p).displacement)) for p in prepared if p.groups)
 
 
-def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FloatArray:
+def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun], change: float) -> FloatArray:
     pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
-    none = np.empty((0, 3 + len(LEAKAGE_LAWS)))
-    return np.concatenate([none, *(_segments(run, p, k) for k, (run, p) in enumerate(pairs))])
+    none = np.empty((0, 4 + len(LEAKAGE_LAWS)))
+    return np.concatenate([none, *(_segments(run, p, k, change) for k, (run, p) in enumerate(pairs))])
 
 
-def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:
-    """Rows (run, lost speed, speed, speed lost per unit of each law's leakage) of the steady stretches of one run."""
+def _segments(run: Run, prepared: PreparedRun, number: int, change: float) -> FloatArray:
+    """Rows (run, lost speed, speed, acceleration, speed lost per unit of each law's leakage) of the stretches of one
+    run in which the command changes by less than `change`, rad/s^2."""
     command = np.interp(prepared.time + prepared.start, run.time, run[REFERENCE])
-    constant = np.abs(np.gradient(command, prepared.dt)) < STEADY_COMMAND
+    constant = np.abs(np.gradient(command, prepared.dt)) < change
     width = max(int(SETTLED / prepared.dt), 1)
     # only the past counts: the plateau must have lasted before the sample
     settled = minimum_filter1d(constant.astype(int), width, origin=(width - 1) // 2) > 0
@@ -162,13 +182,16 @@ def _segments(run: Run, prepared: PreparedRun, number: int) -> FloatArray:
         part = np.flatnonzero(use[begin : begin + step]) + begin
         if len(part) > step // 2:
             speed = prepared.speed[part].mean()
-            rows.append((number, command[part].mean() - speed, speed, *rates[part].mean(axis=0)))
-    return np.array(rows, dtype=float).reshape(-1, 3 + len(LEAKAGE_LAWS))
+            moved = prepared.acceleration[part].mean()
+            rows.append((number, command[part].mean() - speed, speed, moved, *rates[part].mean(axis=0)))
+    return np.array(rows, dtype=float).reshape(-1, 4 + len(LEAKAGE_LAWS))
 
 
-def _parts(table: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
-    """Lost speed, speed, run and what each law loses per unit, of the rows."""
-    return table[:, 1], table[:, 2], table[:, 0], dict(zip(LEAKAGE_LAWS, table[:, 3:].T, strict=True))
+def _parts(table: FloatArray, change: float) -> tuple[FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
+    """Lost speed, the motion that may have lost it beside a leak (speed, and of a command that changes its
+    acceleration), run and what each law loses per unit, of the rows."""
+    motion = table[:, 2 : 3 if change <= STEADY_COMMAND else 4]
+    return table[:, 1], motion, table[:, 0], dict(zip(LEAKAGE_LAWS, table[:, 4:].T, strict=True))
 
 
 def _driving(prepared: PreparedRun) -> GroupSignals:
@@ -195,10 +218,10 @@ def _table() -> tuple[FloatArray, FloatArray]:
 
 
 def _fitted(
-    laws: tuple[str, ...], speed: FloatArray, rates: Mapping[str, FloatArray], lost: FloatArray, of_run: FloatArray
+    laws: tuple[str, ...], motion: FloatArray, rates: Mapping[str, FloatArray], lost: FloatArray, of_run: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Coefficients of speed and laws, their covariance, and the lost speed that they leave, held out by run."""
-    x = np.column_stack([speed, *(rates[law] for law in laws)])
+    """Coefficients of motion and laws, their covariance, and the lost speed that they leave, held out by run."""
+    x = np.column_stack([motion, *(rates[law] for law in laws)])
     return *_fit(x, lost), _held_out(x, lost, of_run)
 
 

@@ -10,9 +10,11 @@ from spoils import spoils
 
 from campaign import rig
 from campaign.second_rig import SETS, write_set
+from winch_friction.commissioning.balance import closure
 from winch_friction.commissioning.check import quick_check, shipped_cranes
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.finding import first_contradiction
+from winch_friction.commissioning.view import view_of
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -57,6 +59,35 @@ def test_friction_and_hidden_effects_are_no_mistakes(seed, flavour, effect, tmp)
         wrong = model.with_values([share * value for value in model.values])
         assert first_contradiction(quick_check(runs, crane, wrong)) is None
     assert first_contradiction(quick_check(runs, crane)) is None
+
+
+def on_a_soft_wire(run, crane, stiffness, damping=0.03):
+    """The run with the pressures of a load that swings: rope as a spring and a damper, stepped sample by sample."""
+    lever = np.array(crane.drum.layer_radii)[np.rint(run["wire_layer"]).astype(int) - 1] / crane.gear_ratio
+    own, step = stiffness / run["wire_out"] / run["hook_load"], float(np.median(np.diff(run.time)))
+    rigid = lever * np.gradient(run["motor_speed"], run.time)
+    stretch = rate = 0.0
+    pulled = np.empty(len(run.time))
+    for k, mode in enumerate(own):
+        pulled[k] = mode * stretch + 2.0 * damping * np.sqrt(mode) * rate
+        rate += step * (rigid[k] - pulled[k])
+        stretch += step * rate
+    more = run["hook_load"] * lever * (pulled - rigid) / (crane.groups["main"] * run["main.displacement"])
+    return replace(run, columns={**run.columns, "main.pressure_a": run["main.pressure_a"] + more})
+
+
+def test_a_load_that_swings_on_a_soft_wire_is_no_contradiction(tmp):
+    crane, model = world(0, "quiet", tmp)
+    run = runs_of(columns_of(0, "quiet"))[2]  # the jerkiest
+    stiffness = 4.0 * float(np.median(run["hook_load"] * run["wire_out"]))  # a swing of 2 rad/s
+    swinging = on_a_soft_wire(run, crane, stiffness)
+    told, untold = (
+        closure(view_of(swinging, replace(crane, wire_stiffness=each)), model).score for each in (stiffness, np.nan)
+    )
+    assert told < 0.4 * untold
+    assert first_contradiction(quick_check([swinging], replace(crane, wire_stiffness=stiffness), model)) is None
+    heavy = replace(run, columns={**run.columns, "hook_load": 0.45 * run["hook_load"]})
+    assert first_contradiction(quick_check([heavy], replace(crane, wire_stiffness=stiffness), model)) is not None
 
 
 @pytest.mark.slow

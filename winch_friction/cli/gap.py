@@ -245,4 +245,5 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if content["next_experiment"]:
         print(f"next experiment: {content['next_experiment']['scenario']}")
-    print(f"written: {out / 'gap.json'}, {out / 'model.yaml'}, {out / 'report.html'}")
+    written = [out / name for name in ("gap.json", "model.yaml", "report.html") if (out / name).exists()]
+    print("written:", ", ".join(map(str, written)))

@@ -36,6 +36,8 @@ LEAST_INERTIA, MOST_INERTIA = 0.7, 2.0  # by how much the inertia may be wrong, 
 MOST_SPEED, MOST_PRESSURE = 650.0, 600e5  # rad/s, Pa
 SLOW_SPEED = 0.1  # of the run's top speed: the e-fold of friction at low speed
 INERTIA_SHARE = 0.3
+# the mode of the load on its wire: a rope's usual damping ratio, what blocks follow of it, and its share of the inertia
+BOUNCE_DAMPING, FASTEST_BOUNCE, MOST_BOUNCING = 0.04, 1.0, 1.2
 HEAVE_SHARE, NO_HEAVE_SHARE = 0.15, 0.7  # of the load's inertia, with and without a logged heave
 UNREST_BLOCKS, DYNAMIC_SHARE, MOST_UNREST = 5, 0.3, 0.04  # a second; of the dynamic torque; of the rated torque
 NOISE_SHARE = 0.008  # of the rated torque: what no prior above covers
@@ -90,6 +92,7 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
             _offset(len(drive), rated, known, bool(view.groups)),
             _unweighed(view, rated),
             _Error("inertia", inertial, INERTIA_SHARE, -LEAST_INERTIA / INERTIA_SHARE, MOST_INERTIA / INERTIA_SHARE),
+            _Error("load on its wire", _bouncing(view, load, swing), 1.0, 0.0, MOST_BOUNCING),
             _Error("load inertia", swing, swings, -1.0 / swings, 2.0 / swings),
         )
         noise = NOISE_SHARE * rated, FRICTION_NOISE * friction, _unrest(view, drive, inertial + swing, rated)
@@ -121,6 +124,20 @@ def _swing(view: RunView) -> FloatArray:
         return np.zeros(len(view.time))
     acceleration = view.lever * view.acceleration + view.heave_acceleration
     return np.nan_to_num(view.load * view.lever * acceleration)
+
+
+def _bouncing(view: RunView, load: FloatArray, rigid: FloatArray) -> FloatArray:
+    """What an elastic wire adds to the inertia of the load on a `rigid` one, N m at the shaft: soft and heavily loaded,
+    it lets the load swing by a good part of its weight."""
+    step = float(np.median(np.diff(view.time))) if len(view.time) > 1 else 0.0
+    if not 0.0 < view.bounce * step < FASTEST_BOUNCE:
+        return np.zeros(len(view.time))
+    from scipy.signal import bilinear, lfilter  # half a second that only a soft wire costs
+
+    damper = [2.0 * BOUNCE_DAMPING * view.bounce, view.bounce**2]
+    exact = view.bounce / (2.0 * np.tan(0.5 * view.bounce * step))  # Hz, by which the mode keeps its frequency
+    found = lfilter(*bilinear(damper, [1.0, *damper], exact), rigid) - rigid
+    return np.asarray(np.clip(found, -np.abs(load), np.abs(load)))
 
 
 def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:

@@ -41,6 +41,7 @@ class RunView:
     `load` is NaN where it is not logged; `load_torque` N m at the shaft stands in for it where it is measured. `rates`
     are other channels' words on the speed: shaft speed rad/s (`shaft_angle`, `speed_reference`) or wire speed m/s, up
     positive (`wire_out`, `heave_velocity`). `wire` is the weight of the wire paid out, N; None where it is not known.
+    `bounce` is the frequency rad/s at which the load swings on its wire; 0 where crane file or log do not tell.
     """
 
     name: str
@@ -62,6 +63,7 @@ class RunView:
     oil: FloatArray | None = None
     rates: Mapping[str, FloatArray] = field(default_factory=dict)
     wire: FloatArray | None = None
+    bounce: float = 0.0
     seen_torque: float = np.inf  # N m, the largest of all runs
 
     @property
@@ -141,6 +143,7 @@ def view_of(run: Run, crane: Crane) -> RunView:
         load_torque=_load_torque(blocks, crane, layer),
         oil=blocks.mean("oil_temperature") if "oil_temperature" in run else None,
         rates=_rates(blocks, heave),
+        bounce=_bounce(blocks, crane),
         wire=crane.wire_mass * GRAVITY * blocks.mean("wire_out") if "wire_out" in run and crane.wire_mass else None,
     )
     return _thinned(view)
@@ -153,6 +156,14 @@ def views_of(runs: Sequence[tuple[Run, Crane]]) -> list[RunView]:
         seen = [float(np.nanpercentile(np.abs(v.drive_torque), 98)) for v in views if np.isfinite(v.drive_torque).any()]
     largest = max(seen, default=np.inf)
     return [replace(view, seen_torque=largest) for view in views]
+
+
+def _bounce(blocks: "_Blocks", crane: Crane) -> float:
+    mass, length = (blocks.mean(name) for name in ("hook_load", "wire_out"))
+    if not (np.isfinite(mass).any() and np.isfinite(length).any() and np.isfinite(crane.wire_stiffness)):
+        return 0.0
+    springs = float(np.nanmedian(mass)) * float(np.nanmedian(length)) / crane.wire_stiffness
+    return springs**-0.5 if springs > 0.0 else 0.0
 
 
 class _Blocks:

@@ -1,5 +1,5 @@
-"""Lost speed: the flow that a commanded speed should have needed against the speed that was reached, on plateaus, or where
-there are too few of them wherever the speed follows its command.
+"""Lost speed: the flow that a commanded speed should have needed against the speed that was reached, on plateaus, or
+where there are too few of them wherever the speed follows its command.
 
 Leakage does not touch the torque balance. Where the commanded speed is logged, it shows as speed lost with pressure, in
 both directions alike, while a wrong speed scale changes sign with the direction.

@@ -103,7 +103,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     """The trial of a set of names where the locked runs bear it out, otherwise why not."""
     slots = search.explanation.slots
     if not slots and not search.reversal:
-        return None, search.verdict.refused
+        return _stands_though_refused(search, refit, trial_of, rng)
     full = trial_of(search)
     names = ", ".join([*search.explanation.names, *([search.reversal.slot.name] if search.reversal else [])])
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
@@ -112,6 +112,23 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     proof = prove(names, refit.holdout, full.holdout, rng)
     why = proof.why or leaves_too_much(full.holdout) or _within_a_sample(full)
     return (None, why) if why else (full, "")
+
+
+def _stands_though_refused(
+    search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator
+) -> tuple[Trial | None, str]:
+    """The same for one name which is refused only for what it leaves of the training runs, as noise that a motion
+    sensor or a reversal adds there: it stands where it leaves next to nothing of the locked runs and little of the
+    others.
+    """
+    found = search.selection.found
+    if search.verdict.kind != UNEXPLAINED or not search.verdict.leaves or len(found) != 1 or found[0].slot.free:
+        return None, search.verdict.refused
+    kind = AMBIGUOUS if found[0].rivals else MISSING
+    full, why = _stands(replace(search, verdict=Verdict(kind)), refit, trial_of, rng)
+    if full is None or full.holdout.size_after.value > LIMITS.several_leave * full.holdout.floor or far_off(full.train):
+        return None, "; ".join(filter(None, (search.verdict.refused, why)))
+    return full, ""
 
 
 def _within_a_sample(trial: Trial) -> str:

@@ -119,8 +119,8 @@ class Thresholds:
     runs_to_redraw: int = 8  # locked runs, from which on runs are redrawn and not only their segments
     interval: tuple[float, float] = (0.025, 0.975)  # a 95 % interval
     proof_p: float = 0.025  # chance that the named effects gain nothing on the locked runs beside a mere refit
-    # of what any balance closes, that a name must take off the locked gap of a refit that is at its floor: a null, whose
-    # thermal zero "bent" by a third of its deviation, gained 0.034 bar
+    # of what any balance closes, that a name must take off the locked gap of a refit that is at its floor: a null,
+    # whose thermal zero "bent" by a third of its deviation, gained 0.034 bar
     beside_a_refit: float = 0.5
     worse_p: float = 0.005  # chance that a locked run which seems worse is not, shared among the runs
     worse: float = 1.1  # times its former gap: a run that grows by less is as before

@@ -723,6 +723,13 @@ class _Whole(_Found):
     flow: tuple = ()
 
 
+@dataclass(frozen=True)
+class _Tried(_Whole):
+    @property
+    def explanation(self):
+        return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
+
+
 @pytest.mark.parametrize(("left_as_given", "kind"), [(0.0, NOTHING), (3.0, UNEXPLAINED)])
 def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatch, left_as_given, kind):
     """A refit to little data may leave the locked runs three times what the model that was given leaves."""
@@ -754,6 +761,65 @@ def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatc
     result = standing_module.standing(None, None, None, search, np.random.default_rng(0))
     assert (result is both) is stand
     assert ("together leave" in result.search.verdict.refused) is not stand
+
+
+@pytest.mark.parametrize(("kept", "kind"), [(1.0, NOTHING), (3.0, UNEXPLAINED)])
+def test_nothing_is_missing_only_where_the_training_runs_are_near_their_floor_too(kept, kind):
+    """What one of them met none of the locked runs may have met."""
+    cross = crossfit(noise())
+    search = _Whole(cross, Selection(cross.explain(()), cross.explain(()), ()), Verdict(MISSING))
+    trial = Trial(search, None, side(noise(), kept * WAVE + noise(1)), side(noise(), noise(1)))
+    judged = standing_module._judged(trial, "no name", np.random.default_rng(0))
+    assert judged.verdict.kind == kind
+    assert ("training runs keep" in judged.verdict.refused) is (kind == UNEXPLAINED)
+
+
+@pytest.mark.parametrize(("refused", "locked", "train", "stands"), [
+    (Verdict(UNEXPLAINED, "wave leaves 30 %", leaves=True), 0.2, 1.2, True),
+    (Verdict(UNEXPLAINED, "wave leaves 30 %", leaves=True), 1.5, 1.2, False),  # 1.46 floors of the locked runs
+    (Verdict(UNEXPLAINED, "wave leaves 30 %", leaves=True), 0.2, 3.0, False),
+    (Verdict(UNEXPLAINED, "wave would need an implausible size"), 0.2, 1.2, False),
+    (Verdict(NOTHING), 0.2, 1.2, False),
+])  # fmt: skip
+def test_a_name_refused_for_what_it_leaves_of_the_training_runs_stands_by_the_locked_ones(
+    refused, locked, train, stands
+):
+    cross = crossfit(3.0 * WAVE + noise())
+    final = cross.explain(SLOTS[:1])
+    search = _Tried(cross, Selection(cross.explain(()), final, (Finding(SLOTS[0], (), 0.0, 0.1, 1.0),)), refused)
+
+    def trial_of(own):
+        sides = [side(3.0 * WAVE + noise(), left * OTHER + noise(1)) for left in (train, locked)]
+        return Trial(own, SimpleNamespace(parameters={}), *sides)
+
+    refit = Trial(search, None, None, side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1)))
+    full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
+    assert (full is not None) is stands
+    assert bool(why) is (not stands and bool(refused.refused))
+    if stands:
+        assert full.search.verdict.kind == MISSING
+
+
+@pytest.mark.parametrize(("late", "step", "named"), [(0.004, 0.02, False), (0.014, 0.01, True), (0.014, 0.02, True)])
+def test_a_delay_within_half_a_sample_is_no_name(late, step, named):
+    found = {"signal_delay": {"tau": SimpleNamespace(value=-late)}}
+    trial = SimpleNamespace(
+        repaired=SimpleNamespace(parameters=found), holdout=SimpleNamespace(runs=[SimpleNamespace(dt=step)])
+    )
+    assert (standing_module._within_a_sample(trial) == "") is named
+    trial.repaired.parameters = {}
+    assert standing_module._within_a_sample(trial) == ""
+
+
+@pytest.mark.parametrize(("gained", "holds"), [(0.02, False), (0.3, True)])
+def test_a_name_beside_a_refit_at_its_floor_takes_more_than_next_to_nothing(gained, holds):
+    """Surely, of 0.12 where the floor is 0.14: a refit had closed the gap before."""
+    before, noisy = 0.9 * WAVE, 0.1 * noise(1)
+    refit, full = (
+        replace(side(before, left, floor=0.09), least_noise=0.1)
+        for left in (noisy + gained * WAVE * 0.6, noisy)
+    )  # fmt: skip
+    assert prove("wave", refit, full, np.random.default_rng(1)).holds is holds
 
 
 def explanation(losses):

@@ -9,7 +9,7 @@ from gap_rig import runs_with
 
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.balance import measured_groups, without_error
-from winch_friction.discrepancy.preparation.grid import uniform
+from winch_friction.discrepancy.preparation.grid import smooth_between_steps, uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.prepare import _followed
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
@@ -168,3 +168,16 @@ def test_an_error_of_a_stroke_leaves_the_pressure_and_takes_the_displacement():
     np.testing.assert_allclose(without_error((own, other), 0.1 * torque)[1].pressure, 8.1e6)
     at_rest = replace(other, pressure=0.0 * ones)
     np.testing.assert_allclose(without_error((own, at_rest), 0.0, 5.0)[1].displacement, 3e-5)
+
+
+@pytest.mark.parametrize("noise", [0.0, 2e-4])
+@pytest.mark.parametrize("dt", [0.02, 0.2])
+def test_a_displacement_that_is_set_anew_is_followed_and_a_steady_one_smoothed(noise, dt):
+    time = np.arange(0.0, 240.0, dt)
+    true = np.interp(time, [100.0, 102.0], [1.0, 0.7])
+    values = true + noise * np.random.default_rng(0).standard_normal(len(time))
+    window = max(int(0.3 / dt), 5) | 1
+    found = smooth_between_steps(values, window, 5 * window)
+    assert np.abs(found - true).max() < 0.01 + 5.0 * noise  # smoothed over the widest window it is 0.06 off at 5 Hz
+    steady = time < 90.0
+    assert np.std(found[steady] - true[steady]) <= 0.3 * noise

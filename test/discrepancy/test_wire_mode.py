@@ -187,6 +187,14 @@ def test_a_run_that_cannot_tell_whether_its_load_swings_has_no_vote(left, expect
     assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.parametrize(("alike", "expected"), [(6, 0.05), (3, None)])
+def test_runs_that_agree_closely_tell_beside_others_that_seem_damped_otherwise(alike, expected):
+    """Heave compensation whose motion sensor is noisy, and an inertia that is wrong, beside plain hoists."""
+    apart = [(5.0, ratio, 1e5) for ratio in (0.11, 0.2, 0.29, 0.43, 0.016, 0.6)]
+    found = shared_damping([(3.0 + k, 0.05 * (1.0 + 0.02 * k), 2e5) for k in range(alike)] + apart)
+    assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.1)
+
+
 def test_a_light_load_leaves_as_much_with_a_swing_as_without_and_a_heavy_one_on_a_rigid_wire_far_more():
     rigid = 0.5 * np.sin(0.6 * TIME) + 0.3 * np.sin(1.7 * TIME + 1.0)
     gap = 100.0 * np.random.default_rng(2).standard_normal(len(TIME))

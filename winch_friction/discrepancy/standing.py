@@ -138,8 +138,9 @@ def _within_a_sample(trial: Trial) -> str:
     for the next one.
     """
     found = trial.repaired.parameters.get(DELAY, {})
-    step = max((run.dt for run in trial.holdout.runs), default=0.0)
-    most = max((abs(each.value) for each in found.values()), default=np.inf)
+    if not found:
+        return ""
+    step, most = max(run.dt for run in trial.holdout.runs), max(abs(each.value) for each in found.values())
     if most > LIMITS.in_step * step:
         return ""
     return f"a delay of {1e3 * most:.2g} ms is how a log of a sample every {1e3 * step:.3g} ms is made"

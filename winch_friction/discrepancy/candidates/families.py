@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes, label_of
-from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, no_load, term_columns
+from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, term_columns
 from winch_friction.discrepancy.candidates.speeds_seen import POSSIBLE
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
@@ -27,7 +28,6 @@ TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may 
 STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
-LOADS_APART = 1.3  # times the least load, for a law of the load to have a shape
 POWERS = (0.5, 1.5, 2.0, 3.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL = ("oil_temperature",)
@@ -53,6 +53,8 @@ def literature() -> list[Candidate]:
         wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
+        _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, 1.0)},
+            continuous=("n_po",)),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
         # at lower speeds and in proportion to the pressure it is a Stribeck curve
@@ -66,25 +68,19 @@ def literature() -> list[Candidate]:
             law_name="cracking pressure one way", continuous=("n_l",)),
         _of("case_pressure", "case_high_port"),
         _of("case_pressure", "case_ports"),
-        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=no_load),
+        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=friction.no_load),
         # of shorter films Stribeck's curve speaks
-        _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=no_load, continuous=()),
-        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=no_load),
-        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=no_load),
+        _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=friction.no_load, continuous=()),
+        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=friction.no_load),
+        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
-            needs=("hook_load",), blind=_one_load),
-        _of("layer_radius", "layer_bedding", {"n_lb": (1.5, 2.0)}, needs=("hook_load", "wire_layer"), blind=_one_load),
+            needs=("hook_load",), blind=friction.one_load),
+        _of("layer_radius", "layer_bedding", {"n_lb": (1.5, 2.0)}, needs=("hook_load", "wire_layer"),
+            blind=friction.one_load),
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
-            blind=no_load),
+            blind=friction.no_load),
     ]  # fmt: skip
-
-
-def _one_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    loads = [float(np.median(run.load)) for run in runs]
-    if max(loads) > LOADS_APART * min(loads):
-        return None
-    return "runs with different loads", "at one load what depends on it is a constant"
 
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:

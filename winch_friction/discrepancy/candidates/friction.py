@@ -21,7 +21,16 @@ COULOMB = ("coulomb", "motor_coulomb")
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 BRISTLE_TRAVEL = (0.009, 0.02, 0.04, 0.09)  # rad of the shaft, 0.5 to 5 degrees
 AT_ONCE = 16384  # samples: what an equation makes on the way is then 128 KB a piece, and stays in the processor's cache
+LOADS_APART = 1.3  # times the least load, for a law of the load to have a shape
 TYPICAL_DRUM_TORQUE = 4e5  # N m, to weigh the two coefficients of a Stribeck curve
+
+
+def one_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    """Why these runs cannot show the shape of a law of the load; None where they can."""
+    loads = [float(np.median(run.load)) for run in runs]
+    if max(loads) > LOADS_APART * min(loads):
+        return None
+    return "runs with different loads", "at one load what depends on it is a constant"
 
 
 def no_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:

@@ -19,6 +19,10 @@ b_lp = Parameter("b_lp", "1", 1.0, lower=1.0, upper=5.0, shape=True, doc="expone
 K_pp = Parameter("K_pp", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and full displacement")
 n_pp = Parameter("n_pp", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
 m_pp = Parameter("m_pp", "1", 2.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
+K_po = Parameter("K_po", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and full displacement, mean of both ways")
+n_po = Parameter("n_po", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
+m_po = Parameter("m_po", "1", 3.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
+b_po = Parameter("b_po", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: hoisting alone, -1: lowering alone")
 T_cv = Parameter("T_cv", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm and 40 degC")
 n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.5, shape=True, doc="exponent of the speed")
 K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
@@ -56,6 +60,10 @@ low_displacement_power = _motor(
 port_power = _motor(
     "port_power", K_pp.symbol * _w**n_pp.symbol * _x**m_pp.symbol, (K_pp, n_pp, m_pp),
     "paper 1 eq 11, with the exponents of speed and displacement apart",
+)  # fmt: skip
+port_one_way = _motor(
+    "port_one_way", K_po.symbol * _w**n_po.symbol * _x**m_po.symbol * (1 + b_po.symbol * s), (K_po, n_po, m_po, b_po),
+    "paper 1 eq 11, of a port or a valve that oil passes one way",
 )  # fmt: skip
 churning_viscous = _motor(
     "churning_viscous", T_cv.symbol * _w**n_cv.symbol * (walther(oil_temperature) / _NU_40) ** sp.Rational(1, 4),

@@ -81,6 +81,21 @@ def test_two_clear_levels_are_told_and_one_is_not():
     assert two_levels(alone, small) is None  # one run is no state
 
 
+def test_two_levels_may_follow_the_load_alike_but_a_law_of_the_load_is_no_level():
+    """What the base model has wrong of the load's friction moves the levels of all runs."""
+    rng = np.random.default_rng(0)
+    load, small = rng.uniform(10e3, 150e3, FULL), np.full(FULL, 0.1)
+    there = np.arange(FULL) % 3 == 0
+    levels = 2.0 * there - 9e-6 * load + 0.05 * rng.standard_normal(FULL)
+    assert two_levels(levels, small) is None
+    assert list(two_levels(levels, small, load)) == list(there)
+    assert two_levels(2e-5 * load + 0.05 * rng.standard_normal(FULL), small, load) is None
+    draws = [np.random.default_rng(seed) for seed in range(500)]
+    for spread in ("standard_normal", "random"):
+        seeming = [two_levels(getattr(d, spread)(size=FULL), 0.0 * small, load) is not None for d in draws]
+        assert np.mean(seeming) < 0.01, spread
+
+
 def test_what_a_logged_signal_tells_is_no_state():
     def run(load, mode=("main",), swash=2e-5, layer=0):
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}

@@ -122,7 +122,7 @@ def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State |
     """In which runs it is, told by the first half of each; None where that is not one of two clear levels, or where
     a logged signal says as much."""
     levels, deviations = levels_of(problem, slot, len(runs))
-    there = two_levels(levels, deviations)
+    there = two_levels(levels, deviations, np.array([float(np.median(run.load)) for run in runs]))
     if there is None or told_by_a_signal(runs, there):
         return None
     other = float(np.nanmean(levels[~there]))
@@ -181,24 +181,37 @@ def levels_of(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, Floa
     return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
 
 
-def two_levels(levels: FloatArray, deviations: FloatArray) -> np.ndarray | None:
+def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | None = None) -> np.ndarray | None:
     """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
-    two runs each; None where they do not. What is NaN belongs to neither and is not there."""
+    two runs each; None where they do not. What is NaN belongs to neither and is not there.
+
+    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does.
+    """
     known = np.flatnonzero(np.isfinite(levels))
     if len(known) < LIMITS.fewest_levels:
         return None
     order = known[np.argsort(levels[known])]
+    load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
     parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
-    low, high = min(parts, key=lambda pair: sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in pair))
-    within = sum(float(((levels[p] - levels[p].mean()) ** 2).sum()) for p in (low, high)) / (len(order) - 2)
+    fits = [(_two_lines(levels, load, low, high), low, high) for low, high in parts]
+    (within, slope), low, high = min(fits, key=lambda fit: fit[0][0])
+    within /= len(order) - (2 if loads is None else 3)
     spread = max(float(np.sqrt(within)), LIMITS.levels_surer * float(np.median(deviations[known])))
-    centres = levels[low].mean(), levels[high].mean()
+    centres = [float((levels[part] - slope * load[part]).mean()) for part in (low, high)]
     apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
     if centres[1] - centres[0] < apart * spread:
         return None
     there = np.zeros(len(levels), bool)
     there[high if abs(centres[1]) >= abs(centres[0]) else low] = True
     return there
+
+
+def _two_lines(values: FloatArray, load: FloatArray, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
+    """Sum of squares about two levels that share a slope over the load, and that slope."""
+    own = np.concatenate([load[part] - load[part].mean() for part in (low, high)])
+    off = np.concatenate([values[part] - values[part].mean() for part in (low, high)])
+    slope = float(own @ off) / max(float(own @ own), 1e-300)
+    return float(((off - slope * own) ** 2).sum()), slope
 
 
 def _of_the_drive(run: PreparedRun) -> dict[str, FloatArray]:

@@ -86,8 +86,8 @@ class Thresholds:
     # air in the oil, which none of them is, 0.24
     reversal_share: float = 0.33
     # deviations between two levels of so many runs or more: of runs that are spread somehow (normal, evenly,
-    # exponentially) hardly 1 in a hundred, of six 2 in a hundred, seem to make two levels so far apart
-    levels_apart: tuple[tuple[int, float], ...] = ((10, 9.0), (6, 10.0))
+    # exponentially, whatever hangs there) hardly 1 in a hundred, of six 3, seem to make two levels so far apart
+    levels_apart: tuple[tuple[int, float], ...] = ((10, 9.0), (8, 10.0), (6, 14.0))
     # of a level's stated deviation, that runs of one level may differ by although these do not: the deviation allows
     # for noise that is correlated over `prior_weight` blocks, and where the runs agree more closely than that it is not
     levels_surer: float = 0.45

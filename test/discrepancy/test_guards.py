@@ -435,14 +435,24 @@ def test_a_name_may_not_leave_a_fifth_of_the_locked_gap(left, enough):
 
 
 @pytest.mark.parametrize(
-    ("names", "left", "stands"),
-    [(("one", "two"), 1.1, True), (("one", "two"), 1.6, False), (("one", "one"), 1.6, True), (("one",), 1.6, True)],
+    ("names", "left", "excess", "stands"),
+    [
+        (("one", "two"), 1.1, 1.0, True),
+        (("one", "two"), 1.6, 1.0, False),
+        (("one", "one"), 1.6, 1.0, True),
+        (("one",), 1.6, 1.0, True),
+        (("one", "two"), 1.4, 1.0, False),
+        (("one", "two"), 1.4, 0.2, True),  # the training runs are at their noise
+        (("one", "two"), 1.6, 0.2, False),
+    ],
 )
-def test_several_names_leave_no_more_than_noise(names, left, stands):
+def test_several_names_leave_no_more_than_noise(names, left, excess, stands):
     slots = tuple(Slot(name, "", (k,)) for k, name in enumerate(names))
     after = replace(side(3.0 * WAVE, noise(), floor=0.8), least_noise=0.0)
     after = replace(after, size_after=replace(after.size_after, value=left * after.floor))
-    trial = SimpleNamespace(holdout=after, search=SimpleNamespace(explanation=SimpleNamespace(slots=slots)))
+    cross = SimpleNamespace(excess=lambda _: excess)
+    search = SimpleNamespace(explanation=SimpleNamespace(slots=slots), cross=cross)
+    trial = SimpleNamespace(holdout=after, search=search)
     assert (several_leave_more_than_noise(trial) == "") is stands
     brought = (Slot("slope", "", (0,), brings=("level",)), Slot("level", "", (1,)))  # one effect of two orders
     trial.search.explanation.slots = brought

@@ -59,12 +59,15 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
 def several_leave_more_than_noise(trial: Trial) -> str:
     """Why several names do not stand although each takes its part of the locked gap; empty where they do.
 
-    One name's law may be inexact; of several the second is as likely what the first one's law has wrong.
+    One name's law may be inexact; of several the second is as likely what the first one's law has wrong, but hardly
+    where together they close the many training runs down to their noise.
     """
-    slots = trial.search.explanation.slots
+    search, slots = trial.search, trial.search.explanation.slots
     names = {own.name for own in slots if not own.plain and not any(own.name in each.brings for each in slots)}
     left = trial.holdout.size_after.value
-    if len(names) < 2 or left <= LIMITS.several_leave * trial.holdout.floor:
+    closed = len(names) > 1 and search.cross.excess(search.explanation) <= LIMITS.least_excess
+    most = LIMITS.at_the_floor if closed else LIMITS.several_leave
+    if len(names) < 2 or left <= most * trial.holdout.floor:
         return ""
     return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {trial.holdout.floor:.3g}"
 

@@ -90,7 +90,7 @@ class Thresholds:
     levels_apart: tuple[tuple[int, float], ...] = ((10, 9.0), (8, 10.0), (6, 14.0))
     # of a level's stated deviation, that runs of one level may differ by although these do not: the deviation allows
     # for noise that is correlated over `prior_weight` blocks, and where the runs agree more closely than that it is not
-    levels_surer: float = 0.45
+    levels_surer: float = 0.35
     other_level: float = 0.2  # of what lies between two levels, above which the one nearer to zero counts as well
     fewest_levels: int = 6  # runs, for two levels to be told
     # -- remainder

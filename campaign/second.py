@@ -6,7 +6,7 @@ Every data set of `campaign/second_rig` is written as CSV files with a crane and
 `winch-friction gap` runs on it as a process of its own, and its gap.json is judged; where it named something it runs
 again with the model it wrote. Every finished case is one line of out/campaign_second/results.jsonl; a second call
 carries on where the first ended, and a partial run gives a table that says so. The table goes to
-docs/campaign_second.md. Draws 0 to 3, 27, 31 and 33 were seen in development.
+docs/campaign_second.md. Draws 0 to 3, 27, 31 and 33 to 36 were seen in development.
 """
 
 import argparse

@@ -46,8 +46,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     if keeps_something(after, before, depends) or elsewhere:
         after, before = max((after, before), (whole, whole_before), key=lambda pair: pair[0] / pair[1])
         names = ", ".join(selection.final.names)
-        left = f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor"
-        return Verdict(UNEXPLAINED, left, leaves=True)
+        why = f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor"
+        return Verdict(UNEXPLAINED, why, leaves=True)
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
 
 

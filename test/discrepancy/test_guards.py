@@ -821,7 +821,7 @@ def test_a_delay_within_half_a_sample_is_no_name(late, step, named):
     assert standing_module._within_a_sample(trial) == ""
 
 
-@pytest.mark.parametrize(("gained", "holds"), [(0.02, False), (0.3, True)])
+@pytest.mark.parametrize(("gained", "holds"), [(0.06, False), (0.3, True)])
 def test_a_name_beside_a_refit_at_its_floor_takes_more_than_next_to_nothing(gained, holds):
     """Surely, of 0.12 where the floor is 0.14: a refit had closed the gap before."""
     before, noisy = 0.9 * WAVE, 0.1 * noise(1)

@@ -9,7 +9,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation second
+CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation second third
 
 .PHONY: docs demo test test-nodes test-computing test-long test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 

@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
@@ -45,12 +45,12 @@ def command(verb: str, folder: Path, *options: str, model: str = "model.yaml") -
     return subprocess.run(called, capture_output=True, text=True, timeout=LONGEST, check=False)
 
 
-def gap(folder: Path, out: str, model: str = "model.yaml") -> dict[str, Any]:
-    """The content of gap.json after `winch-friction gap`.
+def gap(folder: Path, out: str, model: str = "model.yaml", options: Sequence[str] = ()) -> dict[str, Any]:
+    """The content of gap.json after `winch-friction gap` with further options.
 
     Raises RuntimeError with what the command said if it refuses or fails.
     """
-    done = command("gap", folder, "--out", str(folder / out), "--no-report", model=model)
+    done = command("gap", folder, "--out", str(folder / out), "--no-report", *options, model=model)
     if done.returncode or "Traceback" in done.stderr:
         raise RuntimeError(f"exit {done.returncode}: {(done.stdout + done.stderr)[-600:]}")
     return json.loads((folder / out / "gap.json").read_text())
@@ -108,8 +108,8 @@ def _wrong_single(chosen: Set, sets: Sequence[Sequence[str]]) -> bool:
     return any(len(each) == 1 and not set(each) & set().union(*chosen.causes) for each in sets)
 
 
-def in_turn(sets: Sequence[Set]) -> list[Set]:
-    """All kinds spread evenly, so that a partial run has some of each."""
+def in_turn(sets: Sequence[Any]) -> list[Any]:
+    """All kinds of sets (`key`, `kind`) spread evenly, so that a partial run has some of each."""
     counts = Counter(each.kind for each in sets)
     seen: Counter[str] = Counter()
     place = {}
@@ -119,15 +119,18 @@ def in_turn(sets: Sequence[Set]) -> list[Set]:
     return sorted(sets, key=lambda each: place[each.key])
 
 
-def run(sets: Sequence[Set], draw: int, processes: int, path: Path, until: float = float("inf")) -> None:
+def run(
+    sets: Sequence[Any], draw: int, processes: int, path: Path, until: float = float("inf"),
+    diagnosed: Callable[[Any, int], dict[str, Any]] = diagnose,
+) -> None:  # fmt: skip
     """Work through the sets that have no result yet; none is begun after the Unix time `until`."""
     done = finished(path)
     waiting = [each for each in in_turn(sets) if f"{each.key}/{draw}" not in done]
     path.parent.mkdir(parents=True, exist_ok=True)
     measured = commit()
 
-    def one(chosen: Set) -> dict[str, Any] | None:
-        return diagnose(chosen, draw) if time.time() < until else None
+    def one(chosen: Any) -> dict[str, Any] | None:
+        return diagnosed(chosen, draw) if time.time() < until else None
 
     with path.open("a") as out, ThreadPoolExecutor(processes) as pool:  # a command is a process of its own
         for k, row in enumerate(future.result() for future in as_completed([pool.submit(one, s) for s in waiting])):
@@ -139,18 +142,23 @@ def run(sets: Sequence[Set], draw: int, processes: int, path: Path, until: float
             print(f"{k + 1}/{len(waiting)} {row['key']}: {told}", flush=True)
 
 
-def main() -> None:
-    """Read the command line, run, write the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+def arguments(what: str, results: Path, table: Path, draw: int) -> argparse.Namespace:
+    """The command line of a campaign with draws; these are its defaults."""
+    parser = argparse.ArgumentParser(description=what.splitlines()[0])
     parser.add_argument("--only", help="sets whose key contains this")
-    parser.add_argument("--draw", type=int, default=FIRST_DRAW, help="which winch of each set")
+    parser.add_argument("--draw", type=int, default=draw, help="which winch of each set")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="stop after that long; the table says so")
     parser.add_argument("--processes", type=int, default=1)
-    parser.add_argument("--results", type=Path, default=RESULTS)
-    parser.add_argument("--table", type=Path, default=TABLE)
+    parser.add_argument("--results", type=Path, default=results)
+    parser.add_argument("--table", type=Path, default=table)
     parser.add_argument("--report-only", action="store_true", help="write the table from the results there are")
     parser.add_argument("--note", default="", help="a line for the head of the table")
-    chosen = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Read the command line, run, write the table."""
+    chosen = arguments(__doc__ or "", RESULTS, TABLE, FIRST_DRAW)
     sets = [each for each in SETS.values() if not chosen.only or chosen.only in each.key]
     if not chosen.report_only:
         run(sets, chosen.draw, chosen.processes, chosen.results, time.time() + 60 * chosen.minutes)

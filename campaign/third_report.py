@@ -11,7 +11,8 @@ Row = dict[str, Any]
 
 HEAD = """# A third independent winch, through the command line
 
-Data from `campaign/third_rig`, which an outside examiner wrote: prescribed motion, a load that swings on its wire, an inverse balance of torques, sensors of its own. It shares no equation, no simulator and no
+Data from `campaign/third_rig`, which an outside examiner wrote: prescribed motion, a load that swings on its wire, an
+inverse balance of torques, sensors of its own. It shares no equation, no simulator and no
 constant with the package or with the other two generators, and draws another winch for every set. Every effect of the
 catalogue has one to two laws of its own; each is given a size at which it changes the balance by 3 to 10 noise floors
 and at which, as far as a larger trace and a better known seed can bring it there, about two are left beyond what the

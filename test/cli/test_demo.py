@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
+from winch_friction.cli.demo import processes
 from winch_friction.cli.demo.learned import learned_parameters
 from winch_friction.cli.demo.legs import voyage_legs
 from winch_friction.cli.demo.measures import measure, near_reversal, of_leg, overall_share
@@ -178,3 +179,12 @@ def test_learned_parameters_stand_beside_sigma_and_truth(crane2_model) -> None:
     assert rows["C6"].sigmas == pytest.approx(-0.3 * crane2_model.value("C6") / std)
     assert rows["K4"].sigmas == 0.0
     assert rows["C6"].as_dict()["sigmas_from_truth"] == rows["C6"].sigmas
+
+
+def test_all_that_the_demo_starts_meet_in_one_domain(monkeypatch):
+    """Whatever other programs draw: they once were in one each, and waited for each other in vain."""
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    drawn = {processes.quiet_environment()["ROS_DOMAIN_ID"] for _ in range(20)}
+    assert len(drawn) == 1
+    monkeypatch.setenv("ROS_DOMAIN_ID", "42")
+    assert processes.quiet_environment()["ROS_DOMAIN_ID"] == "42"

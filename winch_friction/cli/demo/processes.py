@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
@@ -18,12 +19,18 @@ GRACE = 15.0  # s that a process gets to end
 
 
 def quiet_environment() -> dict[str, str]:
-    """One thread per process, this machine alone, and a domain of its own unless one is given."""
+    """One thread per process, this machine alone, and one domain for all that this process starts unless one is
+    given."""
     environment = dict(os.environ)
     environment |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     environment.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    environment.setdefault("ROS_DOMAIN_ID", str(unused_domain()))
+    environment.setdefault("ROS_DOMAIN_ID", str(_domain()))
     return environment
+
+
+@cache
+def _domain() -> int:
+    return unused_domain()  # asked again, it would give another one: in this one the first node is by then
 
 
 @contextmanager

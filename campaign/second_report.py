@@ -9,6 +9,8 @@ from campaign.second_rig.sets import EFFECT, LOAD_CELL, NULL, OUTSIDE, PAIR, SET
 
 Row = dict[str, Any]
 
+QUIET_AGAIN = "nothing_missing"
+
 HEAD = """# A second independent winch, through the command line
 
 Data from `campaign/second_rig`: a crane whose motion is prescribed, a rope on a spring, an inverse balance of torques
@@ -39,33 +41,39 @@ def write_table(path: Path, rows: Sequence[Row], draw: int, note: str = "") -> N
 def _summary(rows: Sequence[Row]) -> str:
     of = {kind: [row for row in rows if row["kind"] == kind] for kind in (NULL, EFFECT, OUTSIDE, PAIR, LOAD_CELL)}
     answered = [row for row in rows if row.get("again")]
+    inside = [row for row in rows if row["kind"] != OUTSIDE]
     lines = [
         "| what | measured |",
         "|---|---|",
-        _line("nulls: `nothing_missing`", of[NULL], _is("quiet")),
-        _line("one effect: right, alone or in a set of at most three", of[EFFECT], _is("right")),
-        _line("one effect: left unexplained, without a name", of[EFFECT], _is("unnamed")),
-        _line("one effect: a set of names without it, beside or instead", of[EFFECT], _is("wrong")),
-        _line("one effect: missed", of[EFFECT], _is("missed")),
-        _line("wrong single names, all sets but those outside", [r for r in rows if r["kind"] != OUTSIDE], _wrong),
-        _line("outside the catalogue: named", of[OUTSIDE], _is("named")),
-        _line("two at once: both found, and nothing else", of[PAIR], _is("right")),
-        _line("load cell's gain: a name that it cannot be told from", of[LOAD_CELL], _is("right")),
-        _line("named: `nothing_missing` with the written model", answered, lambda r: r["again"] == "nothing_missing"),
-        _line("ended with an error", rows, lambda row: "error" in row),
+        share_line("nulls: `nothing_missing`", of[NULL], outcome_in("quiet")),
+        share_line("one effect: right, alone or in a set of at most three", of[EFFECT], outcome_in("right")),
+        share_line("one effect: left unexplained, without a name", of[EFFECT], outcome_in("unnamed")),
+        share_line("one effect: a set of names without it, beside or instead", of[EFFECT], outcome_in("wrong")),
+        share_line("one effect: missed", of[EFFECT], outcome_in("missed")),
+        share_line("wrong single names, all sets but those outside", inside, wrong_single),
+        share_line("outside the catalogue: named", of[OUTSIDE], outcome_in("named")),
+        share_line("two at once: both found, and nothing else", of[PAIR], outcome_in("right")),
+        share_line("load cell's gain: a name that it cannot be told from", of[LOAD_CELL], outcome_in("right")),
+        share_line(
+            "named: `nothing_missing` with the written model", answered, lambda r: r["again"] == "nothing_missing"
+        ),
+        share_line("ended with an error", rows, lambda row: "error" in row),
     ]
     return "\n".join(lines)
 
 
-def _is(outcome: str) -> Callable[[Row], bool]:
-    return lambda row: row.get("outcome") == outcome
+def outcome_in(*outcomes: str) -> Callable[[Row], bool]:
+    """Whether a row's outcome is one of these."""
+    return lambda row: row.get("outcome") in outcomes
 
 
-def _wrong(row: Row) -> bool:
+def wrong_single(row: Row) -> bool:
+    """Whether one of its names stands alone and is wrong."""
     return bool(row.get("wrong_single"))
 
 
-def _line(what: str, rows: Sequence[Row], test: Callable[[Row], bool]) -> str:
+def share_line(what: str, rows: Sequence[Row], test: Callable[[Row], bool]) -> str:
+    """A line of the summary: how many of the rows pass."""
     return f"| {what} | {sum(map(test, rows))} of {len(rows)} |" if rows else f"| {what} | – |"
 
 
@@ -85,10 +93,10 @@ def _sets(rows: Sequence[Row]) -> str:
 def _of_set(row: Row) -> str:
     first = f"| `{row['set']}` | {_hidden(row['set'])} | {row['rate']:g} |"
     if "verdict" not in row:
-        return f"{first} {_cell(row['error'])} | error | – | – | – | – |"
+        return f"{first} {cell_of(row['error'])[-200:]} | error | – | – | – | – |"
     gap = f"{row['before']:.2f} → {row['after']:.2f} | {row['floor']:.2f}"
     again = row.get("again") or ("error" if "error" in row else "–")
-    return f"{first} {_answer(row)} | {row['outcome']} | {gap} | {again} | {row.get('seconds', 0):.0f} |"
+    return f"{first} {answer_of(row)} | {row['outcome']} | {gap} | {again} | {row.get('seconds', 0):.0f} |"
 
 
 def _hidden(key: str) -> str:
@@ -99,10 +107,12 @@ def _hidden(key: str) -> str:
     return " + ".join(" or ".join(sorted(cause)) for cause in chosen.causes)
 
 
-def _answer(row: Row) -> str:
+def answer_of(row: Row) -> str:
+    """Verdict and names."""
     names = " + ".join(each[0] if len(each) == 1 else "{" + ", ".join(each) + "}" for each in row["sets"])
     return f"{row['verdict']}: {names}" if names else row["verdict"]
 
 
-def _cell(text: str) -> str:
-    return " ".join(text.replace("|", "/").split())[-200:]
+def cell_of(text: str) -> str:
+    """Text that a table's cell can hold."""
+    return " ".join(text.replace("|", "/").split())

@@ -1,10 +1,11 @@
 """The third winch's table."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from campaign.second_report import answer_of, cell_of, outcome_in, share_line, wrong_single
 from campaign.third_rig.sets import NULL, OUTSIDE, PAIR, SETS, SINGLE
 
 Row = dict[str, Any]
@@ -12,8 +13,8 @@ Row = dict[str, Any]
 HEAD = """# A third independent winch, through the command line
 
 Data from `campaign/third_rig`, which an outside examiner wrote: prescribed motion, a load that swings on its wire, an
-inverse balance of torques, sensors of its own. It shares no equation, no simulator and no
-constant with the package or with the other two generators, and draws another winch for every set. Every effect of the
+inverse balance of torques, sensors of its own. It shares no equation, no simulator and no constant with the package
+or with the other two generators, and draws another winch for every set. Every effect of the
 catalogue has one to two laws of its own; each is given a size at which it changes the balance by 3 to 10 noise floors
 and at which, as far as a larger trace and a better known seed can bring it there, about two are left beyond what the
 seed's standard deviations may claim. Each set is written as CSV files with a crane and a model file, and
@@ -53,37 +54,25 @@ def _summary(rows: Sequence[Row]) -> str:
     lines = [
         "| what | measured |",
         "|---|---|",
-        _line("nulls: `nothing_missing`", of[NULL], _is("quiet")),
-        _line("one effect: right, alone or in a set of at most three", of[SINGLE], _is("right")),
-        _line("one effect: right, and another name beside it", of[SINGLE], _is("right+extra")),
-        _line("one effect: left unexplained, without a name", of[SINGLE], _is("unexplained")),
-        _line("one effect: another name instead", of[SINGLE], _is("wrong")),
-        _line("one effect: missed", of[SINGLE], _is("missed")),
-        _line("wrong single names, all sets but those outside", [*of[NULL], *of[SINGLE], *of[PAIR]], _wrong),
-        _line("two at once: both found, and nothing else", of[PAIR], _is("both")),
-        _line("two at once: one found, and nothing else", of[PAIR], _is("one")),
-        _line("two at once: a name of neither", of[PAIR], _is("wrong", "both+extra", "one+extra")),
-        _line("outside the catalogue: named", of[OUTSIDE], _is("named")),
-        _line("outside the catalogue: a proposal, without a name", of[OUTSIDE], _is("proposal")),
-        _line("outside the catalogue: missed", of[OUTSIDE], _is("missed")),
-        _line("named: `nothing_missing` on fresh runs", answered, lambda row: row["again"] == "nothing_missing"),
-        _line("`insufficient`", put, _is("insufficient")),
-        _line("refused, or ended with an error", put, lambda row: "error" in row or "again_error" in row),
-        _line("not drawn: the effect leaves no trace", rows, _is("not drawn")),
+        share_line("nulls: `nothing_missing`", of[NULL], outcome_in("quiet")),
+        share_line("one effect: right, alone or in a set of at most three", of[SINGLE], outcome_in("right")),
+        share_line("one effect: right, and another name beside it", of[SINGLE], outcome_in("right+extra")),
+        share_line("one effect: left unexplained, without a name", of[SINGLE], outcome_in("unexplained")),
+        share_line("one effect: another name instead", of[SINGLE], outcome_in("wrong")),
+        share_line("one effect: missed", of[SINGLE], outcome_in("missed")),
+        share_line("wrong single names, all sets but those outside", [*of[NULL], *of[SINGLE], *of[PAIR]], wrong_single),
+        share_line("two at once: both found, and nothing else", of[PAIR], outcome_in("both")),
+        share_line("two at once: one found, and nothing else", of[PAIR], outcome_in("one")),
+        share_line("two at once: a name of neither", of[PAIR], outcome_in("wrong", "both+extra", "one+extra")),
+        share_line("outside the catalogue: named", of[OUTSIDE], outcome_in("named")),
+        share_line("outside the catalogue: a proposal, without a name", of[OUTSIDE], outcome_in("proposal")),
+        share_line("outside the catalogue: missed", of[OUTSIDE], outcome_in("missed")),
+        share_line("named: `nothing_missing` on fresh runs", answered, lambda row: row["again"] == "nothing_missing"),
+        share_line("`insufficient`", put, outcome_in("insufficient")),
+        share_line("refused, or ended with an error", put, lambda row: "error" in row or "again_error" in row),
+        share_line("not drawn: the effect leaves no trace", rows, outcome_in("not drawn")),
     ]
     return "\n".join(lines)
-
-
-def _is(*outcomes: str) -> Callable[[Row], bool]:
-    return lambda row: row["outcome"] in outcomes
-
-
-def _wrong(row: Row) -> bool:
-    return bool(row.get("wrong_single"))
-
-
-def _line(what: str, rows: Sequence[Row], test: Callable[[Row], bool]) -> str:
-    return f"| {what} | {sum(map(test, rows))} of {len(rows)} |" if rows else f"| {what} | – |"
 
 
 def _sets(rows: Sequence[Row]) -> str:
@@ -98,11 +87,11 @@ def _sets(rows: Sequence[Row]) -> str:
 
 def _of_set(row: Row) -> str:
     rate = f"{row['rate']:g}" if "rate" in row else "–"
-    first = f"| `{row['set']}` | {_cell(SETS[row['set']].hidden)} | {_traces(row)} | {rate} |"
+    first = f"| `{row['set']}` | {cell_of(SETS[row['set']].hidden)} | {_traces(row)} | {rate} |"
     if "verdict" not in row:
-        return f"{first} {_cell(row['error'])[-200:]} | {row['outcome']} | – | – | – | – |"
+        return f"{first} {cell_of(row['error'])[-200:]} | {row['outcome']} | – | – | – | – |"
     gap = f"{_bar(row['before'])} → {_bar(row['after'])} | {_bar(row['floor'])}"
-    return f"{first} {_answer(row)} | {row['outcome']} | {gap} | {row.get('again', '–')} | {row['seconds']:.0f} |"
+    return f"{first} {answer_of(row)} | {row['outcome']} | {gap} | {row.get('again', '–')} | {row['seconds']:.0f} |"
 
 
 def _traces(row: Row) -> str:
@@ -110,14 +99,5 @@ def _traces(row: Row) -> str:
     return ", ".join(f"{trace:.1f} ({beyond:.1f})" if trace else "speed" for trace, beyond in pairs) or "–"
 
 
-def _answer(row: Row) -> str:
-    names = " + ".join(each[0] if len(each) == 1 else "{" + ", ".join(each) + "}" for each in row["sets"])
-    return f"{row['verdict']}: {names}" if names else row["verdict"]
-
-
 def _bar(value: float | None) -> str:
     return "–" if value is None else f"{value:.2f}"
-
-
-def _cell(text: str) -> str:
-    return " ".join(text.replace("|", "/").split())

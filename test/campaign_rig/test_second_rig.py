@@ -1,11 +1,11 @@
 """The second rig shares nothing with package and first rig, obeys the balance of torques, and goes the user's path."""
 
-import ast
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from imported import imported
 
 from campaign import second_rig
 from campaign.second import _outcome, command, diagnose, in_turn
@@ -21,19 +21,9 @@ SILENT = Logging(
 )  # fmt: skip
 
 
-def _imported(path: Path) -> list[str]:
-    names: list[str] = []
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom):
-            names += [f"{node.module}.{alias.name}" for alias in node.names]
-        elif isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-    return names
-
-
 def test_the_second_rig_imports_nothing_of_the_package_or_of_the_first_rig():
     for path in Path(second_rig.__file__).parent.glob("*.py"):
-        for name in _imported(path):
+        for name in imported(path):
             assert not any(f"{name}.".startswith(f"{foreign}.") for foreign in FOREIGN), (path, name)
 
 

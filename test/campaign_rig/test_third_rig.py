@@ -1,11 +1,11 @@
 """The third rig shares nothing with package and other rigs, obeys the balance of torques, and is judged rightly."""
 
-import ast
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from imported import imported
 
 from campaign import third_rig
 from campaign.second import in_turn
@@ -19,7 +19,6 @@ from campaign.third_rig.sets import NULL, OUTSIDE, PAIR, SINGLE
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 
 FOREIGN = ("winch_friction", "campaign.rig", "campaign.second_rig")
-ALLOWED = ("numpy", "scipy", "numba", "campaign.third_rig")
 FEW = {"runs": (3, 3), "seconds": (12, 15)}
 
 
@@ -27,22 +26,12 @@ def _short(key, **options):
     return replace(SETS[key], options=SETS[key].options | FEW | options)
 
 
-def _imported(path):
-    names = []
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom):
-            names += [f"{node.module}.{alias.name}" for alias in node.names]
-        elif isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-    return names
-
-
 def test_the_third_rig_imports_nothing_of_the_package_or_of_the_other_rigs():
     paths = list(Path(third_rig.__file__).parent.glob("*.py"))
     assert len(paths) > 10
     for path in paths:
         assert len(path.read_text().splitlines()) <= 300, path
-        for name in _imported(path):
+        for name in imported(path):
             assert not any(f"{name}.".startswith(f"{foreign}.") for foreign in FOREIGN), (path, name)
             assert not name.startswith("campaign") or name.startswith("campaign.third_rig."), (path, name)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from campaign.rig import make_dataset
+from winch_friction.discrepancy.adequacy import long_enough, of_records
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
@@ -205,3 +206,26 @@ def test_what_one_amplitude_leaves_of_a_known_ripple_is_no_second_one(order, amp
     assert found.found
     assert _known(found, rippled) is known
     assert not _known(found, crane_model)
+
+
+@pytest.mark.parametrize(("leak", "holds"), [(5.0, True), (0.3, False)])
+def test_on_few_locked_stretches_a_leak_makes_each_plainly_better(leak, holds, monkeypatch):
+    """Five signs that agree are one chance in 32: no significance, but a lost speed of 5 rad/s needs none."""
+    runs, prepared, *_ = _prepared("slow_log", ("slip_leakage", 1.0))
+    found = lost_speed(runs, prepared)
+    tables = flow_balance._tables
+    some = tables(runs, prepared, found.change)[:4]
+    some[:, 1] *= leak / np.abs(some[:, 1]).max()
+    assert len(some) < flow_balance.FEWEST_TO_FLIP
+    monkeypatch.setattr(flow_balance, "_tables", lambda *_: some)
+    assert found.holds_on(runs, prepared) is holds
+    monkeypatch.setattr(flow_balance, "_tables", lambda *_: some[:1])
+    assert not found.holds_on(runs, prepared)  # one stretch is nothing
+
+
+@pytest.mark.parametrize(("period", "kept"), [(0.201, True), (0.21, False)])
+def test_a_log_of_five_hertz_by_a_clock_that_drifts_is_one(period, kept):
+    time = np.arange(0.0, 60.0, period)
+    run = Run("slow", {"time": time, "motor_speed": 50.0 * np.sin(time)})
+    assert ([own.name for own in long_enough([run])[0]] == ["slow"]) is kept
+    assert all(check.met for check in of_records([run], [run])) is kept

@@ -181,44 +181,53 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
     np.testing.assert_allclose(right.columns["main.displacement"], true, atol=1e-6 * bow)
 
 
-def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at_odds():
-    def run(groups, ratio, left=()):
-        return SimpleNamespace(
-            groups=[None] * groups, wire_mode=Mode(8.0, ratio), load=np.full(3, 5e4), dt=0.05, swing_left=left
-        )
+def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0):
+    """What a prepared run says of its wire."""
+    return SimpleNamespace(
+        groups=[None] * groups, wire_mode=mode, load=np.full(3, 5e4), dt=dt, swing_left=left, swing_variance=variance
+    )
 
-    sea, cycles = [run(2, ratio) for ratio in (0.05, 0.07, 0.1, 0.4)], [run(1, 0.06) for _ in range(6)]
-    assert [each[1] for each in _agreed_modes(sea)] == [0.0] * 4
-    assert [each[1] for each in _agreed_modes([*sea, *cycles])] == pytest.approx([0.06] * 10)
-    assert [each[1] for each in _agreed_modes([*sea[:1], run(2, 0.0), run(2, 0.0), *cycles])] == [0.0] * 9
-    blurred = (0.7,) * 11  # of every damping: it swings, but reversals hide half of it
-    unsure = [run(2, 0.0, blurred), run(2, 0.0, blurred)]
-    assert [each[1] for each in _agreed_modes([*sea[:1], *unsure, *cycles])] == pytest.approx([0.06] * 9)
+
+def damped(runs):
+    return [each.damping for each in _agreed_modes(runs)]
+
+
+RUNG, BLURRED = (40.0,) * 11, (0.7,) * 11  # of every damping; the second swings, but reversals hide half of it
+
+
+def test_runs_that_ring_down_settle_what_damps_the_wire_where_compensation_is_at_odds():
+    sea = [prepared(Mode(8.0, ratio), groups=2) for ratio in (0.05, 0.07, 0.1, 0.4)]
+    cycles, rigid = [prepared(Mode(8.0, 0.06)) for _ in range(6)], prepared(Mode(8.0, 0.0), groups=2)
+    assert damped(sea) == [0.0] * 4
+    assert damped([*sea, *cycles]) == pytest.approx([0.06] * 10)
+    assert damped([*sea[:1], rigid, rigid, *cycles]) == [0.0] * 9
+    unsure = prepared(Mode(8.0, 0.0), BLURRED, groups=2)
+    assert damped([*sea[:1], unsure, unsure, *cycles]) == pytest.approx([0.06] * 9)
 
 
 def test_a_mode_that_is_damped_like_a_filter_falls_where_other_runs_deny_it():
     """A rigid wire: in heave compensation the mode takes a motion sensor's noise out, other runs would ring by it."""
+    sea = [prepared(Mode(6.0, ratio), groups=2, dt=0.01) for ratio in (0.3, 0.36, 0.4)]
+    rung, blurred = (prepared(Mode(6.0, 0.0), left, dt=0.01) for left in (RUNG, BLURRED))
+    assert damped([*sea, rung, rung, rung]) == [0.0] * 6
+    assert min(damped([*sea, blurred, blurred, blurred])) > 0.2
+    assert min(damped([*sea, rung])) > 0.2  # one alone may have another cause
 
-    def run(groups, ratio, left):
-        return SimpleNamespace(
-            groups=[None] * groups, wire_mode=Mode(6.0, ratio), load=np.full(3, 5e4), dt=0.01, swing_left=left
-        )
 
-    sea = [run(2, ratio, ()) for ratio in (0.3, 0.36, 0.4)]
-    rung, blurred = (40.0,) * 11, (0.7,) * 11
-    assert [each[1] for each in _agreed_modes([*sea, *(run(1, 0.0, rung) for _ in range(3))])] == [0.0] * 6
-    assert min(each[1] for each in _agreed_modes([*sea, *(run(1, 0.0, blurred) for _ in range(3))])) > 0.2
-    assert min(each[1] for each in _agreed_modes([*sea, run(1, 0.0, rung)])) > 0.2  # one alone may have another cause
+def test_what_swings_in_all_of_heave_compensation_outweighs_runs_that_hardly_move_the_motors():
+    """A motion sensor's noise rings on the computed wire of light loads, and damps that of others like a filter."""
+    swings, filtered = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6), (1.5, 1.0, 0.8, 0.6, 0.5, *[0.4] * 6)
+    heavy = [prepared(Mode(3.0, 0.05), swings, groups=2)] * 3
+    others = [prepared(Mode(5.0, 0.4), filtered, groups=2, variance=0.2)] * 2
+    light, loud = ([prepared(Mode(9.0, 0.0), RUNG, groups=2, variance=v)] * 3 for v in (1e-3, 1.0))
+    assert damped([*heavy, *others, *light]) == pytest.approx([0.05] * 8, rel=0.11)
+    assert damped([*heavy, *others, *loud]) == [0.0] * 8
 
 
 def test_a_run_that_cannot_tell_has_a_wire_that_follows_its_length_unless_the_others_deny_it():
-    def run(ratio, follows):
-        mode = Mode(8.0, ratio, follows)
-        return SimpleNamespace(groups=[None], wire_mode=mode, load=np.full(3, 5e4), dt=0.05, swing_left=(0.7,) * 11)
-
-    untold = [run(0.0, None)] * 2
+    untold = [prepared(Mode(8.0, 0.0), BLURRED)] * 2
     for told, expected in (([True] * 5, True), ([None] * 5, True), ([False] * 4 + [True], False)):
-        modes = _agreed_modes([*(run(0.06, each) for each in told), *untold])
+        modes = _agreed_modes([*(prepared(Mode(8.0, 0.06, each), BLURRED) for each in told), *untold])
         assert [each.follows for each in modes] == [*told, expected, expected]
         assert [each.damping for each in modes] == pytest.approx([0.06] * 7)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, shared_damping
+from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
     on_the_wire,
@@ -47,6 +47,24 @@ def test_the_swing_is_found_and_taken_out(length):
     assert 0.03 <= swing.mode.damping <= 0.1
     left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * step
     assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
+
+
+@pytest.mark.parametrize(("damping", "noise"), [(0.05, 5.0), (0.0, 100.0)], ids=["swings", "rigid"])
+def test_a_run_says_how_much_may_swing_and_what_of_it_each_damping_leaves(damping, noise):
+    """By these runs are weighed against each other: what a single one takes for its mode is not in it."""
+    stated, rigid = 2.8, motion(TIME)
+    load = on_the_wire(rigid, DT, stated, damping) if damping else rigid
+    own = noise * np.random.default_rng(4).standard_normal(len(TIME))
+    gap = MASS * LEVER * (load - rigid) + own
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    swing = swinging_load(gap, everywhere, rigid, DT, MASS, lever, (stated**2 * MASS,))
+    assert (swing.mode.damping > 0.0) is (damping > 0.0)
+    assert swing.variance == pytest.approx(gap.var(), rel=1e-6)
+    by_ratio = [(gap + MASS * LEVER * (rigid - on_the_wire(rigid, DT, stated, r))).var() for r in DAMPING_RATIOS]
+    assert np.array(swing.left) * swing.variance == pytest.approx(np.array(by_ratio), rel=0.05)
+    if damping:
+        assert DAMPING_RATIOS[int(np.argmin(swing.left))] == damping
+        assert min(swing.left) * swing.variance == pytest.approx(own.var(), rel=0.05)
 
 
 @pytest.mark.parametrize("off", [-0.035, -0.012, 0.0, 0.02])
@@ -193,6 +211,40 @@ def test_runs_that_agree_closely_tell_beside_others_that_seem_damped_otherwise(a
     apart = [(5.0, ratio, 1e5) for ratio in (0.11, 0.2, 0.29, 0.43, 0.016, 0.6)]
     found = shared_damping([(3.0 + k, 0.05 * (1.0 + 0.02 * k), 2e5) for k in range(alike)] + apart)
     assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.1)
+
+
+SWINGS = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of 0.05
+LIKE_A_FILTER = (1.5, 1.0, 0.8, 0.6, 0.5, *[0.4] * 6)
+ALIKE_BY_ANY = (0.32, *[0.3] * 10)  # a wrong inertia, which swings by no mode
+
+
+@pytest.mark.parametrize(("light", "heavy", "expected"), [
+    (0.1, SWINGS, 0.05),  # what hardly swings says little, and a noisy motion sensor rings on a computed wire as well
+    (9.0, SWINGS, None),  # the rigid ones swing most
+    (0.1, [0.4 + share for share in SWINGS], None),  # it leaves more than a single run may
+    (0.1, LIKE_A_FILTER, None),
+    (0.1, ALIKE_BY_ANY, None),
+])  # fmt: skip
+def test_all_runs_together_tell_the_damping_where_votes_are_at_odds(light, heavy, expected):
+    """Heave compensation alone: light loads are computed to ring by the noise of the sea, some heavy ones seem damped
+    like a filter."""
+    modes = [(3.0, 0.05, 1e5)] * 4 + [(5.0, 0.4, 6e4)] * 2 + [(9.0, 0.0, 1e4)] * 3
+    left = [heavy] * 4 + [LIKE_A_FILTER] * 2 + [(3.0, *[2.0] * 10)] * 3
+    assert shared_damping(modes, left) is None
+    found = pooled_damping(modes, left, [1.0] * 4 + [0.2] * 2 + [light] * 3)
+    assert (found is None) if expected is None else found(3.0, 1e5) == pytest.approx(expected, rel=0.11)
+
+
+def test_one_damper_for_all_runs_is_told_from_one_ratio():
+    """By one damper the ratio is the larger the lighter the load: the grid of a run's shares tells at which."""
+    modes = [(np.sqrt(1e6 / mass), 0.0, mass) for mass in (2e4, 4e4, 8e4, 1.6e5)]
+    damper = 0.04 * 2.0 * np.sqrt(1e6 * 4e4)  # N s/m
+    own = [damper / (2.0 * frequency * mass) for frequency, _, mass in modes]
+    left = [tuple(np.minimum(0.05 + np.log(np.array(DAMPING_RATIOS) / ratio) ** 2, 1.0)) for ratio in own]
+    found = pooled_damping(modes, left, [1.0] * 4)
+    assert [found(frequency, mass) for frequency, _, mass in modes] == pytest.approx(own, rel=0.15)
+    assert pooled_damping(modes[:3], left[:3], [1.0] * 3) is None  # three may be chance
+    assert pooled_damping(modes, [()] * 4, [1.0] * 4) is None
 
 
 def test_a_light_load_leaves_as_much_with_a_swing_as_without_and_a_heavy_one_on_a_rigid_wire_far_more():

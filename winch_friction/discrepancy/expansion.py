@@ -12,7 +12,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, shared_damping
+from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.corrections import corrected
@@ -130,15 +130,19 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
 
     All share what damps it. If most runs that can tell agree on that closely, it is that, unless most of heave
     compensation denies it: friction at reversals blurs a swing there, but does not take it away. A run whose load is
-    too light to show a swing has no vote. If they do not, heave compensation decides, which excites the mode
-    throughout; and where a sparse log leaves those runs at odds, the kicks of the others, which ring down, have a say.
+    too light to show a swing has no vote. If they do not, what swings in all of them together may tell. If it does not
+    either, heave compensation decides, which excites the mode throughout; and where a sparse log leaves those runs at
+    odds, the kicks of the others, which ring down, have a say.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
-    ratio = shared_damping([(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_left for run in able])
+    modes, left = [(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_left for run in able]
+    ratio = shared_damping(modes, left)
     told = [run for run in compensating if _slow(run, TOLD)]
     if ratio is not None and 2 * sum(_denied(run, ratio) for run in told) > len(told):
         ratio = None
+    if ratio is None:
+        ratio = pooled_damping(modes, left, [run.swing_variance for run in able])
     swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]

@@ -1,6 +1,7 @@
 """From a measured run to what every candidate reads."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
@@ -10,7 +11,7 @@ from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
 from winch_friction.discrepancy.preparation.motion import Motion, motion_of
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
-from winch_friction.discrepancy.preparation.wire_mode import Mode, settling_time, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -57,7 +58,8 @@ def prepare(
     grid = uniform(run)
     motion = motion_of(grid, crane, run.name, turning)
     balancing = Balancing(run, crane, model, grid, motion, accounted or Accounted())
-    mode, left, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
+    swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
+    mode = swing.mode
     used = motion.used & _settled(grid, mode) & balancing.known & _followed(grid, motion, hanging, balance, crane, mode)
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
@@ -66,7 +68,8 @@ def prepare(
         acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
         drum_torque=hanging.drum_torque,
-        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode, swing_left=left,
+        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
+        swing_left=swing.left, swing_variance=swing.variance / balance.unit_torque**2,
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
@@ -77,25 +80,25 @@ def prepare(
     )  # fmt: skip
 
 
-def _on_wire(
-    balancing: Balancing, load: SuspendedLoad, mode: Mode | None
-) -> tuple[Mode, tuple[float, ...], SuspendedLoad, Balance]:
+def _on_wire(balancing: Balancing, load: SuspendedLoad, mode: Mode | None) -> tuple[Swing, SuspendedLoad, Balance]:
     """The wire's mode, looked for unless given, what others would leave, the load behind it and the balance with it."""
     if mode is None:
         rigid = balancing.of(load)
-        mode, left = _wire_mode(balancing, load, rigid)
-        if mode.damping <= 0.0:
-            return mode, left, load, rigid
-    hanging = load.on_wire(balancing.grid.dt, mode, balancing.grid.columns.get("wire_out"))
-    return mode, (), hanging, balancing.of(hanging)
+        swing = _wire_mode(balancing, load, rigid)
+        if swing.mode.damping <= 0.0:
+            return swing, load, rigid
+    else:
+        swing = Swing(load.acceleration, mode)
+    hanging = load.on_wire(balancing.grid.dt, swing.mode, balancing.grid.columns.get("wire_out"))
+    return swing, hanging, balancing.of(hanging)
 
 
-def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tuple[Mode, tuple[float, ...]]:
+def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> Swing:
     """Frequency and damping of the load's swinging, where the wire's stiffness is known, and what other dampings would
-    leave where nothing swings."""
+    leave."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
-        return Mode(0.0, 0.0), ()
+        return Swing(load.acceleration, Mode(0.0, 0.0))
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
     swing = swinging_load(
@@ -104,8 +107,8 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> tup
         length=columns.get("wire_out"),
     )  # fmt: skip
     if "wire_out" in columns and swing.mode.damping <= 0.0:
-        return Mode(float(np.sqrt(stiffnesses[0] / mass)), 0.0), swing.left
-    return swing.mode, swing.left
+        return replace(swing, mode=Mode(float(np.sqrt(stiffnesses[0] / mass)), 0.0))
+    return swing
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:

@@ -45,7 +45,8 @@ class PreparedRun:
     point: tuple[Any, ...]
     gap: FloatArray
     wire_mode: Mode  # of the load on its wire
-    swing_left: tuple[float, ...]  # share of the gap that a swing of each damping ratio would leave, of a rigid wire
+    swing_left: tuple[float, ...]  # share of what may swing that a swing of each damping ratio would leave
+    swing_variance: float  # of what may swing, in the gap's unit squared; 0 where the mode was given
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane

@@ -51,13 +51,15 @@ class Mode(NamedTuple):
 class Swing:
     """Load acceleration m/s^2 with the wire's mode.
 
-    `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at the stated frequency;
-    empty where none is stated, or the samples cannot follow it.
+    `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at its own or else at the
+    stated frequency; empty where none is stated, or the samples cannot follow it. `variance` is that of all that may
+    swing, (N m)^2.
     """
 
     acceleration: FloatArray
     mode: Mode
     left: tuple[float, ...] = ()
+    variance: float = 0.0
 
 
 def swinging_load(
@@ -98,11 +100,10 @@ def swinging_load(
             tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
             own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
-            return Swing(on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own]), mode)
-    stated = frequencies if len(frequencies) == 1 else ()
-    return Swing(
-        rigid, Mode(0.0, 0.0), tuple(judge.left(first, each, ratio) for each in stated for ratio in DAMPING_RATIOS)
-    )
+            moved = on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own])
+            return Swing(moved, mode, judges[own].by_damping(first, mode.frequency), judge.swinging(first))
+    left = judge.by_damping(first, frequencies[0]) if len(frequencies) == 1 else ()
+    return Swing(rigid, Mode(0.0, 0.0), left, judge.swinging(first))
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
@@ -198,6 +199,14 @@ class _Judge:
             changed = self._gap + self._levelled(self._change(frequency, ratio))
             self._seen[frequency, ratio] = self._components(changed)
         return self._variance(parts, self._seen[frequency, ratio]) / self._variance(parts, self._rigid)
+
+    def by_damping(self, parts: int, frequency: float) -> tuple[float, ...]:
+        """The shares that a mode of each of `DAMPING_RATIOS` leaves."""
+        return tuple(self.left(parts, frequency, ratio) for ratio in DAMPING_RATIOS)
+
+    def swinging(self, parts: int) -> float:
+        """The variance of which these are shares."""
+        return self._variance(parts, self._rigid)
 
     def _variance(self, parts: int, components: tuple[float, FloatArray]) -> float:
         square, along = components

@@ -63,6 +63,10 @@ def edited(change):
         (lambda d: d["terms"].append("viscous"), "different term names"),
         (lambda d: d.update(schema="winch_friction.model/9"), "schema"),
         (lambda d: d.update(colour="red"), "unknown key 'colour'"),
+        (
+            lambda d: d["constants"].update(gear_ratoi=d["constants"].pop("gear_ratio")),
+            "unknown key 'gear_ratoi'; did you mean gear_ratio",
+        ),
         (lambda d: d.update(correlation=[[1.0]]), "correlation must be 10 x 10"),
         (lambda d: d.update(parameters=None), "expected a mapping"),
     ],

@@ -155,6 +155,8 @@ def _constants(top: Section) -> dict[str, float]:
     if "constants" not in top:
         return {}
     section = top.section("constants")
+    for each in CONSTANTS:
+        section.get(each.name)  # known, whether this file has it or not
     values = {each.name: section.quantity(each.name, each.unit) for each in CONSTANTS if each.name in section}
     section.close()
     return values

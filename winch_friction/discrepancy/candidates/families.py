@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from winch_friction.discrepancy.candidates import friction
-from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes, label_of
+from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes
 from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, term_columns
 from winch_friction.discrepancy.candidates.speeds_seen import POSSIBLE
 from winch_friction.discrepancy.engine import FloatArray
@@ -48,9 +48,9 @@ def literature() -> list[Candidate]:
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
-        wear("wear_saturating", shapes=_lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
-        wear("wear_sudden", shapes=_between_runs),
-        wear("wear_logarithmic", shapes=_lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
+        wear("wear_saturating", shapes=friction.lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
+        wear("wear_sudden", shapes=friction.between_runs),
+        wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
         _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, 1.0)},
@@ -72,6 +72,10 @@ def literature() -> list[Candidate]:
         # of shorter films Stribeck's curve speaks
         _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=friction.no_load, continuous=()),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=friction.no_load),
+        _of("gear_load_loss", "gear_load_saturating", shapes=friction.loads("T_gs"), continuous=("T_gs",),
+            blind=friction.no_load),
+        _of("sheave_bending", "sheave_saturating", shapes=friction.loads("T_ss"), continuous=("T_ss",),
+            presumes=("gear_load_loss",), blind=friction.no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
@@ -99,24 +103,6 @@ def _possible(possible: Possible, shapes: Shapes, runs: Sequence[PreparedRun]) -
 
 def _positive(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
     return [replace(shape, bounds=(0.0, FAR)) for shape in shapes(runs)]
-
-
-def _lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
-    """Drifts from the first run on whose time is a share of the observed time."""
-
-    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-        begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
-        found = [{start: begin, lag: max((end - begin) * share, 1.0)} for share in shares]
-        return [Shape(label_of(values), values) for values in found]
-
-    return shapes
-
-
-def _between_runs(runs: Sequence[PreparedRun]) -> list[Shape]:
-    """Every instant between two runs, with at least two on either side: one run alone is no change of the machine."""
-    ends = sorted((run.start, run.start + float(run.time[-1])) for run in runs)
-    between = [0.5 * (a[1] + b[0]) for a, b in itertools.pairwise(ends)]
-    return [Shape(label_of({"t_wd": at}), {"t_wd": at}) for at in between[1:-1]]
 
 
 # -- free members

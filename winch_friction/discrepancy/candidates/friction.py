@@ -21,6 +21,7 @@ COULOMB = ("coulomb", "motor_coulomb")
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 BRISTLE_TRAVEL = (0.009, 0.02, 0.04, 0.09)  # rad of the shaft, 0.5 to 5 degrees
 AT_ONCE = 16384  # samples: what an equation makes on the way is then 128 KB a piece, and stays in the processor's cache
+SATURATED = (0.1, 0.3)  # of the largest load: less is Coulomb friction in all runs, more is in proportion to it
 LOADS_APART = 1.3  # times the least load, for a law of the load to have a shape
 TYPICAL_DRUM_TORQUE = 4e5  # N m, to weigh the two coefficients of a Stribeck curve
 
@@ -138,6 +139,34 @@ def _observed_time(runs: Sequence[PreparedRun]) -> list[Shape]:
         Shape("since well before the first run", {"t_w": begin - 0.5 * span, "tau_w": span}),
         Shape("since long before the first run", {"t_w": begin - span, "tau_w": span}),
     ]
+
+
+def lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
+    """Drifts from the first run on whose time is a share of the observed time."""
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
+        found = [{start: begin, lag: max((end - begin) * share, 1.0)} for share in shares]
+        return [Shape(label_of(values), values) for values in found]
+
+    return shapes
+
+
+def loads(name: str) -> Shapes:
+    """Drum torques N m as shares of the largest that was run."""
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        top = max(max(float(np.max(run.drum_torque)) for run in runs), 1.0)
+        return [Shape(label_of({name: top * share}), {name: top * share}) for share in SATURATED]
+
+    return shapes
+
+
+def between_runs(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Every instant between two runs, with at least two on either side: one run alone is no change of the machine."""
+    ends = sorted((run.start, run.start + float(run.time[-1])) for run in runs)
+    between = [0.5 * (a[1] + b[0]) for a, b in itertools.pairwise(ends)]
+    return [Shape(label_of({"t_wd": at}), {"t_wd": at}) for at in between[1:-1]]
 
 
 def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:

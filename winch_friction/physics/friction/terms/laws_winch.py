@@ -34,6 +34,10 @@ c_gf = Parameter("c_gf", "N*m", 5.0, upper=200.0, doc="loss per motor at standst
 w_gf = Parameter("w_gf", "rad/s", 100.0, lower=10.0, upper=1e3, shape=True, doc="speed over which its film builds up")
 c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+c_gs = Parameter("c_gs", "N*m", 5.0, upper=200.0, doc="loss per motor at a large load")
+T_gs = Parameter("T_gs", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
+c_ss = Parameter("c_ss", "N*m", 20.0, upper=1e3, doc="loss at a large load")
+T_ss = Parameter("T_ss", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_lb = Parameter("e_lb", "1", 0.01, lower=-0.2, upper=0.2, doc="per layer below, at 500 kN m, share of T_d/i")
@@ -100,6 +104,18 @@ gear_load_film = _system(
     (c_gf, w_gf),
     "a mesh in mixed film: its friction coefficient falls as the oil is drawn in (Niemann and Winter 2003)",
 )
+gear_load_saturating = _system(
+    "gear_load_saturating",
+    c_gs.symbol * (1 - sp.exp(-T_d / T_gs.symbol)),
+    (c_gs, T_gs),
+    "a contact that the load closes: Greenwood and Williamson 1966, until it is complete",
+)
+sheave_saturating = register(
+    Term(
+        "sheave_saturating", c_ss.symbol * (1 - sp.exp(-T_d / T_ss.symbol)), (c_ss, T_ss), Scope.SHAFT,
+        "the same between wires, which slip no more once the rope is taut", "gear and drum",
+    )
+)  # fmt: skip
 sheave_power = register(
     Term(
         "sheave_power", c_sp.symbol * LOAD_SCALE / gear_ratio * _load**n_sp.symbol, (c_sp, n_sp), Scope.SHAFT,

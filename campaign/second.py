@@ -1,12 +1,12 @@
 """The campaign on a second independent winch, through the command line alone.
 
-    python -m campaign.second [--only KEY] [--minutes M] [--processes 1] [--draw 3] [--report-only]
+    python -m campaign.second [--only KEY] [--minutes M] [--processes 1] [--draw 38] [--report-only]
 
 Every data set of `campaign/second_rig` is written as CSV files with a crane and a model file into a temporary folder,
 `winch-friction gap` runs on it as a process of its own, and its gap.json is judged; where it named something it runs
 again with the model it wrote. Every finished case is one line of out/campaign_second/results.jsonl; a second call
 carries on where the first ended, and a partial run gives a table that says so. The table goes to
-docs/campaign_second.md. Draws 0 to 3, 27, 31 and 33 to 36 were seen in development.
+docs/campaign_second.md. Draws 0 to 3, 27, 31 and 33 to 37 were seen in development.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from campaign.second_rig.sets import NULL, OUTSIDE  # noqa: E402
 
 RESULTS = Path("out/campaign_second/results.jsonl")
 TABLE = Path("docs/campaign_second.md")
-FIRST_DRAW = 3
+FIRST_DRAW = 38
 LONGEST = 1200.0  # s that a command may take
 LARGEST_SET = 3
 

@@ -39,7 +39,7 @@ def write_table(path: Path, rows: Sequence[Row], draw: int, note: str = "") -> N
         f"* Commit: {', '.join(f'{name} ({n} data sets)' for name, n in commits.items())}",
         f"* Data sets: {len(rows)} of {len(order)} planned"
         f" ({', '.join(f'{n} {kind}' for kind, n in Counter(row['kind'] for row in rows).items())}), draw {draw};"
-        " draws 0 to 3 were seen in development",
+        " draws 0 to 6 were seen in development",
         *([f"* {note}"] if note else []),
         *([f"* Not run: {', '.join(missing)}"] if missing else []),
     ]

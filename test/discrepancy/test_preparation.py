@@ -8,13 +8,14 @@ import pytest
 from gap_rig import runs_with
 
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.preparation.balance import measured_groups, without_error
-from winch_friction.discrepancy.preparation.grid import smooth_between_steps, uniform
+from winch_friction.discrepancy.preparation.balance import without_error
+from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_steps, uniform
 from winch_friction.discrepancy.preparation.motion import motion_of
-from winch_friction.discrepancy.preparation.prepare import _followed
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
+from winch_friction.discrepancy.preparation.prepare import _followed, prepare
+from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.discrepancy.regressors import least_noise_of
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import Run
 
@@ -181,3 +182,44 @@ def test_a_displacement_that_is_set_anew_is_followed_and_a_steady_one_smoothed(n
     assert np.abs(found - true).max() < 0.01 + 5.0 * noise  # smoothed over the widest window it is 0.06 off at 5 Hz
     steady = time < 90.0
     assert np.std(found[steady] - true[steady]) <= 0.4 * noise + 1e-12
+
+
+def test_what_was_seen_of_a_run_serves_for_another_model_and_changes_nothing(crane_150t, crane2_model):
+    runs = runs_with(917, "quiet", length=0.3)
+    given = meet(runs, crane_150t, crane2_model)
+    softer = crane2_model.with_values([0.8 * value for value in crane2_model.values])
+    for run, old in zip(given.runs, given.prepared, strict=True):
+        again = prepare(run, crane_150t, softer, mode=old.wire_mode, spikes=old.spikes, seen=old.seen)
+        afresh = prepare(run, crane_150t, softer, mode=old.wire_mode, spikes=old.spikes)
+        assert again.seen is old.seen
+        assert afresh.seen is not old.seen
+        np.testing.assert_array_equal(again.gap, afresh.gap)
+        np.testing.assert_array_equal(again.jacobian, afresh.jacobian)
+    run, other, old = given.runs[0], given.runs[1], given.prepared[0]
+    assert prepare(other, crane_150t, softer, seen=old.seen).seen is not old.seen, "another run"
+    assert prepare(run, crane_150t, softer, turning=True, seen=old.seen).seen is not old.seen, "seen in another way"
+    other_gear = replace(crane_150t, gear_ratio=200.0)
+    assert prepare(run, other_gear, softer, seen=old.seen).seen is not old.seen, "a drum's speed is another then"
+
+
+def test_only_runs_that_a_model_is_fitted_to_tell_what_its_corrections_change(crane_150t, crane2_model):
+    runs = runs_with(917, "quiet", length=0.3)
+    model = replace(crane2_model, corrections=(Correction("inertia", 0.02, std=0.02),))
+    names = [run.name for run in runs[:2]]
+    every, some, none = (meet(runs, crane_150t, model, fitted).prepared for fitted in (None, names, ()))
+    assert [run.corrections.shape[1] for run in every] == [1] * len(runs)
+    assert [run.corrections.shape[1] for run in some[:2]] == [1, 1]
+    np.testing.assert_array_equal(some[0].corrections, every[0].corrections)
+    assert not any(run.corrections.shape[1] or run.seen for run in (*some[2:], *none))
+    for own, alone in zip(every, none, strict=True):
+        np.testing.assert_array_equal(own.gap, alone.gap)
+
+
+@pytest.mark.parametrize("samples", [7, 59, 61, 63, 121, 301])
+def test_a_wide_window_smooths_as_a_narrow_one_does(samples):
+    """A parabola stays as it is, and elsewhere each value is the parabola's through the samples around it."""
+    time = np.linspace(-1.0, 1.0, 400)
+    np.testing.assert_allclose(smooth(3.0 + time - 2.0 * time**2, samples), 3.0 + time - 2.0 * time**2, atol=1e-12)
+    rough = np.random.default_rng(1).standard_normal(400)
+    own = np.polynomial.Polynomial.fit(range(samples), rough[200 - samples // 2 :][:samples], 2)
+    assert smooth(rough, samples)[200] == pytest.approx(own(samples // 2), abs=1e-12)

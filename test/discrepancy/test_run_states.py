@@ -96,6 +96,28 @@ def test_two_levels_may_follow_the_load_alike_but_a_law_of_the_load_is_no_level(
         assert np.mean(seeming) < 0.01, spread
 
 
+def test_a_run_of_which_little_is_known_hides_no_two_levels():
+    """A light load says little of a displacement: between the levels of the others its own is no third one."""
+    rng = np.random.default_rng(0)
+    there = np.arange(FULL) % 3 == 0
+    levels, deviations = 3.0 * there + 0.05 * rng.standard_normal(FULL), np.full(FULL, 0.1)
+    levels[1] = 1.4  # half way
+    assert two_levels(levels, deviations) is None
+    deviations[1] = 0.5
+    found = two_levels(levels, deviations)
+    assert [bool(own) for k, own in enumerate(found) if k != 1] == [bool(own) for k, own in enumerate(there) if k != 1]
+    few = np.where(np.arange(FULL) < 2, 3.0, 0.0) + 0.05 * rng.standard_normal(FULL)
+    assert two_levels(few, np.full(FULL, 0.1)) is not None
+    assert two_levels(few, np.where(np.arange(FULL) < 2, 0.5, 0.1)) is None  # both of that level hardly known
+    draws = [np.random.default_rng(seed) for seed in range(500)]
+    for spread in ("standard_normal", "random", "exponential"):
+        seeming = [
+            two_levels(getattr(each, spread)(size=FULL), 0.1 * np.exp(each.standard_normal(FULL))) is not None
+            for each in draws
+        ]
+        assert np.mean(seeming) < 0.01, spread
+
+
 def test_what_a_logged_signal_tells_is_no_state():
     def run(load, mode=("main",), swash=2e-5, layer=0):
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.candidates.signals import (
     scale_columns,
     warm_columns,
 )
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.corrections import straight, unbent
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.units import CM3_PER_REV, RPM

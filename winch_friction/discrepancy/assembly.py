@@ -51,7 +51,7 @@ def tried(split: Split, crane: Crane, options: GapOptions, search: Search, rng: 
     search = placed(search, split)
     repaired = draft(search, search.explanation, _provenance(split.train, search.verdict, options))
     repaired = polished(repaired, search.given.model, split.runs, split.train, crane)
-    after = meet(split.runs, crane, read_back(repaired.model))
+    after = meet(split.runs, crane, read_back(repaired.model), ())
     sides = (compare(search.given, after, names, rng) for names in (split.train, split.holdout))
     return Trial(search, repaired, *sides)
 

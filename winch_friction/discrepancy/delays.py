@@ -36,7 +36,7 @@ def without_delay(
     for shape in shapes:
         delay = shape.values["delay"]
         model = replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
-        for old, new in zip(given.prepared, meet(given.runs, given.crane, model).prepared, strict=True):
+        for old, new in zip(given.prepared, meet(given.runs, given.crane, model, ()).prepared, strict=True):
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             columns[old.name, delay] = (old.gap - gap)[:, None] / delay
     return [

@@ -1,6 +1,6 @@
 """Runs prepared around a point: the seed model, or the best explanation so far."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -60,8 +60,12 @@ class Given:
         return replace(self, runs=tuple(run for run, _ in pairs), prepared=tuple(own for _, own in pairs))
 
 
-def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
-    """Measured runs as this model sees them; `InputError` for runs that lack what balance or corrections need."""
+def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel, fitted: Collection[str] | None = None) -> Given:
+    """Measured runs as this model sees them; `InputError` for runs that lack what balance or corrections need.
+
+    What the model's corrections would change is told of the `fitted` runs, of all unless given: each costs a
+    preparation, and a gap that is only looked at needs none.
+    """
     right, own_crane = _corrected(runs, crane, model)
     loads = estimated_loads(right, own_crane, model)
     prepared = [prepare(run, own_crane, model, loads.get(run.name, NAN)) for run in right]
@@ -69,10 +73,11 @@ def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
     agreed = tuple(
         before
         if before.wire_mode == mode
-        else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes)
+        else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes, seen=before.seen)
         for run, before, mode in zip(right, prepared, modes, strict=True)
     )
-    return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed))
+    names = [run.name for run in runs] if fitted is None else fitted
+    return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed, names))
 
 
 def swings(given: Given) -> bool:
@@ -85,7 +90,8 @@ def as_rigid(given: Given) -> Given:
 
     def rigid(run: Run, old: PreparedRun) -> PreparedRun:
         load = given.loads.get(run.name, NAN)
-        new = prepare(run, given.crane, given.model, load, mode=Mode(old.wire_mode[0], 0.0), spikes=old.spikes)
+        mode = Mode(old.wire_mode[0], 0.0)
+        new = prepare(run, given.crane, given.model, load, mode=mode, spikes=old.spikes, seen=old.seen)
         return replace(new, corrections=old.corrections)
 
     pairs = zip(given.runs, given.prepared, strict=True)
@@ -98,21 +104,27 @@ def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple
 
 
 def with_corrections(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: Mapping[str, float], prepared: Sequence[PreparedRun]
-) -> tuple[PreparedRun, ...]:
-    """Prepared runs with what each of the model's corrections would change in their gap, by small steps of it."""
+    runs: Sequence[Run], crane: Crane, model: FrictionModel, loads: Mapping[str, float],
+    prepared: Sequence[PreparedRun], names: Collection[str],
+) -> tuple[PreparedRun, ...]:  # fmt: skip
+    """Prepared runs; those of these names with what each of the model's corrections would change in their gap, by small
+    steps of it."""
     columns: list[list[FloatArray]] = [[] for _ in prepared]
     for k, one in enumerate(model.corrections):
         step, moved = _moved(one)
         others = (*model.corrections[:k], moved, *model.corrections[k + 1 :])
         right, own_crane = _corrected(runs, crane, replace(model, corrections=others))
         for own, run, old in zip(columns, right, prepared, strict=True):
+            if run.name not in names:
+                continue
             load = loads.get(run.name, NAN)
             new = prepare(run, own_crane, model, load, mode=old.wire_mode, spikes=np.zeros(1, bool))
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             own.append((old.gap - gap) / step)
     return tuple(
         replace(run, corrections=np.column_stack([np.empty((len(run.time), 0)), *own]))
+        if run.name in names
+        else replace(run, seen=None)
         for run, own in zip(prepared, columns, strict=True)
     )
 
@@ -197,7 +209,7 @@ def expand_around(
         known = accounted(old, before.layout, explanation)
         spikes = np.zeros_like(old.spikes) if turning else old.spikes
         load = given.loads.get(run.name, NAN)
-        new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes)
+        new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes, old.seen)
         prepared.append(replace(new, corrections=old.corrections).sharing(old))
     return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
 

@@ -198,12 +198,12 @@ def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: S
     shrink the gap are not taken. The covariance is the last fit's, wider where more than noise is left.
     """
     best = drafted
-    now = meet(runs, crane, best.model).only(train)
+    now = meet(runs, crane, best.model, train).only(train)
     prior, loose = _prior(drafted, seed)
     for _ in range(LIMITS.polishing):
         step, covariance, deviations = _step(now, prior, loose)
         tried = _stepped(best.model, step, covariance, deviations)
-        new = meet(runs, crane, tried).only(train)
+        new = meet(runs, crane, tried, train).only(train)
         if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
             # no better, but the uncertainty is this fit's all the same
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))

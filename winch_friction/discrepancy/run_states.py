@@ -31,6 +31,7 @@ SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay",
 NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
 NUMBERED = ("wire_layer",)  # whose values are names: the middle one may be wrong
 THEN = "_then"  # behind the name of a parameter that is there for a time
+FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
 MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
 
 Windows = tuple[tuple[float, float], ...]
@@ -185,19 +186,25 @@ def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | N
     """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
     two runs each; None where they do not. What is NaN belongs to neither and is not there.
 
-    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does.
+    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does. A value
+    counts the less the larger its deviation is beside the usual one: of a light load little is known of a displacement.
     """
     known = np.flatnonzero(np.isfinite(levels))
     if len(known) < LIMITS.fewest_levels:
         return None
     order = known[np.argsort(levels[known])]
     load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
+    usual = float(np.median(deviations[known]))
+    weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
     parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
-    fits = [(_two_lines(levels, load, low, high), low, high) for low, high in parts]
+    parts = [each for each in parts if min(weights[part].sum() for part in each) >= FEWEST_OF_A_LEVEL]
+    fits = [(_two_lines(levels, load, weights, low, high), low, high) for low, high in parts]
+    if not fits:
+        return None
     (within, slope), low, high = min(fits, key=lambda fit: fit[0][0])
-    within /= len(order) - (2 if loads is None else 3)
-    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * float(np.median(deviations[known])))
-    centres = [float((levels[part] - slope * load[part]).mean()) for part in (low, high)]
+    within /= max(float(weights[order].sum()) - (2 if loads is None else 3), 1.0)
+    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * usual)
+    centres = [float(np.average(levels[part] - slope * load[part], weights=weights[part])) for part in (low, high)]
     apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
     if centres[1] - centres[0] < apart * spread:
         return None
@@ -206,12 +213,17 @@ def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | N
     return there
 
 
-def _two_lines(values: FloatArray, load: FloatArray, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
-    """Sum of squares about two levels that share a slope over the load, and that slope."""
-    own = np.concatenate([load[part] - load[part].mean() for part in (low, high)])
-    off = np.concatenate([values[part] - values[part].mean() for part in (low, high)])
-    slope = float(own @ off) / max(float(own @ own), 1e-300)
-    return float(((off - slope * own) ** 2).sum()), slope
+def _two_lines(
+    values: FloatArray, load: FloatArray, weights: FloatArray, low: np.ndarray, high: np.ndarray
+) -> tuple[float, float]:
+    """Weighted sum of squares about two levels that share a slope over the load, and that slope."""
+    own, off = (
+        np.concatenate([each[part] - np.average(each[part], weights=weights[part]) for part in (low, high)])
+        for each in (load, values)
+    )
+    weight = weights[np.concatenate([low, high])]
+    slope = float(own @ (weight * off)) / max(float(own @ (weight * own)), 1e-300)
+    return float(weight @ (off - slope * own) ** 2), slope
 
 
 def _of_the_drive(run: PreparedRun) -> dict[str, FloatArray]:

@@ -11,8 +11,9 @@ import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.grammar import Factor
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.recursion import lagged
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 
 QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 LAGS = (3.0, 10.0, 30.0, 90.0)  # s

@@ -94,7 +94,7 @@ def _without_swing(
     search = replace(search, given=given)
     other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
-    return other if named and not swings(meet(split.runs, crane, other.repaired.model)) else trial
+    return other if named and not swings(meet(split.runs, crane, other.repaired.model, ())) else trial
 
 
 def _check(runs: Sequence[Run], options: GapOptions) -> None:

@@ -20,7 +20,8 @@ from winch_friction.discrepancy.candidates.signals import (
     scale_columns,
 )
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 

@@ -17,7 +17,8 @@ from winch_friction.discrepancy.candidates.signals import (
     warm_columns,
 )
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 from winch_friction.physics.units import CM3_PER_REV

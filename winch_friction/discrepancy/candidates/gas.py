@@ -7,8 +7,9 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.recursion import lagged
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 

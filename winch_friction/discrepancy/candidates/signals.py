@@ -21,7 +21,8 @@ from winch_friction.discrepancy.candidates.candidate import (
     correction,
 )
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals, PreparedRun
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter

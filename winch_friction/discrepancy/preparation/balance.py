@@ -4,19 +4,18 @@ Regressors are never built from the noisy pressure that is being explained: the 
 balance is predicted, only the passive group's is measured, smoothed.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, dilated, noise_level, smooth, smooth_between_steps
+from winch_friction.discrepancy.preparation.grid import Grid, dilated
 from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
-from winch_friction.discrepancy.preparation.prepared_run import GroupSignals
+from winch_friction.discrepancy.preparation.seen import SPARSE, Groups, GroupSignals, Seen
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
-from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
@@ -24,51 +23,12 @@ from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.torque_balance import hydraulic_torque
 
-SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
 MOST_OF_STROKE = 0.5  # of a displacement, that an error may be of it: far more than any feedback is off
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent
 # least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
 SHOWS = 1.5
-MIN_DISPLACEMENT_SHARE = 0.05
-BALANCING = ("active", "main")  # the groups that close the balance where they run
 FIXED_POINT_STEPS = 3
 OPTIONAL = ("oil_temperature", "wire_layer", "wire_out")
-CHANNELS = ("pressure_a", "pressure_b", "displacement")
-
-Groups = tuple[GroupSignals, ...]
-
-
-def measured_groups(columns: Mapping[str, FloatArray], run: Run, crane: Crane, window: int) -> Groups:
-    """All groups with their smoothed pressures; `InputError` where one lacks a channel or has no displacement."""
-    names = run.groups
-    if not names:
-        raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
-    balancing = next((name for name in BALANCING if name in names), names[0])
-    return tuple(_measured(columns, run, crane, name, name == balancing, window) for name in names)
-
-
-def _measured(
-    columns: Mapping[str, FloatArray], run: Run, crane: Crane, name: str, balances: bool, window: int
-) -> GroupSignals:
-    for channel in CHANNELS:
-        if f"{name}.{channel}" not in columns:
-            raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
-    a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
-    fed_back = columns[f"{name}.displacement"]
-    displacement = smooth_between_steps(fed_back, window, 5 * window)
-    steady = float(np.median(displacement))
-    if np.std(displacement) <= noise_level(fed_back):  # the feedback's noise alone: the motors are set and stay
-        displacement = np.full(len(displacement), steady)
-    if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
-        raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
-    drop, total, low = (smooth(each, 2 * window) for each in (a - b, a + b, np.minimum(a, b)))
-    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop)
-
-
-def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:
-    """Measured torque of all motors at the shaft, N m, from the pressures as they were logged."""
-    drops = (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups)
-    return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
 
 
 def without_error(groups: Groups, error: FloatArray | float, of_stroke: FloatArray | float = 0.0) -> Groups:
@@ -145,9 +105,18 @@ class Balancing:
     run: Run
     crane: Crane
     model: FrictionModel
-    grid: Grid
-    motion: Motion
+    seen: Seen
     accounted: Accounted
+
+    @property
+    def grid(self) -> Grid:
+        """The run's columns on a uniform time."""
+        return self.seen.grid
+
+    @property
+    def motion(self) -> Motion:
+        """How the shaft moves."""
+        return self.seen.motion
 
     def of(self, load: SuspendedLoad) -> Balance:
         """The balance with this load; raises `InputError` where the run lacks what closes it."""
@@ -159,7 +128,7 @@ class Balancing:
         stood = balance if known.model is self.model else self._as_simulated(known, load)
         error = simulated_error(self.grid.columns, self.run, balance.groups, self.crane, load.radius)
         error = error + displacement_error(self.grid.columns, balance.groups, stood.groups)
-        off = self._smoothed(error)
+        off = self.seen.smoothed(error)
         return replace(balance, measured=stood.predicted + off, simulated=balance.measured - off)
 
     def _as_simulated(self, known: Stood, load: SuspendedLoad) -> Balance:
@@ -169,7 +138,8 @@ class Balancing:
         told = load_of(known.grid, self.motion, known.crane, float(np.median(load.mass)))
         moved = load.acceleration + (told.lever - load.lever) * self.motion.acceleration
         hung = told if told.tension_measured else replace(told, acceleration=moved, heave=load.heave)
-        return replace(self, run=known.run, crane=known.crane, model=known.model, grid=known.grid)._modelled(hung)
+        seen = Seen(known.run, known.crane, self.seen.turning, known.grid, self.motion)
+        return replace(self, run=known.run, crane=known.crane, model=known.model, seen=seen)._modelled(hung)
 
     def _modelled(self, load: SuspendedLoad) -> Balance:
         inertial = self.crane.inertia * self.motion.acceleration + load.inertial_torque
@@ -183,11 +153,11 @@ class Balancing:
         point = self._point(load, ())
         states = self._states(point, 0)
         predicted = frictionless + self.model.torque(point, states)
-        measured = self._smoothed(_filled(self._logged_torque))
+        measured = self.seen.smoothed(_filled(self._logged_torque))
         return Balance(measured, predicted, (), point, states, self.model.jacobian(point, states), float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
-        groups, measured = self._measured
+        groups, measured = self.seen.measured
         groups = without_error(groups, self.accounted.passive_error, self.accounted.passive_stroke_error)
         predicted = frictionless
         for _ in range(FIXED_POINT_STEPS):
@@ -198,12 +168,6 @@ class Balancing:
         own = next(g for g in groups if g.balances)
         unit = BAR * own.count * float(np.median(own.displacement))
         return Balance(measured, predicted, groups, point, states, self.model.jacobian(point, states), unit)
-
-    @cached_property
-    def _measured(self) -> tuple[Groups, FloatArray]:
-        """Groups with their measured pressures and the drive torque that these make, whatever the load does."""
-        groups = measured_groups(self.grid.columns, self.run, self.crane, self.motion.window)
-        return groups, self._smoothed(drive_torque(self.grid.columns, groups))
 
     @cached_property
     def _logged_torque(self) -> FloatArray:
@@ -220,16 +184,6 @@ class Balancing:
 
     def _states(self, point: tuple[Any, ...], groups: int) -> tuple[FloatArray, ...]:
         return model_states(self.model, point, groups, self.grid.dt)
-
-    def _smoothed(self, torque: FloatArray) -> FloatArray:
-        """With the acceleration's kernel: what that takes out of one side must not stay in the other."""
-        smoothed = smooth(torque, self.motion.window)
-        if self.grid.dt < SPARSE:
-            return smoothed
-        # the acceleration is a difference over two periods: the mean over them, which the torque must be as well; by
-        # Simpson's rule, for the trapezium's takes a tenth too much out of a swing of ten samples
-        padded = np.pad(smoothed, 1, mode="edge")
-        return np.asarray((padded[:-2] + 4.0 * padded[1:-1] + padded[2:]) / 6.0)
 
     def _point(self, load: SuspendedLoad, groups: Groups) -> tuple[Any, ...]:
         columns, motion = self.grid.columns, self.motion

@@ -6,10 +6,18 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
 
-from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
-from winch_friction.discrepancy.preparation.grid import Grid, spikes_of, uniform
-from winch_friction.discrepancy.preparation.motion import Motion, motion_of
+from winch_friction.discrepancy.preparation.balance import (
+    SHOWS,
+    SPARSEST,
+    Accounted,
+    Balance,
+    Balancing,
+    Groups,
+)
+from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
+from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.seen import Seen, see
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -46,18 +54,20 @@ def prepare(
     turning: bool = False,
     mode: Mode | None = None,
     spikes: np.ndarray | None = None,
+    seen: Seen | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
     With what is `accounted` for already, on the run's uniform grid, the pressures that friction is reckoned with come
     close to the true ones. `turning` takes direction and travel from the angle and marks the samples just after
     reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
-    known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given.
+    known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given. What was
+    `seen` of this very run before does not depend on the model and need not be found again.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
-    grid = uniform(run)
-    motion = motion_of(grid, crane, run.name, turning)
-    balancing = Balancing(run, crane, model, grid, motion, accounted or Accounted())
+    seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning)
+    grid, motion = seen.grid, seen.motion
+    balancing = Balancing(run, crane, model, seen, accounted or Accounted())
     swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
     mode = swing.mode
     used = motion.used & _settled(grid, mode) & balancing.known & _followed(grid, motion, hanging, balance, crane, mode)
@@ -76,7 +86,7 @@ def prepare(
         constants=_constants(crane, model), unit_torque=balance.unit_torque,
         used=used & grid.valid & ~spikes,
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
-        channels=channels_of(run, grid, motion, hanging, balance.groups, crane),
+        channels=channels_of(run, grid, motion, hanging, balance.groups, crane), seen=seen,
     )  # fmt: skip
 
 

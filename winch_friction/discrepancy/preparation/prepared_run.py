@@ -6,22 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.preparation.seen import GroupSignals, Seen
 from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.physics.signals import FloatArray
-
-
-@dataclass(frozen=True)
-class GroupSignals:
-    """One motor group along a run: motors, predicted or smoothed |dp|, sum of pressures, displacement; Pa, m^3/rad."""
-
-    name: str
-    count: int
-    pressure: FloatArray  # signed drop
-    pressure_sum: FloatArray
-    low_pressure: FloatArray
-    displacement: FloatArray
-    balances: bool  # closes the torque balance: its pressure is predicted
-    logged: FloatArray  # signed drop as it was measured, smoothed
 
 
 @dataclass(frozen=True)
@@ -60,6 +47,7 @@ class PreparedRun:
     spikes: np.ndarray
     present: frozenset[str]  # columns that the file had; `hook_load` also where a measured force stands for it
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
+    seen: Seen | None = None  # for preparing the same run once more; None where nobody will
 
     @property
     def mode(self) -> tuple[str, ...]:

@@ -79,13 +79,15 @@ def test_reversal_is_spread_over_the_reversal_time():
     assert steps.max() < 0.35 * (torques[60] - torques[-1])  # a sign would do it in one step
 
 
-def test_estimates_the_load_from_the_pressures_when_there_is_no_load_cell():
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+def test_estimates_the_load_from_the_pressures_when_there_is_no_load_cell(scale):
+    """By the whole friction, however little of it is compensated."""
     speed = 100.0
     friction = model_torque(SEED, ahc_sample(0.0, speed), speed)
     held = CRANE.drum_torque(55e3) / CRANE.gear_ratio + friction
     passive = 8 * 215 * CM3_PER_REV * 130 * BAR
     pressure = (held - passive) / (3 * 215 * CM3_PER_REV)
-    each = compensator(scale=1.0, load_filter=1.0)
+    each = compensator(scale=scale, load_filter=1.0)
     outputs, _ = run_up(each, speed=speed, hook_load=math.nan, pressure=pressure, until=20.0)
     assert outputs[-1].drum_torque == pytest.approx(CRANE.drum_torque(55e3), rel=0.01)
 
@@ -101,6 +103,25 @@ def test_never_leaves_the_seed_envelope_nor_the_absolute_limit():
     tight = compensator(absolute_limit=50.0)
     outputs, _ = run_up(tight, speed=-100.0)
     assert outputs[-1].friction_torque == -50.0
+
+
+def test_other_settings_leave_the_envelope_around_the_seed_and_not_around_the_model_in_use():
+    hot = SEED.with_values({"C6": SEED.value("C6") * 1.5, "C1": SEED.value("C1") * 1.5, "K4": SEED.value("K4") * 1.5})
+    each = compensator(scale=1.3)
+    each.load_model(hot)
+    each.configure(CompensatorConfig(scale=1.3, ramp_time=0.2, lead=0.01))
+    outputs, _ = run_up(each)
+    assert outputs[-1].friction_torque == pytest.approx(1.3 * model_torque(SEED, ahc_sample(0.0, 100.0), 100.0))
+
+
+def test_a_narrow_envelope_leaves_the_slew_that_a_reversal_of_the_whole_friction_needs():
+    limits = []
+    for envelope in (0.5, 1.0, 2.0):
+        each = compensator(envelope=envelope, reversal_time=0.5)
+        run_up(each, until=0.1)
+        limits.append(each.status()["slew_limit"])
+    assert limits[0] == pytest.approx(limits[1])
+    assert limits[2] == pytest.approx(2.0 * limits[1])
 
 
 def test_slew_limit_bounds_every_step():
@@ -161,6 +182,7 @@ def test_expiry_fades_the_output_and_changes_nothing():
     last = outputs[-1]
     assert each.expire(last.time + 0.09) is last
     assert each.expire(last.time + 0.2).friction_torque == pytest.approx(0.5 * last.friction_torque)
+    assert each.expire(last.time + 0.2).pressure == pytest.approx(0.5 * last.pressure)
     assert each.expire(last.time + 5.0).friction_torque == 0.0
     twin = compensator(max_age=0.1)
     run_up(twin)
@@ -397,3 +419,14 @@ def test_time_that_a_ramp_has_used_is_not_used_again():
     at, torque = np.array(said).T
     assert np.abs(torque).max() > 100.0
     assert np.all(np.abs(np.diff(torque)) <= 2000.0 * np.maximum(np.diff(at), 1e-3) + 1e-6)
+
+
+def test_a_gap_that_an_age_limit_of_seconds_allows_counts_as_half_a_second_of_fading():
+    """A log of one sample in two seconds: what fades in over four takes eight samples, not two."""
+    output = SafeOutput(absolute=1000.0, slew=1e6, ramp_time=4.0, hold=5.0)
+    faded = []
+    for k in range(4):
+        output.arrive(2.0 * k)
+        output.follow(100.0, math.inf, usable=True, enabled=True)
+        faded.append(output.fade.value)
+    assert faded == pytest.approx([0.0, 0.125, 0.25, 0.375])

@@ -59,3 +59,18 @@ def test_a_load_cell_comes_first_then_the_setting(crane_150t):
     each.learn(balanced(crane_150t, 55e3, 0.0, 0.0), 0.0, 0.0, 0.02)
     assert each.value(Sample(0.0, 0.0, hook_load=30e3)) == crane_150t.drum_torque(30e3)
     assert each.value(Sample(0.0, 0.0)) == crane_150t.drum_torque(40e3)
+
+
+def test_motors_that_are_pulled_hold_no_load_rather_than_less_than_none(crane_150t):
+    """An empty hook and an offset of the transducers: friction of a negative load would drive the winch."""
+    each = DrumTorque(crane_150t, math.nan, 5.0)
+    each.learn(balanced(crane_150t, -5e3, 0.0, 0.0), 0.0, 0.0, 0.02)
+    assert each.value(Sample(0.0, 0.0)) == 0.0
+
+
+def test_a_rope_force_acts_on_the_radius_of_the_layer_in_use(crane_150t):
+    each = DrumTorque(crane_150t, math.nan, 5.0)
+    inner, outer = (each.value(Sample(0.0, 0.0, rope_force=3e5, wire_layer=layer)) for layer in (1.0, math.nan))
+    radii = crane_150t.drum.layer_radii
+    assert inner == pytest.approx(3e5 * radii[0])
+    assert outer == pytest.approx(3e5 * radii[-1])

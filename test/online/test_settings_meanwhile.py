@@ -8,6 +8,7 @@ from sea import PERIOD, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Sample
 
 REVERSAL = 1005.0  # s; the swell's speed passes zero there
 
@@ -186,3 +187,24 @@ def test_slow_stamps_do_not_hold_up_what_pushes_against_the_motion_where_a_rever
         against.look(fed)
     assert against.longest <= 0.3
     check_invariants(fed)
+
+
+@pytest.mark.parametrize("age", [0.2, 4.0])
+def test_an_inputs_own_age_limit_is_the_one_that_was_set_last(age: float) -> None:
+    fed = sailing(REVERSAL + 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, max_age=0.3, max_ages={"hook_load": age}))
+    limit = fed.service.inputs.hold.limit
+    assert limit("hook_load") == age
+    assert limit("wire_layer") == limit("active.pressure_a") == 0.3
+
+
+@pytest.mark.parametrize(("lead", "doubted"), [(0.0, True), (0.4, False)])
+def test_the_command_may_be_ahead_of_the_speed_by_the_lead_that_was_set_last(lead: float, doubted: bool) -> None:
+    fed = sailing(REVERSAL + 1.0)
+    fed.service.configure(CompensatorConfig(ramp_time=0.5, lead=lead))
+
+    def turned(sample: Sample) -> None:
+        sample.speed_reference = -sample.motor_speed
+
+    fed.run(0.3, turned)
+    assert ("speed_reference turns against motor_speed" in fed.service.contradictions) is doubted

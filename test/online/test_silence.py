@@ -6,6 +6,7 @@ import pytest
 from sea import CRANE, PERIOD, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.online.compensator import HEARTBEAT
 from winch_friction.online.options import ServiceOptions
 from winch_friction.records.bag_write import MESSAGES
 
@@ -209,3 +210,17 @@ def test_messages_that_are_none(fed: Fed) -> None:
     assert math.isfinite(fed.torque)
     assert fed.service.inputs.arrivals["winch/reference"].refused == 1
     assert CRANE.absolute_torque_limit == 2000.0
+
+
+def test_zeros_are_repeated_as_long_as_the_silence_lasts(fed: Fed) -> None:
+    """Whoever begins to listen during a silence is told that there is nothing, and by fresh stamps."""
+    fed.wait(1.0)
+    began = len(fed.published)
+    said = fed.wait(10.0)
+    assert all(each.friction_torque == 0.0 and not each.valid for each in said)
+    stamps = [each.time for each in said]
+    assert stamps == sorted(set(stamps))
+    times = [now for now, _ in fed.published[began:]]
+    apart = [after - before for before, after in zip(times, times[1:], strict=False)]
+    assert len(times) >= 10
+    assert max(apart) <= HEARTBEAT * fed.options.watch_period + PERIOD + 1e-9

@@ -1,0 +1,63 @@
+"""When a contradiction counts and when it is over; which ones are looked for, and where nothing can be told."""
+
+import math
+
+import pytest
+from sea import CRANE
+
+from winch_friction.online.agreement import BALANCE_TIME, Agreement, Doubt, LoadBalance
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.ranges import ChannelRanges
+
+GROUPS = ("active", "passive")
+
+
+def test_a_doubt_ends_only_after_so_long_of_agreement():
+    doubt = Doubt(0.5, 1.0)
+    for _ in range(5):
+        doubt.step(True, 0.1)
+    assert doubt.stands
+    assert doubt.step(False, 0.9)
+    assert not doubt.step(False, 0.2)
+
+
+@pytest.mark.parametrize("shown", [None, False])
+def test_where_nothing_is_to_be_seen_a_doubt_stays(shown):
+    doubt = Doubt(0.5, 1.0)
+    for _ in range(6):
+        doubt.step(True, 0.1)
+    for _ in range(20):
+        doubt.step(shown, 0.1)
+    assert doubt.stands is (shown is None)
+
+
+def test_speeds_near_standstill_heal_no_doubt():
+    each = Agreement(CRANE, ChannelRanges(CRANE, GROUPS))
+
+    def doubted(time: float, command: float, speed: float) -> bool:
+        found = each.contradictions(Sample(time, speed, speed_reference=command))
+        return "speed_reference contradicts motor_speed" in found
+
+    fast = 0.5 * ChannelRanges(CRANE, GROUPS).speed
+    assert [doubted(0.05 * k, fast, 0.2 * fast) for k in range(20)][-1]
+    assert all(doubted(1.0 + 0.05 * k, 0.0, 0.0) for k in range(60))
+    assert not [doubted(4.0 + 0.05 * k, fast, fast) for k in range(30)][-1]
+
+
+@pytest.mark.parametrize("apart", [0.3, -0.3])
+def test_a_load_cell_that_shows_too_much_is_doubted_as_one_that_shows_too_little(apart):
+    balance = LoadBalance()
+    said = [balance.contradiction(apart, 0.1 * k) for k in range(int(BALANCE_TIME / 0.1) + 2)]
+    assert not said[1]
+    assert "by 30%" in said[-1]
+
+
+def test_small_torques_contradict_no_load():
+    """An empty hook: what the motors hold and what the load cell shows are both of the size of their errors."""
+    each = Agreement(CRANE, ChannelRanges(CRANE, GROUPS))
+    groups = {
+        "active": GroupSample(25e5, 25e5, CRANE.max_displacement),
+        "passive": GroupSample(25e5, 25e5, CRANE.max_displacement),
+    }
+    samples = [Sample(0.05 * k, 0.0, groups=groups, hook_load=1e3) for k in range(100)]
+    assert not any(each.contradictions(sample, math.nan) for sample in samples)

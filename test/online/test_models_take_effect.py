@@ -1,0 +1,42 @@
+"""When the service takes a learned model over: after its delay, as that is set now, and never across a jump of time."""
+
+from dataclasses import replace
+
+from sea import SEED, Fed
+
+from winch_friction.compensation.model_schedule import LEARNED_AT
+from winch_friction.online.options import ServiceOptions
+
+
+def learned(at: float):
+    return replace(SEED, name="learned", provenance={LEARNED_AT: at})
+
+
+def test_a_learned_model_takes_effect_after_its_delay() -> None:
+    fed = Fed()
+    fed.run(0.1)
+    fed.service.offer(learned(fed.now))
+    fed.run(0.4)
+    assert fed.service.law.model is SEED
+    fed.run(0.2)
+    assert fed.service.law.model.name == "learned"
+
+
+def test_a_model_that_waits_is_forgotten_when_everything_begins_anew() -> None:
+    fed = Fed()
+    fed.run(0.1)
+    fed.service.offer(learned(fed.now))
+    fed.service.reset()
+    fed.run(1.0)
+    assert fed.service.law.model is SEED
+
+
+def test_another_delay_counts_from_the_next_model_on() -> None:
+    fed = Fed()
+    fed.run(0.1)
+    fed.service.configure(fed.config, ServiceOptions(model_delay=2.0))
+    fed.service.offer(learned(fed.now))
+    fed.run(1.0)
+    assert fed.service.law.model is SEED
+    fed.run(1.2)
+    assert fed.service.law.model.name == "learned"

@@ -19,10 +19,12 @@ def test_of_several_models_that_are_due_the_newest_takes_effect_and_the_older_on
     for at in (12.0, 10.0, 11.0):
         schedule.offer(learned(at))
     found = schedule.due(11.6)
-    assert found is not None and found.name == "learned at 11"
+    assert found is not None
+    assert found.name == "learned at 11"
     assert schedule.due(11.6) is None
     found = schedule.due(12.5)
-    assert found is not None and found.name == "learned at 12"
+    assert found is not None
+    assert found.name == "learned at 12"
 
 
 @pytest.mark.parametrize(("time", "there"), [(10.49, False), (10.5, True)])

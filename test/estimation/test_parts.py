@@ -305,6 +305,60 @@ def test_forgetting_goes_to_the_seed_and_never_beyond(seed):
     assert not noise.any()
 
 
+def test_forgetting_for_longer_than_its_time_ends_at_the_seed(seed):
+    parameters = ScaledParameters(seed, EstimatorConfig(forgetting_time=10.0))
+    covariance = 0.01 * np.eye(parameters.size)
+    assert covariance + parameters.faded(covariance, 35.0) == pytest.approx(parameters.prior)
+
+
+def test_the_halves_of_the_covariance_stay_alike_over_many_steps(kind, seed):
+    each, step = some_filter(seed, kind=kind)
+    each.P[0, -1] *= 1.0 + 1e-6  # as rounding leaves it, only more
+    unbounded(each)
+    for _ in range(60):
+        each.predict_step(step, True, False)
+        _, variance = each.innovation(0.0)
+        each.correct(0.0, variance, True)
+    scale = np.sqrt(np.outer(np.diag(each.P), np.diag(each.P)))
+    assert np.abs((each.P - each.P.T) / scale).max() < 1e-12
+
+
+def test_what_is_taken_anew_owes_nothing_to_sensor_errors_of_before(kind, seed):
+    each, _ = some_filter(seed, kind=kind)
+    each.sensitivity[:] = 1.0
+    each.take_anew([(SPEED, 3.0, 0.5), (ENCODER, 0.0, 0.1)])
+    assert each.speed == 3.0
+    assert not each.sensitivity[:, [SPEED, ENCODER]].any()
+    assert each.sensitivity[:, [LOAD, DISTURBANCE]].all()
+    assert not np.delete(each.P[SPEED], SPEED).any()
+    assert each.P[SPEED, SPEED] == 0.5
+
+
+def test_a_parameter_that_steps_away_from_its_edge_for_a_moment_stays_invalid():
+    each = ParameterStatus(EstimatorConfig(settle_time=1.0))
+    for _ in range(20):
+        each.step(1.0, frozen=False, at_limit=True, dt=0.1)
+    each.step(1.0, frozen=False, at_limit=False, dt=0.1)
+    assert each.text == "invalid"
+    for _ in range(10):
+        each.step(1.0, frozen=False, at_limit=False, dt=0.1)
+    assert each.text == "seed"
+
+
+def test_both_edges_of_a_range_are_limits(seed):
+    parameters = ScaledParameters(seed, EstimatorConfig())
+    phi = np.zeros(parameters.size)
+    phi[0], phi[-1] = parameters.lower[0], parameters.upper[-1]
+    assert np.flatnonzero(parameters.at_limit(phi)).tolist() == [0, parameters.size - 1]
+
+
+def test_equal_belief_within_the_range_has_the_sigma_of_an_even_distribution(seed):
+    parameters = ScaledParameters(seed, EstimatorConfig())
+    even = (parameters.upper - parameters.lower) * parameters.scale / math.sqrt(12.0)
+    parameters.widen(range(parameters.size))
+    assert parameters.std(parameters.prior) == pytest.approx(np.maximum(even, seed.std).tolist())
+
+
 def test_forgetting_acts_while_learning_and_only_then(kind, seed):
     each, step = some_filter(seed, EstimatorConfig(forgetting_time=100.0), kind=kind)
     each.state = np.zeros((each.size, 1)), np.eye(each.size) * 1e-12

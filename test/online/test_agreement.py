@@ -12,9 +12,9 @@ from winch_friction.physics.winch.ranges import ChannelRanges
 GROUPS = ("active", "passive")
 
 
-def test_a_doubt_ends_only_after_so_long_of_agreement():
-    doubt = Doubt(0.5, 1.0)
-    for _ in range(5):
+def test_a_doubt_ends_only_after_a_second_of_agreement():
+    doubt = Doubt(0.5)
+    for _ in range(6):
         doubt.step(True, 0.1)
     assert doubt.stands
     assert doubt.step(False, 0.9)

@@ -1,0 +1,47 @@
+"""What is believed: how far the gate opens and when, and what an outlier may do to the noise."""
+
+import math
+
+import pytest
+
+from winch_friction.estimation import EstimatorConfig
+from winch_friction.estimation.trust import RESTART_AFTER, WIDE_FOR, InnovationGate, VarianceFactor
+
+CONFIG = EstimatorConfig(gate=5.0)
+
+
+def shut_out(gate: InnovationGate) -> None:
+    for _ in range(RESTART_AFTER):
+        gate.rejected(20.0)
+
+
+def test_the_gate_is_wide_for_a_while_after_it_shut_out_a_run_of_samples():
+    gate = InnovationGate(CONFIG)
+    assert not gate.admits(10.0, 6.0, 1.0)
+    shut_out(gate)
+    assert gate.exhausted
+    gate.restarted(10.0)
+    assert not gate.exhausted
+    assert gate.admits(10.0 + 0.9 * WIDE_FOR, 6.0, 1.0)
+    assert not gate.admits(10.0 + 0.9 * WIDE_FOR, 16.0, 1.0)
+    assert not gate.admits(10.0 + 1.1 * WIDE_FOR, 6.0, 1.0)
+
+
+def test_a_gap_without_rejections_leaves_the_gate_as_it_was():
+    gate = InnovationGate(CONFIG)
+    gate.restarted(10.0)
+    assert not gate.admits(10.1, 6.0, 1.0)
+
+
+def test_samples_without_an_innovation_shut_out_nothing():
+    gate = InnovationGate(CONFIG)
+    for _ in range(2 * RESTART_AFTER):
+        gate.rejected(math.nan)
+    assert not gate.exhausted
+
+
+def test_one_sample_far_off_moves_the_noise_as_one_at_three_sigma():
+    far, near = VarianceFactor(5.0), VarianceFactor(5.0)
+    far.step(1e4, 0.02)
+    near.step(9.0, 0.02)
+    assert far.value == near.value == pytest.approx(1.0 + 8.0 * 0.02 / 5.0)

@@ -1,8 +1,14 @@
 """Comparing two models where the crane never is."""
 
+import json
+
+import numpy as np
 import pytest
 
 from winch_friction.cli.main import run
+from winch_friction.physics.winch.model_curve import model_curve
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
 
 
 @pytest.mark.parametrize(("loads", "warned"), [("15,55,100", False), ("55,5000", True)])
@@ -16,3 +22,28 @@ def test_a_load_beyond_the_crane_is_said_with_what_its_file_gives(capsys, loads,
 def test_a_load_that_is_no_mass_is_refused(capsys):
     assert run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--loads=-3"]) == 2
     assert "hanging mass" in capsys.readouterr().err
+
+
+def compared(capsys, *options):
+    assert run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--json", *options]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_difference_is_the_second_model_minus_the_first_at_the_loads_that_were_asked_for(capsys):
+    crane, models = load_crane("crane_150t"), [load_model(f"a6vm215_crane{k}") for k in (1, 2)]
+    found = compared(capsys, "--loads", "15,100")
+    for row, load in zip(found["rows"], (15e3, 100e3), strict=True):
+        first, second = (model_curve(each, crane, load=load) for each in models)
+        difference = second.torque - first.torque
+        k = int(np.abs(difference).argmax())
+        assert row["largest [N*m]"] == pytest.approx(difference[k])
+        assert row["of [N*m]"] == pytest.approx(first.torque[k])
+        assert row["RMS [N*m]"] == pytest.approx(np.sqrt(np.mean(difference**2)))
+        assert row["in sigmas"] == pytest.approx(abs(difference[k]) / np.hypot(first.std[k], second.std[k]))
+
+
+def test_a_difference_is_more_than_the_models_do_not_know_from_two_sigma_on(capsys):
+    found = compared(capsys, "--loads", "55")
+    more = found["rows"][0]["in sigmas"] > 2.0
+    assert (", more than what they do not know" in found["said"]) is more
+    assert (", within what they do not know" in found["said"]) is not more

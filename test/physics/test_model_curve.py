@@ -1,0 +1,33 @@
+"""A model as a curve: the winch in balance, its pressure carries load and friction, its sigma is one of the torque."""
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.winch import group_point, operating_point
+from winch_friction.physics.winch.model_curve import model_curve
+from winch_friction.records.model_file import load_model
+
+MODEL = load_model("a6vm215_crane2")
+SPEED = np.array([-120.0, 40.0, 120.0])
+
+
+@pytest.fixture(scope="module")
+def curve(crane_150t):
+    return model_curve(MODEL, crane_150t, load=55e3, speed=SPEED)
+
+
+def test_the_pressure_carries_the_load_and_the_friction(curve, crane_150t):
+    held = curve.pressure * crane_150t.motor_count("main") * crane_150t.max_displacement
+    assert held == pytest.approx(crane_150t.drum_torque(55e3) / crane_150t.gear_ratio + curve.torque, rel=1e-6)
+    assert sum(curve.parts.values()) == pytest.approx(curve.torque)
+
+
+def test_its_sigma_is_that_of_a_torque(curve, crane_150t):
+    """By a draw of parameters, at the same operating points."""
+    count = np.full(3, float(crane_150t.motor_count("main")))
+    drum = np.full(3, crane_150t.drum_torque(55e3))
+    group = group_point(count, curve.pressure, np.full(3, crane_150t.max_displacement))
+    at = operating_point(direction=np.sign(SPEED), speed=SPEED, drum_torque=drum, groups=[group], motor_total=count)
+    draws = np.random.default_rng(0).multivariate_normal(MODEL.values, 1e-4 * MODEL.covariance, 400, method="svd")
+    torques = [MODEL.with_values(each.tolist()).torque(at) for each in draws]
+    assert curve.std == pytest.approx(100.0 * np.std(torques, axis=0), rel=0.15)

@@ -1,0 +1,64 @@
+"""The page of a replay: which parameters it draws, and that seed and learned values stand in their own columns."""
+
+import re
+
+import numpy as np
+import pytest
+
+from winch_friction.estimation import ParameterEstimate
+from winch_friction.physics.signals import Run
+from winch_friction.records.model_file import load_model
+from winch_friction.replay.recording import Replayed
+from winch_friction.report.replay_page import facts, learned_html, sentence
+from winch_friction.report.replay_picture import most_learned
+
+SEED = load_model("a6vm215_crane2")
+CONTENT = {
+    "recording": "r", "samples": 500, "duration_s": 10.0, "active_share": 0.25, "feedforward_rms_Nm": 321.0,
+    "feedforward_peak_Nm": 456.0, "accepted_share": 0.9, "nis_share_inside": 0.96,
+    "parameters": [{"status": "learned"}, {"status": "seed"}, {"status": "learning"}],
+}  # fmt: skip
+
+
+def learned(**last):
+    """Standard deviations that end at these shares of the seed's."""
+    time = np.arange(3.0)
+    columns = {"time": time}
+    for name in SEED.parameter_names:
+        columns[name] = np.full(3, SEED.value(name))
+        columns[f"{name}_std"] = np.array([1.0, 1.0, last.get(name, 1.0)])
+    return Run("r", columns)
+
+
+def test_the_parameters_that_were_learned_best_come_first():
+    assert most_learned(learned(C5=0.2, K1=0.9, C1=0.5), SEED)[:3] == ["C5", "C1", "K1"]
+
+
+def test_the_sentence_says_what_share_of_the_time_it_was_active_and_how_much_was_learned():
+    said = sentence(CONTENT)
+    assert "321 N·m RMS, 25 % of the time" in said
+    assert "2 of 3 parameters were learned" in said
+    known = dict(facts(CONTENT))
+    assert known["Largest feedforward"] == "456 N·m"
+    assert known["Samples that the estimator took"] == "90.0 %"
+    assert known["Innovations inside their 95 % band"] == "96 %"
+
+
+def test_seed_learned_and_sigma_stand_in_their_columns_in_the_units_that_people_read():
+    rpm = np.pi / 30.0
+    estimate = ParameterEstimate(
+        "C4", "rad/s", value=200.0 * rpm, std=10.0 * rpm, seed_value=300.0 * rpm, seed_std=rpm, status="learned"
+    )
+    result = Replayed(learned(), learned(), SEED, (estimate,), {})
+    row = re.search(r"<tbody><tr>(.*?)</tr>", learned_html(result, SEED)).group(1)
+    cells = re.findall(r"<td[^>]*>(.*?)</td>", row)
+    assert cells[1:] == ["C4", "300", "200", "10", "rpm", "learned"]
+
+
+def test_a_recording_without_an_active_feedforward_says_so():
+    assert "never active" in sentence({**CONTENT, "active_share": 0.0})
+
+
+@pytest.mark.parametrize("inside", [None, float("nan")])
+def test_an_unknown_consistency_is_not_shown(inside):
+    assert dict(facts({**CONTENT, "nis_share_inside": inside}))["Innovations inside their 95 % band"] == ""

@@ -15,9 +15,13 @@ DISPLACEMENT = 3e-5  # m^3/rad
 CHANGE_AT, SECONDS = 100.0, 200.0  # s
 
 
-def sailed(friction: Callable[[float], float], shown: Callable[[float], float]) -> Iterator[Sample]:
-    """Heave compensation by plain formulas: `friction` scales it, `shown` is the displacement that is logged over the
-    true one, both over time.
+def sailed(
+    friction: Callable[[float], float], shown: Callable[[float], float],
+    inertia: Callable[[float], float] = lambda _: 1.0, compensated: Callable[[float], float] = lambda _: 1.0,
+) -> Iterator[Sample]:  # fmt: skip
+    """Heave compensation by plain formulas: `friction` and `inertia` scale theirs, `shown` is the displacement that is
+    logged over the true one, `compensated` the share of the wire's motion that the crane tip makes up for, all over
+    time.
     """
     lever = CRANE.drum.radius(math.nan) / CRANE.gear_ratio
     for k in range(int(SECONDS / PERIOD)):
@@ -25,11 +29,12 @@ def sailed(friction: Callable[[float], float], shown: Callable[[float], float]) 
         phases = (2.0 * math.pi * time / 8.0, 2.0 * math.pi * time / 5.3 + 1.0)
         speed = 80.0 * math.sin(phases[0]) + 40.0 * math.sin(phases[1])
         rate = 80.0 * 0.7854 * math.cos(phases[0]) + 40.0 * 1.1855 * math.cos(phases[1])
-        torque = CRANE.inertia * rate + friction(time) * (300.0 * math.tanh(speed / 3.0) + 1.5 * speed)
+        torque = inertia(time) * CRANE.inertia * rate + friction(time) * (300.0 * math.tanh(speed / 3.0) + 1.5 * speed)
+        torque += LOAD * lever**2 * rate * (1.0 - compensated(time))
         held = CRANE.drum_torque(LOAD, math.nan) / CRANE.gear_ratio / (CRANE.motor_count("passive") * DISPLACEMENT)
         drop = torque / (CRANE.motor_count("active") * DISPLACEMENT)
         yield Sample(
-            time=time, motor_speed=speed, hook_load=LOAD, heave_velocity=-lever * speed,
+            time=time, motor_speed=speed, hook_load=LOAD, heave_velocity=-lever * speed * compensated(time),
             groups={
                 "active": GroupSample(drop + 20e5, 20e5, DISPLACEMENT * shown(time)),
                 "passive": GroupSample(held + 20e5, 20e5, DISPLACEMENT),
@@ -62,6 +67,20 @@ def test_a_displacement_that_is_off_is_told_within_a_minute():
 @pytest.mark.parametrize("friction", [same, stepped(1.3), stepped(0.7), lambda time: 1.0 - 0.3 * time / SECONDS])
 def test_friction_that_changes_is_no_gain(friction):
     first, largest, _ = said(sailed(friction, same))
+    assert math.isnan(first)
+    assert largest < CHANGED
+
+
+def test_an_inertia_that_changes_alone_is_no_gain():
+    """What is accelerated may be more than before; a gain would have moved the friction alike."""
+    first, largest, _ = said(sailed(same, same, inertia=stepped(1.3)))
+    assert largest > CHANGED
+    assert math.isnan(first)
+
+
+def test_a_load_that_is_accelerated_at_first_and_then_hangs_still_is_no_gain():
+    """Lifted at first by a crane at rest, then held against a sea: the load's inertia is known, and taken out."""
+    first, largest, _ = said(sailed(same, same, compensated=lambda time: float(time > CHANGE_AT)))
     assert math.isnan(first)
     assert largest < CHANGED
 

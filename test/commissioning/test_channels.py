@@ -1,0 +1,80 @@
+"""Every channel by itself: the clock, a pressure that nobody measured, and what lies beyond the machine."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.commissioning.channels import clock_findings, frozen_findings
+from winch_friction.commissioning.excitation import Taught
+from winch_friction.commissioning.ranges import excesses, range_score
+from winch_friction.physics.signals import Run
+
+
+def said(time):
+    return {each.cause: each.severity for each in clock_findings(Run("r", {"time": time}))}
+
+
+def test_a_clock_that_jumps_by_days_is_an_error_and_an_even_one_is_nothing():
+    even = np.arange(500) * 0.02
+    assert said(even) == {}
+    assert said(np.concatenate([even, even + 86400.0])) == {"clock": "error"}
+
+
+@pytest.mark.parametrize(("rate", "found"), [(4.0, {"rate": "warning"}), (6.0, {})])
+def test_a_log_too_slow_for_reversals_is_worth_a_word(rate, found):
+    assert said(np.arange(100) / rate) == found
+
+
+def test_a_gap_and_an_uneven_clock_are_said():
+    assert said(np.concatenate([np.arange(100) * 0.02, 5.0 + np.arange(100) * 0.02])) == {"gaps": "note"}
+    assert said(np.cumsum(np.resize([0.02, 0.02, 0.02, 0.04], 400))) == {"jitter": "warning"}
+
+
+def frozen(held, other, displacement=(3e-5, 3e-5)):
+    time = np.arange(200) * 0.1
+    moved = np.linspace(0.0, 1e5, 200)
+    columns = {
+        "time": time, "motor_speed": 50.0 * np.sin(time),
+        "main.pressure_a": 2e7 + held * moved, "main.pressure_b": 2e6 + other * moved,
+        "main.displacement": np.linspace(*displacement, 200),
+    }  # fmt: skip
+    return [each.channel for each in frozen_findings(Run("r", columns))]
+
+
+def test_the_pressure_that_holds_the_load_must_move_and_the_boost_need_not():
+    assert frozen(0.0, 1.0) == ["main.pressure_a"]
+    assert frozen(1.0, 0.0) == []
+    assert frozen(0.0, 1.0, displacement=(2e-5, 3e-5)) == []  # the torque may be controlled by the displacement
+
+
+def view(displacement=3e-5, drop=1e7, speed=100.0):
+    group = SimpleNamespace(
+        drop=np.full(9, drop), pressure_sum=np.full(9, 3e7), displacement=np.full(9, displacement), torque=np.zeros(9)
+    )
+    return SimpleNamespace(
+        heave=None, groups={"main": group}, speed=np.full(9, speed), max_displacement=3.4e-5, rated_torque=1e4,
+        load=np.zeros(9), radius=np.ones(9), gear_ratio=250.0, load_torque=None, lever=np.full(9, 4e-3), wire=None,
+        time=np.arange(9.0),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changed", "channel"),
+    [
+        ({}, None),
+        ({"displacement": 3e-7}, "main.displacement"),  # per cent read as a share
+        ({"displacement": 3e-4}, "main.displacement"),
+        ({"drop": 1e9}, "main.pressure"),
+        ({"speed": 955.0}, "motor_speed"),
+    ],
+)
+def test_what_the_machine_cannot_do_is_told_by_channel(changed, channel):
+    found = excesses(view(**changed))
+    assert list(found) == ([channel] if channel else [])
+    assert (range_score(view(**changed)) > 0.0) == bool(channel)
+
+
+@pytest.mark.parametrize(("after", "words"), [(0.05, "much"), (0.07, "a little"), (0.095, "nothing"), (0.1, "nothing")])
+def test_what_runs_teach_is_what_they_take_off_the_models_own_sigma(after, words):
+    assert Taught("C5", 0.1, after).words == words

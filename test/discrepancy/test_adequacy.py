@@ -1,0 +1,53 @@
+"""What the runs must hold before anything is searched: both directions, enough of a log, and what is left out."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.adequacy import long_enough, of_prepared
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.signals import Run
+
+STEP = 0.1  # s
+
+
+def prepared(name, hoisting, lowering):
+    """So many seconds each way, and as much at rest between."""
+    direction = np.concatenate([np.ones(round(hoisting / STEP)), np.zeros(50), -np.ones(round(lowering / STEP))])
+    size = len(direction)
+    return SimpleNamespace(
+        name=name, dt=STEP, time=np.arange(size) * STEP, direction=direction, used=direction != 0.0,
+        speed=direction * np.linspace(20.0, 100.0, size), load=np.full(size, 5e4), groups=(), channels={},
+    )  # fmt: skip
+
+
+def checked(*runs):
+    return {each.what: each for each in of_prepared(SimpleNamespace(prepared=runs), ["a"], ["b"])}
+
+
+def test_each_direction_is_counted_by_itself_and_of_the_training_runs_alone():
+    found = checked(prepared("a", 20.0, 1.0), prepared("b", 6.0, 30.0))
+    assert found["hoisting"].value == pytest.approx(20.0)
+    assert found["hoisting"].met
+    assert found["lowering"].value == pytest.approx(1.0)
+    assert not found["lowering"].met
+    assert found["moving time"].value == pytest.approx(21.0)
+    assert found["moving time of the locked runs"].value == pytest.approx(36.0)
+    assert found["reversals"].value == 1.0
+
+
+@pytest.mark.parametrize(("rate", "kept"), [(0.5, False), (0.9, False), (0.99, True), (4.0, True)])
+def test_a_log_slower_than_a_search_needs_is_left_out_by_name(rate, kept):
+    time = np.arange(0.0, 30.0, 1.0 / (rate * LIMITS.lowest_rate))
+    run = Run("slow", {"time": time, "motor_speed": 100.0 * np.sin(time)})
+    found, notes = long_enough([run])
+    assert bool(found) is kept
+    assert ("slow left out: logged at" in "".join(notes)) is not kept
+
+
+def test_a_record_too_short_for_a_hoist_and_a_lower_is_left_out_by_name():
+    time = np.arange(0.0, 0.9 * LIMITS.shortest_record, 0.02)
+    found, notes = long_enough([Run("brief", {"time": time, "motor_speed": np.sin(time)})])
+    assert not found
+    assert "brief left out: it lasts" in notes[0]

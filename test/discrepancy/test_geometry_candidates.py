@@ -1,0 +1,55 @@
+"""What hangs, and on which radius: the columns of a tare and of a radius, and the corrections that they become."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
+from winch_friction.discrepancy.candidates.geometry import ONE_DEPTH, geometry_candidates, radius_columns, tare_columns
+from winch_friction.physics.units import GRAVITY
+
+LEVER, GEAR = np.array([0.9, 1.0, 1.1]), 250.0
+HEAVE = np.array([0.0, 0.5, -0.5])  # m/s^2
+LENGTH, LAYER = np.array([10.0, 40.0, 90.0]), np.array([1.0, 2.0, 2.0])
+LOAD, LOSS = 5e4, 300.0
+
+
+def run():
+    return SimpleNamespace(
+        time=np.zeros(3), load=np.full(3, LOAD), radius=LEVER, gear_ratio=GEAR, load_acceleration=HEAVE,
+        load_friction=np.full(3, LOSS), acceleration=np.array([0.0, 2.0, 0.0]), tension_measured=False,
+        channels={"wire_out": LENGTH, "wire_layer": LAYER},
+    )  # fmt: skip
+
+
+def hanging(mass):
+    """Weight and inertia on the lever, and the loss of the load in proportion."""
+    return mass * LEVER / GEAR * (GRAVITY + HEAVE) + mass / LOAD * LOSS
+
+
+def test_a_tare_hangs_and_is_accelerated_and_loses_as_the_load_does():
+    columns = tare_columns(run(), {"hook": 1.0, "wire": 1.0})
+    assert columns[:, 0] == pytest.approx(hanging(1.0))
+    assert columns[:, 1] == pytest.approx(hanging(LENGTH))
+    assert not tare_columns(run(), {"hook": 0.0, "wire": 1.0})[:, 0].any()
+
+
+def test_a_radius_is_wrong_on_the_layers_that_its_shape_speaks_of():
+    inertia = LOAD * (LEVER / GEAR) ** 2 * np.array([0.0, 2.0, 0.0])
+    whole = hanging(LOAD) + inertia
+    assert radius_columns(run(), {"layer": 0.0})[:, 0] == pytest.approx(whole)
+    assert radius_columns(run(), {"layer": 2.0})[:, 0] == pytest.approx(whole * [0.0, 1.0, 1.0])
+    assert radius_columns(run(), {"layer": -3.0})[:, 0] == pytest.approx(whole * [2.0, 1.0, 1.0])
+    assert radius_columns(run(), {"layer": ONE_DEPTH})[:, 0] == pytest.approx(whole / LEVER)
+
+
+@pytest.mark.parametrize(
+    ("layer", "values"),
+    [(0.0, {1: 0.016, 2: 0.018}), (2.0, {2: 0.018}), (-2.0, {1: 0.016}), (-3.0, {1: 0.032, 2: 0.018})],
+)
+def test_a_radius_error_becomes_metres_on_the_layers_concerned(layer, values):
+    sides = Sides(SimpleNamespace(drum=SimpleNamespace(layer_radii=(0.8, 0.9))), ("main",), ())
+    own = geometry_candidates()[1]
+    found = own.corrects({"e_R": ParameterEstimate(0.02, 0.001, "1")}, Shape("", {"layer": layer}), sides)
+    assert {each.layers[0]: each.value for each in found} == pytest.approx(values)

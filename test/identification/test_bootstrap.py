@@ -1,0 +1,30 @@
+"""Spread over redrawn tests: a standard deviation, in which what only the prior knows takes part."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.identification import bootstrap as module
+from winch_friction.identification.bootstrap import Bootstrap, bootstrap
+from winch_friction.records.model_file import load_model
+
+PRIOR = load_model("a6vm215_crane2")
+
+
+def test_the_spread_of_a_normal_estimate_is_its_standard_deviation():
+    draws = np.random.default_rng(0).normal(5.0, [0.5, 2.0], (20_000, 2))
+    draws[:50] = 1e6  # resamples of tests that say nothing do not decide
+    assert Bootstrap(("a", "b"), draws, np.ones(2)).std == pytest.approx([0.5, 2.0], rel=0.03)
+
+
+def test_what_the_tests_do_not_tell_spreads_as_the_prior_does(monkeypatch, crane_150t, spread):
+    """Tests that say nothing: each fit stays at its own prior's centre."""
+    monkeypatch.setattr(module, "observations", lambda tests, crane: None)
+    monkeypatch.setattr(module, "joint_fit", lambda data, prior, spread: SimpleNamespace(model=prior))
+    fitted = SimpleNamespace(prior=PRIOR, model=PRIOR)
+    found = bootstrap([[], []], crane_150t, fitted, spread, resamples=400)
+    names = PRIOR.parameter_names
+    for name in ("K1", "C5", "C6"):
+        k = names.index(name)
+        assert found.std[k] == pytest.approx(PRIOR.std[k], rel=0.2), name

@@ -54,6 +54,15 @@ def test_the_crane_that_is_unlike_the_others_is_named():
     assert find_unlike(fleet[:3]) == []
 
 
+def test_a_crane_is_unlike_the_others_by_its_last_months():
+    rng = np.random.default_rng(4)
+    fleet = [series(f"c{k}", rng) for k in range(12)]
+    mended, fallen = series("mended", rng), series("fallen", rng)
+    mended.values[:6] += 30.0
+    fallen.values[-6:] -= 30.0
+    assert [each.crane for each in find_unlike([*fleet, mended, fallen])] == ["fallen"]
+
+
 def test_months_are_calendar_months():
     assert month_text(month_of(1_709_251_199.0)) == "2024-02"  # 29 February 2024, 23:59:59
     assert month_text(month_of(1_709_251_200.0)) == "2024-03"

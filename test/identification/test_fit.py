@@ -1,5 +1,7 @@
 """Both fitters on known truth: the paper's motors, cost and evaluations, standard errors, selection."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -143,3 +145,20 @@ def test_the_seed_is_a_model_file(table_215, tmp_path):
     assert again.values == pytest.approx(seed.values)
     np.testing.assert_allclose(again.covariance, seed.covariance)
     assert again.provenance["paper1_model"] == "mj4"
+
+
+@pytest.mark.parametrize(("name", "bounds"), [("K4", (0.0, 1.0)), ("K4", (50.0, 90.0)), ("K2", (0.0, 1e-9))])
+def test_a_parameter_on_either_of_its_bounds_is_said(table_215, name, bounds):
+    model = initial_model(MOTOR_MODELS["mj4"], table_215.max_displacement)
+    values = [float(np.mean(bounds)) if each == name else model.value(each) for each in model.parameter_names]
+    tight = replace(model, bounds={**model.bounds, name: bounds}, values=tuple(values))
+    found = fit(tight, table_215.fit_data())
+    assert name in found.at_bound
+    assert found.model.value(name) == pytest.approx(bounds[0] if bounds[0] > 0.0 else bounds[1])
+
+
+def test_the_rms_is_of_the_plain_errors(table_215):
+    data = table_215.fit_data()
+    found = fit(initial_model(MOTOR_MODELS["mj4"], table_215.max_displacement), data)
+    errors = data.torque - CountedModel(found.model, data).torque(found.model.values)
+    assert found.rms == pytest.approx(np.sqrt(np.mean(errors**2)))

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from cycles import cycle
 
-from winch_friction.identification.verification import inertia_torque, pressure_check
+from winch_friction.identification.friction_curve import FrictionCurve
+from winch_friction.identification.verification import PressureCheck, inertia_torque, pressure_check
+from winch_friction.identification.verification import test_errors as errors_of
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
@@ -97,3 +99,32 @@ def test_a_winch_that_never_turns(truth, crane):
     still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})
     with pytest.raises(InputError, match="still: the winch never turns"):
         pressure_check(still, crane, truth)
+
+
+def test_the_error_while_turning_leaves_standstill_out():
+    speed, error = np.array([0.0, 0.5, -20.0, 30.0]), np.array([9.0, 9.0, 3.0, -4.0]) * BAR
+    check = PressureCheck("r", "main", np.arange(4.0), speed, np.zeros(4), error)
+    assert check.moving_rms == pytest.approx(np.sqrt((9.0 + 16.0) / 2.0) * BAR)
+    assert check.rms == pytest.approx(np.sqrt((81.0 + 81.0 + 9.0 + 16.0) / 4.0) * BAR)
+
+
+def test_an_error_with_the_hook_alone_is_in_per_cent_of_the_heaviest_test(truth):
+    def curve(test, load):
+        speed = np.array([10.0, 20.0, 60.0, 90.0])
+        up, down = np.full(4, load + 10 * BAR), np.full(4, load - 10 * BAR)
+        return FrictionCurve(test, speed, up, down, 215 * CM3_PER_REV, 11 * 250 * load * 3e-5, 11, load * 3e-5)
+
+    hook, light, heavy = errors_of(truth, [curve("a", 5 * BAR), curve("b", 60 * BAR), curve("c", 200 * BAR)])
+    assert hook.nominal == heavy.nominal == pytest.approx(200 * BAR * 3e-5)
+    assert light.nominal == pytest.approx(60 * BAR * 3e-5)
+    assert light.percent == pytest.approx(100.0 * (light.modelled - light.measured) / light.nominal)
+    assert light.worst(True) == pytest.approx(np.abs(light.percent[2:]).max())
+    assert light.worst(False) == pytest.approx(np.abs(light.percent[:2]).max())
+
+
+def test_a_displacement_feedback_that_shows_too_much_is_taken_out(truth, crane):
+    run = ahc_run(truth, crane)
+    shown = {name: run[name] * (1.03 if name.endswith("displacement") else 1.0) for name in run.columns}
+    wrong = Run("ahc", shown)
+    assert pressure_check(wrong, crane, truth, 0.03).moving_rms < 0.6 * BAR
+    assert pressure_check(wrong, crane, truth).moving_rms > 2.0 * BAR

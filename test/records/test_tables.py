@@ -145,6 +145,14 @@ def test_repeated_times_gaps_and_short_runs_are_warned_of(tmp_path):
     assert "only 0.52 s long" in run.warnings[2]
 
 
+def test_an_infinite_value_is_kept_as_none_and_said_by_line(tmp_path):
+    rows = [f"{0.02 * k:g},1,{'inf' if k == 3 else '-inf' if k == 5 else 2}" for k in range(80)]
+    run = read_run(table(tmp_path, "\n".join(["time,motor_speed,motor_torque", *rows])))
+    assert np.flatnonzero(np.isnan(run["motor_torque"])).tolist() == [3, 5]
+    assert np.nanmax(np.abs(run["motor_torque"])) == 2.0
+    assert "'motor_torque': 2 of 80 values are not numbers, line 5, line 7" in run.warnings[0]
+
+
 def test_the_crane_decides_what_is_required(tmp_path):
     path = table(tmp_path, TABLE)
     with pytest.raises(InputError, match="'motor_torque'"):

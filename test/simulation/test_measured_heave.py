@@ -27,6 +27,11 @@ def test_the_motion_goes_through_the_measured_heights_and_its_speed_is_their_slo
     assert np.std(height) == pytest.approx(1.1, abs=0.3)
 
 
+def test_a_motion_that_starts_later_is_the_records_own_from_there_on():
+    time = np.arange(0.0, 20.0, 0.5)
+    assert load_heave(LOG, 30.0).motion(time) == pytest.approx(load_heave(LOG).motion(30.0 + time))
+
+
 def test_the_shipped_scenario_is_sailed_in_that_motion():
     scenario = load_scenario("ahc_measured_heave").override({"duration": 60.0})
     done = simulate(scenario, load_crane("crane_150t"), load_model("a6vm215_crane2"), seed=1)

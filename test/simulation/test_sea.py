@@ -41,6 +41,8 @@ def test_plateaus_visit_both_directions():
     reference = profile_reference(points, time)
     assert reference[:, 1].max() == 100.0
     assert reference[:, 1].min() == -100.0
+    moving = np.sign(reference[reference[:, 1] != 0.0, 1])
+    assert moving[np.flatnonzero(np.diff(moving, prepend=0.0))].tolist() == [1.0, -1.0, 1.0, -1.0]  # hoisted first
     for speed in (10.0, -10.0, 100.0, -100.0):
         assert (reference[:, 1] == speed).sum() == pytest.approx(500, abs=3)
     assert np.allclose(np.gradient(reference[:, 0], time)[1:-1], reference[1:-1, 1], atol=0.6)

@@ -6,6 +6,7 @@ from winch_friction.importing.log import LogColumn
 from winch_friction.physics.signals import FloatArray
 
 _UNSTEADY = 0.5  # periods that a steady clock's row may miss its tick by, for what its own jitter is
+_PAUSE = 5.0  # usual ticks; a longer way to the next is a gap in the log, as in `records.run_checks`: no row lies in it
 
 
 def fraction_unit(seconds: FloatArray, column: LogColumn) -> str:
@@ -36,7 +37,7 @@ def rows_of_one_tick(seconds: FloatArray) -> float:
 
 def spread_ticks(seconds: FloatArray) -> FloatArray:
     """Rows of one time at a steady rate where one puts every row into its tick; else laid evenly between this time and
-    the next, the first and last tick like the others.
+    the next, the first and last tick like the others, and so one before a gap.
     """
     ticks, first, counts = np.unique(seconds, return_index=True, return_counts=True)
     if len(ticks) < 2 or np.any(np.diff(seconds) < 0.0) or not np.isfinite(seconds).all():
@@ -48,7 +49,8 @@ def spread_ticks(seconds: FloatArray) -> FloatArray:
     width = float(np.median(np.diff(ticks)))
     rank = np.arange(len(seconds)) - np.repeat(first, counts)
     share = np.repeat(np.maximum(counts, 1), counts).astype(float)
-    ends = np.repeat(np.append(np.diff(ticks), width), counts)
+    ways = np.append(np.diff(ticks), width)
+    ends = np.repeat(np.where(ways > _PAUSE * width, width, ways), counts)
     last, begin = (
         np.repeat(np.arange(len(ticks)) == len(ticks) - 1, counts),
         np.repeat(np.arange(len(ticks)) == 0, counts),

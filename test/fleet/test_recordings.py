@@ -1,0 +1,39 @@
+"""Which recordings a fleet has, when an earlier result still stands, and which names cannot."""
+
+import pytest
+
+from winch_friction.fleet.recordings import find_recordings
+from winch_friction.physics.errors import InputError
+
+
+def touched(folder, *names, size=10):
+    for name in names:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"x" * size)
+    return folder
+
+
+def test_a_folder_is_a_crane_and_each_run_file_or_bag_a_recording(tmp_path):
+    touched(tmp_path, "north/b.csv", "north/a.mcap", "south/bag/metadata.yaml", "south/bag/0.mcap", "south/notes.txt")
+    found = find_recordings([str(tmp_path)])
+    assert [(each.crane, each.name) for each in found] == [("north", "a"), ("north", "b"), ("south", "bag")]
+    assert found[2].size == 20
+
+
+def test_two_recordings_of_one_crane_and_name_are_refused(tmp_path):
+    touched(tmp_path, "east/north/a.csv", "west/north/a.csv")
+    with pytest.raises(InputError, match="two recordings are named 'north/a'"):
+        find_recordings([str(tmp_path)])
+
+
+def test_the_same_recording_named_twice_is_one(tmp_path):
+    touched(tmp_path, "north/a.csv")
+    assert len(find_recordings([str(tmp_path), str(tmp_path / "north")])) == 1
+
+
+def test_a_recording_that_has_grown_is_another_version(tmp_path):
+    before = find_recordings([str(touched(tmp_path, "north/a.csv"))])[0]
+    after = find_recordings([str(touched(tmp_path, "north/a.csv", size=11))])[0]
+    assert (before.crane, before.name, before.address) == (after.crane, after.name, after.address)
+    assert before.version != after.version

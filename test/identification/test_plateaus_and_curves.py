@@ -34,6 +34,17 @@ def test_means_are_the_truth(truth, crane):
         assert abs(each.pressure_drop - expected) < 6 * max(each.pressure_error, 0.02 * BAR)
 
 
+def test_a_plateaus_error_is_that_of_the_mean_of_its_four_parts(truth, crane):
+    """A load that swings slowly: the parts differ, their mean is twice as sure as one of them."""
+    run = cycle(truth, crane, "a", 215, 79, speeds=(500,), noise=0.0)
+    swinging = run["main.pressure_a"] + 2.0 * BAR * np.sin(0.9 * run.time)
+    for each in find_plateaus(replace(run, columns={**run.columns, "main.pressure_a": swinging}), crane):
+        inside = (run.time >= each.start) & (run.time <= each.end)
+        drop = (swinging - run["main.pressure_b"])[inside]
+        parts = [part.mean() for part in np.array_split(drop, 4)]
+        assert each.pressure_error == pytest.approx(np.std(parts, ddof=1) / 2.0, rel=1e-6)
+
+
 def test_ramps_and_standstill_are_no_plateaus(truth, crane):
     run = cycle(truth, crane, "a", 215, 79, noise=0.0)
     time = run.time

@@ -87,6 +87,7 @@ def test_second_loop_lowers_the_cost_and_stops(data, motor):
     assert costs == sorted(costs, reverse=True)
     assert costs[-1] < 0.5 * costs[0]
     assert costs[-1] > 0.99 * costs[-2] or len(loops) == 10
+    assert all(after <= 0.99 * before for before, after in zip(costs[:-2], costs[1:-1], strict=True))
     assert abs(loops[-1].motor.value("K2") / motor.value("K2") - 1) < 0.05  # the tests correct the supplier's K2
     assert loops[0].motor.values == wrong.values
 

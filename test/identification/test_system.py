@@ -92,6 +92,10 @@ def test_second_loop_lowers_the_cost_and_stops(data, motor):
     assert loops[0].motor.values == wrong.values
 
 
+def test_a_loop_that_gains_nothing_is_the_last(data, motor):
+    assert len(second_loop(data, motor)) == 2
+
+
 def test_joint_fit_recovers_what_the_tests_determine(joint, truth, crane):
     model = joint.model
     difference = np.array(model.values) - truth.values

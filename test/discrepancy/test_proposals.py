@@ -12,7 +12,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Law
 from winch_friction.discrepancy.proposed_term import declare
 from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, factors, shape
 from winch_friction.physics.dimensions import dimension_of, product
-from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction import FrictionModel, symbols
 from winch_friction.physics.friction.registry import known_for_now, load_file
 from winch_friction.physics.friction.symbols import layout
 
@@ -110,3 +110,9 @@ def test_the_proposals_files_go_back_in(drag, tmp_path):
         str(drag / "proposal_1.py"),
     ]
     assert winch_friction(["replay", str(run), "--out", str(tmp_path / "replayed.csv"), *files]) == 0
+
+
+@pytest.mark.parametrize(("each", "share"), [(True, 1.0), (False, 0.5)])
+def test_a_law_that_acts_once_in_all_is_divided_by_the_motors_that_its_term_is_taken_times(each, share):
+    equation = declare(Law((Factor("linear", "pressure"),), opposing=True, each=each), 2.0).term.equation
+    assert float(equation.subs(symbols.n, 2) / equation.subs(symbols.n, 1)) == share

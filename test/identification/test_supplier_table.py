@@ -111,3 +111,9 @@ def test_map_returns_the_table_and_interpolates_linearly(write, complete):
     outside = np.array([2500 * RPM]), np.array([150 * BAR]), np.array([75 * CM3_PER_REV])
     assert black_box.outside(*outside).all()
     assert np.isfinite(black_box.torque_loss(*outside)).all()
+
+
+def test_the_largest_displacement_is_the_tables_unless_it_is_said(write):
+    path = write(HEADER, "1000,200,160,94.0")
+    assert read_supplier_table(path).max_displacement == pytest.approx(160 * CM3_PER_REV)
+    assert read_supplier_table(path, 215 * CM3_PER_REV).max_displacement == pytest.approx(215 * CM3_PER_REV)

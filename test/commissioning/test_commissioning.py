@@ -190,3 +190,26 @@ def test_two_mistakes_at_once_are_both_named_before_any_other(crane_150t, names)
     assert found is not None
     assert found.cause == "two"
     assert all(made[name].channels[0] in found.channel for name in names), found.sentence
+
+
+def test_a_balance_that_is_open_both_ways_is_no_two_units(tmp):
+    """A winch that jerks: with load and pressures a tenth of what they are its misfit is a tenth, and proves nothing."""
+    crane, model = world(0, rig.DRAWN, tmp)
+    jerked = []
+    for run in runs_of(columns_of(0, rig.DRAWN)):
+        waves = 1.0 + 0.6 * np.sign(np.sin(0.7 * (run.time - run.time[0])))
+        jerked.append(replace(run, columns=times_drop(run.columns, waves)))
+    said = first_contradiction(quick_check(jerked, crane, model))
+    assert said is not None
+    assert "under [MPa]" not in str(said)
+    assert "two mistakes" not in str(said)
+
+
+def times_drop(columns, factor):
+    """Each group's pressures with another drop between them, the lower one as it was."""
+    found = dict(columns)
+    for name in columns:
+        if name.endswith("pressure_a"):
+            a, b = columns[name], columns[name[:-1] + "b"]
+            found[name] = b + factor * (a - b)
+    return found

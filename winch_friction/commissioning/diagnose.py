@@ -8,7 +8,7 @@ import numpy as np
 from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, static_torque, typical_friction
 from winch_friction.commissioning.kinematics import agreements
 from winch_friction.commissioning.mistakes import Mistake, delayed, fixed_mistakes, free_mistakes
-from winch_friction.commissioning.ranges import range_score
+from winch_friction.commissioning.ranges import excesses, range_score
 from winch_friction.commissioning.two_mistakes import both, common_pairs
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.friction import FrictionModel
@@ -144,7 +144,7 @@ class _Bench:
     def _undone(self, mistake: Mistake, view: RunView) -> float:
         if mistake.parts:
             first, second = mistake.parts
-            return self._undone(second, first.undo(view)) + _shrinking(first, view)
+            return self._undone(second, first.undo(view)) + _shrinking(first, view) + _both_shrink(first, second, view)
         if mistake.cause == "delay":  # a shift must not pass for agreement by losing the likeness to other channels
             follow = [each.channel for each in agreements(view)]
             shifted = mistake.undo(view)
@@ -168,6 +168,16 @@ def _shrinking(mistake: Mistake, view: RunView) -> float:
     smaller = mistake.cause in ("unit", "scale") and mistake.channel.endswith(("pressure", "displacement", "torque"))
     known = view.load_torque is not None or np.isfinite(view.load).any()
     return 2.0 * EFFECTIVE * max(0.0, -float(np.log(mistake.factor))) if smaller and not known else 0.0
+
+
+def _both_shrink(first: Mistake, second: Mistake, view: RunView) -> float:
+    """What it costs to make the load smaller beside the measured torque: the misfit shrinks with both, whatever it is.
+    Nothing where a value as it stands is beyond any machine, which speaks for itself."""
+    smaller = [each for each in (first, second) if each.cause in ("unit", "scale") and each.factor < 1.0]
+    sides = {each.channel.endswith(("load", "force", "load_torque")) for each in smaller}
+    if len(sides) < 2 or excesses(view):
+        return 0.0
+    return 2.0 * EFFECTIVE * min(-float(np.log(each.factor)) for each in smaller)
 
 
 def _thin(view: RunView) -> RunView:

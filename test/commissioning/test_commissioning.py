@@ -193,7 +193,7 @@ def test_two_mistakes_at_once_are_both_named_before_any_other(crane_150t, names)
 
 
 def test_a_balance_that_is_open_both_ways_is_no_two_units(tmp):
-    """A winch that jerks: with load and pressures a tenth of what they are its misfit is a tenth, and proves nothing."""
+    """A winch that jerks: with load and pressures a tenth of themselves its misfit is a tenth, and proves nothing."""
     crane, model = world(0, rig.DRAWN, tmp)
     jerked = []
     for run in runs_of(columns_of(0, rig.DRAWN)):

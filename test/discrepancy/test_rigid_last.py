@@ -78,7 +78,7 @@ def answers(monkeypatch):
     monkeypatch.setattr(workflow, "by_surfaces", lambda split, crane, options, trial, rng: trial)
     monkeypatch.setattr(workflow, "as_rigid", lambda given: RIGID)
     monkeypatch.setattr(workflow, "swings", lambda given: given.swings)
-    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file: ELASTIC if file == STILL_SWINGS else RIGID)
+    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)
     return own
 
 
@@ -124,7 +124,7 @@ def test_a_rigid_wire_is_asked_for_where_nothing_explains_and_a_load_swings(answ
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
-    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file: met if file is None else RIGID)
+    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
     monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "assemble", lambda split, options, trial: Result(trial.search.kind))
     answers.search, answers.judged = [Found(first), Found(MISSING, RIGID)], [(first, CLOSED), (MISSING, CLOSED)]

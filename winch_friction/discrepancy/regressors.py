@@ -16,7 +16,7 @@ from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.units import BAR, GRAVITY
 
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
@@ -26,6 +26,9 @@ TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
     ("inertia", 5e-3, -1e-2, 1e-2),  # relative
     ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
+    # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar
+    ("zero", 0.05, -0.15, 0.15),
+    ("passive zero", 0.05, -0.15, 0.15),
 )
 
 
@@ -128,7 +131,12 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSEST else 1.0)
-    return np.column_stack([weight, inertia, timing_column(run), run.corrections])
+    # a drive without pressures has its torque from elsewhere
+    zeros = [
+        sum((g.count * g.displacement * BAR for g in run.groups if g.balances is own), np.zeros(len(run.time)))
+        for own in (True, False)
+    ]
+    return np.column_stack([weight, inertia, timing_column(run), *zeros, run.corrections])
 
 
 def timing_column(run: PreparedRun) -> FloatArray:

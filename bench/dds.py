@@ -36,8 +36,7 @@ class Driver:
         from rclpy.signals import SignalHandlerOptions
         from sensor_msgs.msg import JointState
 
-        from winch_friction.nodes.messages import message_type
-        from winch_friction.nodes.polling import Polled
+        from winch_friction.nodes.inputs import Polled, message_type
         from winch_friction.nodes.qos import OUTPUT, SENSOR, fresh
         from winch_friction.records.crane_file import load_crane
         from winch_friction.records.topics import crane_topics
@@ -80,8 +79,7 @@ class Driver:
 
     def turn(self, name: str, samples: list[Any], rate: float, duration: float) -> tuple[list[float], int]:
         """Round trips in s of so many seconds, and how many speeds had no answer."""
-        from winch_friction.nodes.messages import ROS
-        from winch_friction.nodes.polling import drain
+        from winch_friction.nodes.inputs import ROS, drain
 
         sent: dict[tuple[int, int], int] = {}
         trips: list[float] = []

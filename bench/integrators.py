@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from bench.measuring import Row, seconds
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.simulation.scenario import load_scenario

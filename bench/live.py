@@ -47,8 +47,7 @@ class Driver:
         from rclpy.signals import SignalHandlerOptions
         from sensor_msgs.msg import JointState
 
-        from winch_friction.nodes.messages import message_type
-        from winch_friction.nodes.polling import Polled
+        from winch_friction.nodes.inputs import Polled, message_type
         from winch_friction.nodes.qos import OUTPUT, fresh
         from winch_friction.records.crane_file import load_crane
         from winch_friction.records.topics import crane_topics
@@ -76,7 +75,7 @@ class Driver:
 
     def send(self, sample: Sample, stamp: float) -> tuple[int, int]:
         """All messages of one sample, the speed last; returns its stamp."""
-        from winch_friction.nodes.messages import ROS
+        from winch_friction.nodes.inputs import ROS
 
         sample.time = stamp
         message: Any = None
@@ -86,7 +85,7 @@ class Driver:
 
     def taken(self, name: str) -> set[tuple[int, int]]:
         """Stamps of the answers that came since."""
-        from winch_friction.nodes.polling import drain
+        from winch_friction.nodes.inputs import drain
 
         return {(each.header.stamp.sec, each.header.stamp.nanosec) for each, _ in drain(self._in[name])}
 

@@ -10,11 +10,11 @@ from statistics import median
 from typing import Any
 
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.sample_stream import InputHold
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.measuring import Row, sea
 from winch_friction.physics.signals import Run
-from winch_friction.records.paths import config_directory
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.runs import read_run, write_run
 
 HOUR, SHORT = 3600.0, 10.0  # s

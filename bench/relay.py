@@ -13,8 +13,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import FluidPressure, JointState
 
-from winch_friction.nodes.messages import message_type
-from winch_friction.nodes.polling import Polled, drain
+from winch_friction.nodes.inputs import Polled, drain, message_type
 from winch_friction.nodes.qos import OUTPUT, SENSOR, fresh
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.topics import crane_topics

@@ -34,7 +34,7 @@ TABLE = Path("docs/campaign_gap.md")
 
 def diagnose(case: Case) -> dict[str, Any]:
     """Generate one data set, run the workflow on it, judge its answer."""
-    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.signals import Run
 

@@ -25,7 +25,7 @@ SEED = 100_999
 IN_PROCESS = """
 import json, sys, time, numpy as np
 from campaign.rig import make_dataset
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

@@ -26,7 +26,7 @@ TABLE = Path("docs/campaign_gap_hard.md")
 
 def diagnose(case: HardCase) -> dict[str, Any]:
     """One case: the answer of the first search, and for a proof what the written file does on fresh runs."""
-    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.errors import InputError
     from winch_friction.records.crane_file import load_crane

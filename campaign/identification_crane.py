@@ -19,8 +19,8 @@ from winch_friction.identification.prior import UnitSpread, load_unit_spread
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.system_identification import SystemIdentification, identify_system, winch_seed
 from winch_friction.identification.verification import LOW_SPEED, pressure_check, test_errors
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.winch import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -8,10 +8,11 @@ import numpy as np
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import FrictionEstimator
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import RPM
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.simulation.scenario import Scenario, load_scenario

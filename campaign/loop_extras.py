@@ -22,9 +22,9 @@ from campaign.loop_cases import (
 )
 from campaign.loop_learning import consistency, learning_errors, transfer
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import RPM
 
 SEEDS = (111, 112, 113)
 SEA = SEAS[3]  # JONSWAP, Hs 1 m

@@ -12,8 +12,8 @@ import numpy as np
 
 from campaign.practice_logs import AHC, TABLE_2, TABLE_5, SensorErrors, drive_ahc, drive_tests
 from campaign.supplier_generator import LOW_DISPLACEMENT_LOSS, write_supplier_table
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.records.atomic import write_text
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -21,13 +21,14 @@ import numpy as np
 from campaign.commit import commit
 from campaign.own_fmu import build
 from winch_friction.cli import main as cli
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import write_run

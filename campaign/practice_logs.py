@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch import Crane
 from winch_friction.simulation.scenario import Scenario, scenario_from_content
 from winch_friction.simulation.simulator import SimulationResult, simulate

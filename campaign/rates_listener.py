@@ -10,8 +10,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from winch_friction.nodes.messages import message_type
-from winch_friction.nodes.polling import Polled, drain
+from winch_friction.nodes.inputs import Polled, drain, message_type
 from winch_friction.nodes.qos import LATCHED, SENSOR
 from winch_friction.nodes.recorder import RECORDING
 from winch_friction.records.crane_file import load_crane

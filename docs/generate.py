@@ -49,7 +49,7 @@ def _api() -> str:
 
 
 def _cli() -> str:
-    from winch_friction.cli.verbs import VERBS
+    from winch_friction.cli.main import VERBS
 
     lines = [
         "# Command line",
@@ -80,8 +80,7 @@ def _command(command: Any, name: str) -> list[str]:
 
 
 def _channels() -> str:
-    from winch_friction.physics.channels import CHANNELS
-    from winch_friction.physics.units import accepted_units
+    from winch_friction.physics.channels import CHANNELS, accepted_units
 
     rows = []
     for c in CHANNELS:

@@ -17,5 +17,6 @@ SECONDS = {
     "docs/test_snippets.py": 14,
     "discrepancy/test_next_experiment.py": 13,
     "discrepancy/test_proposals.py": 13,
+    "test_hops.py": 12,
     "simulation/test_generated_cache.py": 9,
 }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from winch_friction.physics.friction import registry
+from winch_friction.physics.friction import term as registry
 from winch_friction.records.model_file import load_model, model_to_text
 
 DECLARATION = """

@@ -23,7 +23,7 @@ from campaign.faults.plain_kinds import (
     stamped,
     stuck_at,
 )
-from winch_friction.online.stamps import SLOWEST
+from winch_friction.online.agreement import SLOWEST
 
 BAR = 1e5  # Pa
 BIASED_IN = 10.0  # s in which a bias has come

@@ -17,7 +17,7 @@ from typing import Any
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
-from winch_friction.nodes.messages import message_type
+from winch_friction.nodes.inputs import message_type
 from winch_friction.nodes.qos import OUTPUT, fresh
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.topics import crane_topics

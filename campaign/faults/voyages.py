@@ -6,12 +6,11 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
-from winch_friction.compensation.friction_law import FrictionLaw
+from winch_friction.compensation.parts import FrictionLaw
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import sample_operating_point
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges, sample_operating_point
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import TopicMap, crane_topics

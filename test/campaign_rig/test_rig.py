@@ -11,8 +11,8 @@ from campaign import rig
 from campaign.rig.oil import viscosity
 from campaign.rig.truth import CRANE2, GEAR, RADII, RELATIVE_SIGMA, draw_friction
 from winch_friction.physics.signals import Run, column_unit
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
-from winch_friction.physics.winch.torque_balance import run_drive_torque
+from winch_friction.physics.winch.crane import run_drive_torque, run_drum_torque
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 

@@ -8,8 +8,8 @@ import yaml
 
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError, Problems
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
-from winch_friction.records.paths import config_directory
 from winch_friction.records.runs import read_run
 
 HEAD = ["time [s]", "motor_speed [rpm]", "motor_torque [N*m]", "hook_load [kg]"]

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.cli.main import run
-from winch_friction.physics.units import RPM
-from winch_friction.records.paths import config_directory
+from winch_friction.physics.channels import RPM
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.runs import read_run, write_run
 
 TEST = config_directory() / "examples" / "practice_150t" / "test_02.parquet"

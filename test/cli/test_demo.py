@@ -14,13 +14,13 @@ from winch_friction.cli.demo.plan import efficiency_model, make_plan
 from winch_friction.cli.demo.recording import Recording
 from winch_friction.cli.demo.tuning import efficiency_compensator, search_efficiency
 from winch_friction.cli.main import run
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.scaled import scaled_system
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch.operating_point import operating_point
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.paths import config_directory
 from winch_friction.simulation.scenario import load_scenario
 
 

@@ -7,8 +7,8 @@ import shutil
 import pytest
 
 from winch_friction.cli.main import run
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
-from winch_friction.records.paths import config_directory
 
 EXAMPLE = config_directory() / "examples" / "practice_150t"
 QUICK = ["--restarts", "1", "--evaluations", "300"]

@@ -8,7 +8,7 @@ import pytest
 import typer
 
 from winch_friction import __version__
-from winch_friction.cli import main, verbs
+from winch_friction.cli import main
 from winch_friction.physics.errors import InputError
 
 
@@ -24,7 +24,7 @@ def verb(monkeypatch):
     def install(error):
         app = typer.Typer()
         app.command("replay")(failing(error))
-        monkeypatch.setattr(verbs.Verb, "load", lambda self: typer.main.get_command(app))
+        monkeypatch.setattr(main.Verb, "load", lambda self: typer.main.get_command(app))
 
     return install
 
@@ -34,7 +34,7 @@ def test_version_and_help(capsys):
     assert __version__ in capsys.readouterr().out
     assert main.run([]) == 0
     shown = capsys.readouterr().out
-    assert all(each.name in shown for each in verbs.VERBS)
+    assert all(each.name in shown for each in main.VERBS)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.physics.units import CM3_PER_REV, RPM
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 
 Columns = dict[str, np.ndarray]
 PRESSURES = ("pressure_a", "pressure_b")

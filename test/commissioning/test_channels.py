@@ -7,7 +7,7 @@ import pytest
 
 from winch_friction.commissioning.channels import clock_findings, frozen_findings
 from winch_friction.commissioning.excitation import Taught
-from winch_friction.commissioning.ranges import excesses, range_score
+from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.physics.signals import Run
 
 

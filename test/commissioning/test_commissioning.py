@@ -11,9 +11,9 @@ from spoils import spoils
 from campaign import rig
 from campaign.second_rig import SETS, write_set
 from winch_friction.commissioning.balance import closure
+from winch_friction.commissioning.channels import first_contradiction
 from winch_friction.commissioning.check import quick_check, shipped_cranes
 from winch_friction.commissioning.commissioning import check
-from winch_friction.commissioning.finding import first_contradiction
 from winch_friction.commissioning.view import view_of
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

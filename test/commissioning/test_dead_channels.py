@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import winch_friction as wf
-from winch_friction.commissioning.channels import channel_findings
+from winch_friction.commissioning.channels import channel_findings, first_contradiction
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
-from winch_friction.commissioning.finding import first_contradiction
 
 CRANE = wf.load_crane("crane_150t")
 MODEL = wf.load_model("a6vm215_crane2")

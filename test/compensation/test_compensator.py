@@ -8,10 +8,9 @@ import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.compensation.safe_output import SafeOutput
-from winch_friction.physics.errors import InputError
-from winch_friction.physics.options import from_mapping
+from winch_friction.physics.channels import BAR, CM3_PER_REV
+from winch_friction.physics.errors import InputError, from_mapping
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.winch import sample_operating_point
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -1,6 +1,6 @@
 """One model as the compensator uses it: what its gains leave of the torque and of its bound."""
 
-from winch_friction.compensation.friction_law import FrictionLaw
+from winch_friction.compensation.parts import FrictionLaw
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch import sample_operating_point
 from winch_friction.records.model_file import load_model

@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from winch_friction.compensation.inputs import Needs
-from winch_friction.compensation.load import DrumTorque
+from winch_friction.compensation.parts import DrumTorque, Needs
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.units import GRAVITY
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 FULL = 3 * 3.4e-5 + 8 * 1.1e-5  # m^3/rad of both groups
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from winch_friction.compensation.model_schedule import LEARNED_AT, ModelSchedule
+from winch_friction.online.compensator import LEARNED_AT, ModelSchedule
 from winch_friction.records.model_file import load_model
 
 SEED = load_model("a6vm215_crane1")

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from winch_friction.compensation.load import DrumTorque
-from winch_friction.compensation.speed_predictor import SpeedPredictor
+from winch_friction.compensation.parts import DrumTorque
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.torque_balance import sample_drive_torque
+from winch_friction.physics.winch.crane import sample_drive_torque
+from winch_friction.physics.winch.operating_point import SpeedPredictor
 
 
 def test_acceleration_is_that_of_now_not_of_half_a_step_ago():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from winch_friction.compensation.transition import Bridge, Fade
+from winch_friction.compensation.parts import Bridge, Fade
 
 
 def test_a_bridge_that_is_cut_on_the_way_is_over_when_it_was_to_be():

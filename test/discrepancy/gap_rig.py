@@ -3,8 +3,7 @@
 from functools import cache
 
 from campaign.rig import make_dataset
-from winch_friction.discrepancy.answer import GapResult
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions, GapResult
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.addition import FEWEST, addition_table
-from winch_friction.physics.units import CM3_PER_REV, RPM
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 
 GIVEN = SimpleNamespace(torque=lambda point: 3.0 * point[0])
 REPAIRED = SimpleNamespace(torque=lambda point: 3.0 * point[0] + 20.0 * np.sign(point[0]))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from gap_rig import LENGTH, gap_of, runs_with
 
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import compare
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.records.crane_file import load_crane

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from winch_friction.discrepancy.engine.bounded_fit import bounded_fit
+from winch_friction.discrepancy.engine.problem import bounded_fit
 
 
 @pytest.mark.parametrize("seed", range(30))

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.drift import drift_note
+from winch_friction.discrepancy.proof import drift_note
 
 DRIVE = 100.0
 

@@ -6,16 +6,23 @@ import numpy as np
 import pytest
 from gap_rig import names_of, runs_with
 
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ANGLE
-from winch_friction.discrepancy.candidates.catalogue import all_candidates, candidates_for
-from winch_friction.discrepancy.candidates.drum_turn import CAUSE, FASTEST, HARMONICS, ONE, drum_ripples
+from winch_friction.discrepancy.candidates.catalogue import (
+    CAUSE,
+    FASTEST,
+    HARMONICS,
+    ONE,
+    all_candidates,
+    candidates_for,
+    drum_ripples,
+)
 from winch_friction.discrepancy.detectors.angle_spectrum import LOWEST_ORDER
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import GRAVITY
 
 SHARE = 0.012  # of T_d/i
 

@@ -7,7 +7,7 @@ import pytest
 
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.geometry import ONE_DEPTH, geometry_candidates, radius_columns, tare_columns
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 
 LEVER, GEAR = np.array([0.9, 1.0, 1.1]), 250.0
 HEAVE = np.array([0.0, 0.5, -0.5])  # m/s^2

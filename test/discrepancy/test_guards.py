@@ -7,20 +7,27 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import standing as standing_module
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine import selection as selection_module
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, find_regions, grams
+from winch_friction.discrepancy.engine.chance import (
+    Dependence,
+    Size,
+    _near_curve,
+    chance_of_no_gain,
+    dependences,
+    does_as_well,
+    near,
+    rivals_of,
+    rms_with_interval,
+)
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, heads
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
-from winch_friction.discrepancy.engine.interval import Size, chance_of_no_gain, rms_with_interval
-from winch_friction.discrepancy.engine.noise import noise_of_run
-from winch_friction.discrepancy.engine.omnibus import Dependence, dependences
-from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.engine.regions import find_regions
-from winch_friction.discrepancy.engine.rivals import _near_curve, does_as_well, near, rivals_of
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, noise_of_run
 from winch_friction.discrepancy.engine.selection import (
     Finding,
     Selection,
@@ -29,8 +36,6 @@ from winch_friction.discrepancy.engine.selection import (
     _significant,
     select,
 )
-from winch_friction.discrepancy.engine.trials import heads
-from winch_friction.discrepancy.outdone import _asked, _closed, outdone
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -43,7 +48,7 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.standing import _by_another_signal, _each_proven, _sets, several_leave_more_than_noise
 from winch_friction.discrepancy.ties import Company
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
+from winch_friction.discrepancy.workflow import _asked, _closed, outdone
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from gap_rig import names_of, runs_with
 
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 
 YIELDS = 0.004  # of the radius per layer below, at 50 t
 GROWS = 0.6  # with the load's power: the law of the package has any

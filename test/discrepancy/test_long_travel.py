@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from gap_rig import names_of, runs_with
 
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 
 CARRIED = 15.0  # N m per motor shaft

@@ -7,21 +7,21 @@ import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
 from winch_friction.discrepancy.candidates.signals import BALANCING, DELAY, SPEED, signal_candidates
-from winch_friction.discrepancy.delays import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of
+from winch_friction.discrepancy.search import without_delay
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.units import CM3_PER_REV
 from winch_friction.records.crane_file import load_crane
 
 

@@ -11,15 +11,14 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.balance import without_error
 from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_steps, uniform
-from winch_friction.discrepancy.preparation.motion import motion_of
 from winch_friction.discrepancy.preparation.prepare import _followed, prepare
-from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups
+from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups, motion_of
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of, least_noise_of
+from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import BAR
 
 
 @pytest.mark.parametrize("rate", [5.0, 9.8, 50.0, 200.0])

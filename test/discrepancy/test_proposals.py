@@ -9,12 +9,11 @@ import pytest
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy.engine.grammar import Factor, Law
-from winch_friction.discrepancy.proposed_term import declare
-from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, factors, shape
-from winch_friction.physics.dimensions import dimension_of, product
+from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, declare, factors, shape
+from winch_friction.physics.channels import dimension_of, product
 from winch_friction.physics.friction import FrictionModel, symbols
-from winch_friction.physics.friction.registry import known_for_now, load_file
 from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.term import known_for_now, load_file
 
 
 def _laws():

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from winch_friction.discrepancy.preparation.recursion import filtered, lagged
+from winch_friction.discrepancy.preparation.grid import filtered, lagged
 
 
 def test_filter_is_scipys_lfilter():

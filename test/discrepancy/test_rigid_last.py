@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import workflow
-from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.physics.signals import Run
 
 

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning.check import quick_check
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import Drum
-from winch_friction.physics.winch.drive import Drive
+from winch_friction.physics.winch.crane import Drive, Drum
 
 BARE = FrictionModel("rope_force_alone", (), ())
 INERTIA, COULOMB, VISCOUS = 900.0, 260.0, 90.0  # kg m^2, N m, N m s/rad: all at a shaft of 1 m radius without gear

@@ -10,12 +10,12 @@ from gap_rig import names_of, runs_with
 from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.run_states import levels_of, told_by_a_signal, two_levels
 from winch_friction.discrepancy.workflow import find_gap
-from winch_friction.physics.units import BAR
+from winch_friction.physics.channels import BAR
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 

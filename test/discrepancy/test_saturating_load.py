@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from gap_rig import names_of, runs_with
 
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 
 CLOSED = 1.6e5  # N m of drum torque, at which the contact is closed by three quarters; tanh, which the package lacks
 LARGEST = 60.0  # N m at the shaft

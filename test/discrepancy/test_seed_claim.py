@@ -6,7 +6,7 @@ import pytest
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.seed_claim import _something_else, _surprise, try_seed
+from winch_friction.discrepancy.estimates import _something_else, _surprise, try_seed
 
 RUNS, BLOCKS, COUNT = 8, 200, 4
 RUN, POSITION = np.repeat(np.arange(RUNS), BLOCKS), np.tile(np.arange(BLOCKS), RUNS)

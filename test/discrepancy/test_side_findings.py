@@ -16,8 +16,8 @@ from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_spe
 from winch_friction.discrepancy.detectors.ripple import TERM, Ripple, _known, angle_ripple
 from winch_friction.discrepancy.detectors.soft_oil import free_air
 from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.physics.fluid import LEAKAGE_LAWS, leakage_per_coefficient
 from winch_friction.physics.friction import FrictionModel, term_named
-from winch_friction.physics.leakage import LEAKAGE_LAWS, leakage_per_coefficient
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

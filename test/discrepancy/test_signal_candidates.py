@@ -6,10 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.bends import bends_over, bent_pressure_columns, curve_columns
 from winch_friction.discrepancy.candidates.candidate import machine_sizes
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.candidates.feedback import _swivel
+from winch_friction.discrepancy.candidates.feedback import _swivel, bends_over, bent_pressure_columns, curve_columns
 from winch_friction.discrepancy.candidates.signals import (
     ALL,
     _offset,
@@ -21,9 +20,9 @@ from winch_friction.discrepancy.candidates.signals import (
     warm_columns,
 )
 from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.corrections import straight, unbent
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.units import CM3_PER_REV, RPM
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
 

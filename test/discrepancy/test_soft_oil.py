@@ -11,7 +11,7 @@ from campaign.rig import DRAWN, make_dataset, world_of
 from winch_friction.discrepancy.detectors import soft_oil
 from winch_friction.discrepancy.detectors.soft_oil import free_air, untestable
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.physics.gas import air_compressed
+from winch_friction.physics.fluid import air_compressed
 from winch_friction.physics.signals import Run
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from gap_rig import names_of, runs_with
 
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.ties import TIES, _best_pair, member_candidate
 from winch_friction.discrepancy.workflow import find_gap

@@ -1,8 +1,8 @@
 """Whether a wire gives is decided by all runs, also where the model is fitted to some of them."""
 
 from campaign.gap_hard_cases import all_cases, runs_of
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
-from winch_friction.discrepancy.options import GapOptions
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.options import GapOptions
-from winch_friction.discrepancy.preparation.motion import at_one_speed
+from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.importing.carry_out import import_log
 from winch_friction.importing.mapping import load_map
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
-from winch_friction.records.paths import config_directory
 
 EXAMPLE = config_directory() / "examples" / "worm_drive"
 STEP = 0.105  # rad/s, of the encoder

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from winch_friction.cli.main import run
-from winch_friction.cli.verbs import VERBS
+from winch_friction.cli.main import VERBS, run
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs/tutorials").glob("*.md"))]

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.units import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.winch import sample_operating_point
 
 FULL = 11 * 215 * CM3_PER_REV  # m^3/rad, all motors in normal mode

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
-from winch_friction.physics.units import RPM
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.channels import RPM
+from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.emps import read_emps
 from winch_friction.records.model_file import load_model

@@ -8,9 +8,9 @@ import pytest
 from driven_winch import rigid_samples
 
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.seed_range import seed_range
 from winch_friction.physics.signals import GroupSample
-from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import sample_operating_point
 
 CONFIG = EstimatorConfig(speed_step=0.0, speed_noise=0.1, wire_length=5.0)

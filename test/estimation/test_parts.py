@@ -32,9 +32,9 @@ from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.reference import ReferenceFilter
 from winch_friction.estimation.sample import HangingLoad
 from winch_friction.estimation.trust import Consistency, Excitation, VarianceFactor, nis_band
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.seed_range import seed_range
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.units import GRAVITY
 
 SENSORS = (0.01, 1e5)
 

@@ -8,7 +8,7 @@ from broken_sensors import CHANNELS, END, SENSOR_FAULTS, START, STREAM_FAULTS, d
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
-from winch_friction.physics.hold import InputHold
+from winch_friction.records.sample_stream import InputHold
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 

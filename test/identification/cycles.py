@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.winch import Crane, operating_point
 
 SPEEDS = (20, 40, 70, 110, 160, 230, 350, 500, 700, 900, 1100)

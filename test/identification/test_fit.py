@@ -13,8 +13,8 @@ from winch_friction.identification.motor_models import MOTOR_MODELS, initial_mod
 from winch_friction.identification.selection import choose, score_models
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import FitRange, motor_points
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.records.model_file import load_model, save_model
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from winch_friction.identification.motor_models import MOTOR_MODELS, initial_model, motor_model_named
 from winch_friction.identification.supplier_table import motor_points
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import CM3_PER_REV
 
 X = 280 * CM3_PER_REV
 RHO, MU = 870.0, 0.04

@@ -9,8 +9,8 @@ from cycles import SPEEDS, TABLE_2, cycle, cycles
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import curve_data, friction_curve
 from winch_friction.identification.plateaus import find_plateaus
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 
 
 def test_every_plateau_is_found_once(truth, crane):

@@ -6,8 +6,8 @@ import pytest
 from winch_friction.identification.black_box import BlackBoxMap
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import FitRange
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 
 HEADER = "speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]"
 

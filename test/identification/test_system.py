@@ -16,9 +16,9 @@ from winch_friction.identification.prior import supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, combined, fit_system, second_loop
 from winch_friction.identification.system_identification import identify_system, winch_seed
 from winch_friction.identification.verification import test_errors as errors_of
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, RPM
 from winch_friction.records.model_file import load_model, save_model
 
 

@@ -7,9 +7,9 @@ from cycles import cycle
 from winch_friction.identification.friction_curve import FrictionCurve
 from winch_friction.identification.verification import PressureCheck, inertia_torque, pressure_check
 from winch_friction.identification.verification import test_errors as errors_of
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.winch import operating_point
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.records.runs import read_run
 
 EXAMPLES = Path(__file__).parents[2] / "config" / "examples" / "practice_150t"

@@ -13,7 +13,7 @@ from winch_friction.nodes.compensator import CompensatorNodeOptions
 from winch_friction.nodes.estimator import EstimatorNodeOptions
 from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.simulator import SimulatorNodeOptions
-from winch_friction.physics.options import from_mapping
+from winch_friction.physics.errors import from_mapping
 
 NODES = Path(__file__).resolve().parents[2] / "config" / "nodes"
 KINDS = {

@@ -5,9 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from winch_friction.nodes.guard import Guarded, answered
-from winch_friction.nodes.inputs import Inputs
-from winch_friction.nodes.messages import ROS
+from winch_friction.nodes.inputs import ROS, Inputs
+from winch_friction.nodes.loop import Guarded, answered
 from winch_friction.physics.errors import InputError
 from winch_friction.records.topics import TopicMap, joint_state, stamp_header
 

@@ -51,7 +51,7 @@ def topics():
 
 
 def fields_of(kind):
-    from winch_friction.nodes.messages import message_type
+    from winch_friction.nodes.inputs import message_type
 
     return set(message_type(kind).get_fields_and_field_types())
 

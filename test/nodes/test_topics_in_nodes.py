@@ -4,10 +4,9 @@ import math
 
 import pytest
 
-from winch_friction.nodes.messages import ROS, diagnostic_status, plain_value
-from winch_friction.physics.hold import InputHold
+from winch_friction.nodes.inputs import ROS, diagnostic_status, plain_value
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.records.sample_stream import SampleStream
+from winch_friction.records.sample_stream import InputHold, SampleStream
 from winch_friction.records.topics import crane_topics
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from winch_friction.compensation import CompensatorConfig, Feedforward
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import ServiceOptions
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.crane_file import load_crane

@@ -12,7 +12,7 @@ from winch_friction.compensation import CompensatorConfig
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.online.agreement import Agreement
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 SPEED, REFERENCE = "winch/joint_states", "winch/reference"
 SWASH = "winch/active/displacement"

@@ -7,7 +7,7 @@ from sea import CRANE
 
 from winch_friction.online.agreement import BALANCE_TIME, Agreement, Doubt, LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 GROUPS = ("active", "passive")
 

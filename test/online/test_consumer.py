@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from winch_friction.online.consumer import FADE_TIME, HOLD_TIME, RETURN_TIME, HeldTorque, mark, read_mark
+from winch_friction.online.compensator import mark, read_mark
+from winch_friction.online.consumer import FADE_TIME, HOLD_TIME, RETURN_TIME, HeldTorque
 
 
 def test_a_torque_is_held_for_a_moment_and_let_go() -> None:

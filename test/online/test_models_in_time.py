@@ -5,8 +5,8 @@ import time
 import pytest
 from sea import CRANE, PERIOD, SEED, START, TOPICS, swell
 
+from winch_friction.online.compensator import LARGEST, ModelIntake, parse
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.online.models import LARGEST, ModelIntake, parse
 from winch_friction.physics.errors import InputError
 from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.model_file import model_to_text

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from sea import SEED, Fed
 
-from winch_friction.compensation.model_schedule import LEARNED_AT
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.compensator import LEARNED_AT
+from winch_friction.online.inputs import ServiceOptions
 
 
 def learned(at: float):

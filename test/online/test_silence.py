@@ -7,7 +7,7 @@ from sea import CRANE, PERIOD, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.online.compensator import HEARTBEAT
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import ServiceOptions
 from winch_friction.records.bag_write import MESSAGES
 
 SPEED = "winch/joint_states"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from winch_friction.online.stamps import CONFIRMED_BY, Stamp, StampWatch
+from winch_friction.online.agreement import CONFIRMED_BY, Stamp, StampWatch
 
 PERIOD = 0.02  # s
 

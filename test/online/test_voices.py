@@ -3,8 +3,8 @@
 import pytest
 from sea import CRANE, TOPICS, swell
 
-from winch_friction.online.voices import DOUBTED, TOGETHER, Voices
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.online.agreement import DOUBTED, TOGETHER, Voices
+from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES
 
 SPEED = TOPICS.inputs["winch/joint_states"]

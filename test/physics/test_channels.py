@@ -14,9 +14,9 @@ from winch_friction.physics.channels import (
     columns_of,
     display_unit,
     limits_of,
+    plausible,
 )
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
-from winch_friction.physics.plausible import plausible
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, operating_point
 from winch_friction.records.headers import conversion_to_si

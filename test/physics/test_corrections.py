@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.corrections import (
     DECLARED,
     Action,
@@ -15,10 +16,8 @@ from winch_friction.physics.corrections import (
     corrected_crane,
 )
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.gas import relaxed_compression
+from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
 from winch_friction.physics.signals import GroupSample, Run, Sample
-from winch_friction.physics.units import BAR, CM3_PER_REV
-from winch_friction.physics.viscosity import relative_viscosity
 from winch_friction.physics.winch import Drum
 from winch_friction.records.model_file import model_from_text, model_to_text
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from winch_friction.physics.dimensions import dimension_of, product, quotient_unit
+from winch_friction.physics.channels import dimension_of, product, quotient_unit
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
 from winch_friction.physics.friction.symbols import SIGNAL_OF_SYMBOL

@@ -8,7 +8,7 @@ import pytest
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import Crane, Drive, Drum
-from winch_friction.physics.winch.torque_balance import run_drive_torque, sample_drive_torque
+from winch_friction.physics.winch.crane import run_drive_torque, sample_drive_torque
 from winch_friction.records.crane_file import crane_from_content, load_crane
 
 

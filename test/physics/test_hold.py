@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run
+from winch_friction.records.sample_stream import InputHold
 
 
 def test_holds_until_the_age_limit_of_the_input():

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.identity import (
+from winch_friction.physics.friction.model import (
     ASSUMED_STD,
     contradictions,
     refuse_other_crane,
@@ -15,7 +16,6 @@ from winch_friction.physics.identity import (
     unstated,
     with_stated_std,
 )
-from winch_friction.physics.units import CM3_PER_REV
 from winch_friction.physics.winch import Drive
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from winch_friction.physics.kept import keep, read_kept
+from winch_friction.physics.friction.sources import keep, read_kept
 
 TEXT = "def equation(x):\n    return x[0]  # 20 °C\n"
 

@@ -9,8 +9,8 @@ import pytest
 
 from winch_friction.physics.friction import sources
 from winch_friction.physics.friction.compiled import CompiledTerms
-from winch_friction.physics.friction.registry import registered_terms
 from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.term import registered_terms
 from winch_friction.records.model_file import load_model
 
 PARTS = ("scalar_torque", "scalar_torque_and_gradient", "scalar_contributions", "scalar_state_rates",

@@ -6,8 +6,8 @@ from own_term_files import forgotten, own_terms
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import Scope, Term, register, registered_terms, term_named
-from winch_friction.physics.friction.registry import load_file
 from winch_friction.physics.friction.symbols import p
+from winch_friction.physics.friction.term import load_file
 
 
 def test_unknown_name_lists_the_known_ones():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from winch_friction.physics.units import BAR, CM3_PER_REV, GRAVITY, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.winch import operating_point
 from winch_friction.records.model_file import load_model
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from winch_friction.physics.friction.direction import smooth_sign, smooth_signs
-from winch_friction.physics.friction.state import advance
+from winch_friction.physics.friction.compiled import advance
+from winch_friction.physics.winch.operating_point import smooth_sign, smooth_signs
 
 
 @given(st.floats(-2, 2), st.floats(-1e3, 1e3), st.floats(0, 1e4), st.floats(1e-5, 1.0))

@@ -8,12 +8,12 @@ from hypothesis import HealthCheck, given, settings
 from run_strategies import make_run, runs, same
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_file import open_bag
 from winch_friction.records.bag_write import MESSAGES, BagWriter, write_bag
 from winch_friction.records.bags import bag_samples
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import TopicMap, crane_topics, joint_state, stamp_header
 
 FEW = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -6,7 +6,7 @@ import pytest
 
 from winch_friction.compensation import CompensatorConfig, Feedforward
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import ServiceOptions
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane

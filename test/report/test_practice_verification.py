@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from winch_friction.identification.verification import PressureCheck, TestError
-from winch_friction.physics.units import BAR, RPM
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.report.practice_verification import compared_html, pressure_html
 
 

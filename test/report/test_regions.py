@@ -7,7 +7,7 @@ import pytest
 
 import winch_friction as wf
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.physics.units import RPM
+from winch_friction.physics.channels import RPM
 from winch_friction.report.gap_plots import heat_plot
 
 

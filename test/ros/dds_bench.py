@@ -21,7 +21,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from sensor_msgs.msg import JointState  # noqa: E402
 
-from winch_friction.nodes.messages import ROS, message_type  # noqa: E402
+from winch_friction.nodes.inputs import ROS, message_type  # noqa: E402
 from winch_friction.nodes.qos import OUTPUT  # noqa: E402
 from winch_friction.nodes.remote import RemoteNode  # noqa: E402
 from winch_friction.physics.signals import GroupSample, Sample  # noqa: E402

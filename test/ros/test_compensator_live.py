@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
-from winch_friction.nodes.messages import clock_message
+from winch_friction.nodes.inputs import clock_message
 from winch_friction.nodes.qos import LATCHED
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named

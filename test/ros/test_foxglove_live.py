@@ -8,7 +8,7 @@ import time
 import pytest
 
 from winch_friction.cli.foxglove import serving
-from winch_friction.nodes.messages import message_type
+from winch_friction.nodes.inputs import message_type
 from winch_friction.records.topics import JOINT_STATE
 
 pytest.importorskip("foxglove", reason="needs foxglove-sdk: pip install '.[foxglove]'")

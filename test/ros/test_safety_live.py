@@ -17,9 +17,9 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from winch_friction.nodes.messages import pressure_message
+from winch_friction.nodes.inputs import pressure_message
 from winch_friction.nodes.qos import LATCHED, OUTPUT, SENSOR, fresh
-from winch_friction.online.consumer import read_mark
+from winch_friction.online.compensator import read_mark
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Sample
 from winch_friction.records.topics import crane_topics

@@ -8,8 +8,8 @@ import pytest
 from clean_sensors import CLEAN
 
 import winch_friction.simulation.hidden as hidden_package
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.simulation import Simulator, load_scenario, simulate
 from winch_friction.simulation.hidden.catalogue import EFFECTS, effect_names
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from clean_sensors import CLEAN
 
+from winch_friction.physics.channels import BAR
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR
 from winch_friction.simulation import Simulator, simulate
 
 STILL = {"sea": {"kind": "still"}, "duration": 60.0}

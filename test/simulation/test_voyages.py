@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.friction.registry import registered_terms
+from winch_friction.physics.friction.term import registered_terms
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.simulation import load_scenario, simulate

@@ -91,7 +91,8 @@ def friction_curve(
 def _points(model: FrictionModel, run: Run, crane: Crane, load: float | None) -> tuple[Any, FloatArray]:
     """Operating points and times of the run without the errors that the model knows of."""
     from winch_friction.physics.corrections import corrected
-    from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+    from winch_friction.physics.winch.crane import run_drum_torque
+    from winch_friction.physics.winch.operating_point import run_operating_points
 
     if "hook_load" not in run and load is None:
         raise InputError(f"{run.name}: no column 'hook_load'; give load= in kg, the whole hanging mass")

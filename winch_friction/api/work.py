@@ -95,7 +95,7 @@ def _fit_table(path: Path, name: str, seed: int) -> Fit:
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.supplier_file import read_supplier_table
     from winch_friction.identification.supplier_table import FitRange
-    from winch_friction.records.paths import shipped
+    from winch_friction.records.atomic import shipped
 
     table = read_supplier_table(shipped("suppliers", path, ".csv"))
     found = identify_motor(table, [name], chosen=name, fit_range=FitRange(), with_complex=False, seed=seed)
@@ -158,7 +158,7 @@ def gap(runs: Runs, crane: Crane, model: FrictionModel, *, holdout: float = 0.25
     >>> bool(locked["after"] < 0.1 * locked["before"])
     True
     """
-    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
 
     return Gap(find_gap(_read(list(runs), crane), crane, model, GapOptions(holdout=holdout, seed=seed)))

@@ -33,9 +33,8 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.inputs import folders_of_cranes, load_terms, read_inputs, run_paths
-    from winch_friction.cli.outputs import refuse_unwritable
-    from winch_friction.cli.provenance import provenance_of
+    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.inputs import folders_of_cranes, load_terms, provenance_of, read_inputs, run_paths
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
 

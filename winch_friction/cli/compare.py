@@ -5,11 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.console import PAGE, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
-from winch_friction.cli.outputs import PAGE, refuse_other_kind
 from winch_friction.physics.errors import InputError, Problems
 
 CERTAIN = 2.0  # standard deviations from which a difference is more than what the models do not know of themselves
@@ -103,7 +102,7 @@ def _say_beyond(loads: list[float], crane: Any) -> None:
 def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | None) -> dict[str, Any]:
     import numpy as np
 
-    from winch_friction.physics.units import RPM
+    from winch_friction.physics.channels import RPM
     from winch_friction.physics.winch.model_curve import model_curve
     from winch_friction.report.curves import joint_std
 
@@ -129,7 +128,7 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
     said = _said(one.name, two.name, rows)
     page = None
     if out is not None:
-        from winch_friction.cli.provenance import provenance_of
+        from winch_friction.cli.inputs import provenance_of
         from winch_friction.report.curves import write_comparison_page
 
         worst = max(rows, key=lambda row: abs(row["largest [N*m]"]))
@@ -167,7 +166,8 @@ def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any
     import numpy as np
 
     from winch_friction.physics.corrections import corrected
-    from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+    from winch_friction.physics.winch.crane import run_drum_torque
+    from winch_friction.physics.winch.operating_point import run_operating_points
     from winch_friction.records.runs import read_runs
 
     rows: list[dict[str, Any]] = []

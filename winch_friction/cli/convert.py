@@ -5,10 +5,9 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import show_json, show_warnings
+from winch_friction.cli.console import refuse_input_as_output, show_json, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath
-from winch_friction.cli.outputs import refuse_input_as_output
 from winch_friction.physics.signals import Run
 
 app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
@@ -32,8 +31,7 @@ def run(
       winch-friction convert run log.csv log.parquet log.mcap
     """
     from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.mapping import bag_options_of
-    from winch_friction.records.runs import read_run
+    from winch_friction.records.runs import bag_options_of, read_run
 
     for each in out:
         refuse_input_as_output(each, [source])

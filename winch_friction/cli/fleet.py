@@ -55,8 +55,8 @@ def command(
 
       winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
-    from winch_friction.cli.outputs import refuse_unwritable
-    from winch_friction.cli.provenance import provenance_of
+    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.inputs import provenance_of
     from winch_friction.fleet.recordings import find_recordings
 
     refuse_unwritable(out / "fleet.json")

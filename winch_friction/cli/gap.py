@@ -7,8 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.allocation import search_at_hand
-from winch_friction.cli.console import progress, show_json, show_table, show_warnings, stepping
+from winch_friction.cli.console import progress, search_at_hand, show_json, show_table, show_warnings, stepping
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths
 from winch_friction.physics.errors import InputError
@@ -89,15 +88,15 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
+    from winch_friction.cli.console import refuse_input_as_output
     from winch_friction.cli.inputs import read_inputs, refuse_copies, refuse_implausible, run_paths
-    from winch_friction.cli.outputs import refuse_input_as_output
-    from winch_friction.discrepancy.options import STEPS, GapOptions
+    from winch_friction.discrepancy.answer import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
-    from winch_friction.physics.friction.registry import load_file
-    from winch_friction.physics.identity import unstated
+    from winch_friction.physics.friction.model import unstated
+    from winch_friction.physics.friction.term import load_file
     from winch_friction.records.atomic import write_text
-    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import load_model, save_model
+    from winch_friction.records.runs import bag_options_of
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
@@ -126,7 +125,7 @@ def run_gap(
         ) from None
     with stepping("comparing with the model", STEPS) as tell:
         result = find_gap(read, loaded_crane, seed_model, replace(options, told=tell))
-    from winch_friction.cli.provenance import provenance_of
+    from winch_friction.cli.inputs import provenance_of
 
     made = provenance_of(paths, loaded_crane.name, model, seed) | forced
     noted = replace(result.model, provenance={**result.model.provenance, **forced})
@@ -192,7 +191,7 @@ def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[
 def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
     """For a user's own simulation: what it has to add, as a table."""
     from winch_friction.discrepancy.addition import write_addition
-    from winch_friction.discrepancy.preparation.own_simulation import simulated_column
+    from winch_friction.discrepancy.preparation.prepared_run import simulated_column
 
     if runs and simulated_column(runs[0]):
         sides = [*result.train.runs, *result.holdout.runs]

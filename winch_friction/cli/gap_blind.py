@@ -34,7 +34,7 @@ def _text(value: Any) -> str:
 
 
 def _trial(number: int, crane: str, model: str, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
-    from winch_friction.discrepancy.options import GapOptions
+    from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane

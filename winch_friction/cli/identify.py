@@ -58,16 +58,15 @@ def motor(
 
     Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
     """
-    from winch_friction.cli.console import progress
+    from winch_friction.cli.console import MODEL, progress, refuse_input_as_output, refuse_other_kind
     from winch_friction.cli.identify_output import show_motor
-    from winch_friction.cli.outputs import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
     from winch_friction.identification.supplier_file import read_supplier_table
     from winch_friction.identification.supplier_table import FitRange
-    from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+    from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+    from winch_friction.records.atomic import shipped
     from winch_friction.records.model_file import save_model
-    from winch_friction.records.paths import shipped
 
     path = shipped("suppliers", table, ".csv")
     refuse_other_kind(out, MODEL, "a model")
@@ -115,15 +114,15 @@ def system(
 
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
+    from winch_friction.cli.console import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.cli.identify_output import show_system
     from winch_friction.cli.inputs import refuse_copies, refuse_implausible, run_paths
-    from winch_friction.cli.outputs import MODEL, refuse_input_as_output, refuse_other_kind
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
     from winch_friction.physics.errors import Problems
-    from winch_friction.records.mapping import bag_options_of
     from winch_friction.records.model_file import save_model
+    from winch_friction.records.runs import bag_options_of
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     refuse_other_kind(out, MODEL, "a model")
@@ -155,7 +154,7 @@ def _machine(crane: str, motor: str, runs: Sequence[Path], problems: Any) -> tup
     """The crane and the motor's model; what is wrong with them is gathered."""
     from winch_friction.cli.inputs import crane_of
     from winch_friction.physics.errors import InputError
-    from winch_friction.physics.identity import refuse_other_motor
+    from winch_friction.physics.friction.model import refuse_other_motor
     from winch_friction.records.model_file import load_model
 
     supplied, known = None, None
@@ -206,11 +205,9 @@ def practice(
 
     Example: winch-friction identify practice practice_150t --out practice/
     """
-    from winch_friction.cli.console import progress, show_json, stdout
+    from winch_friction.cli.console import progress, refuse_unwritable, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
-    from winch_friction.cli.inputs import refuse_implausible
-    from winch_friction.cli.outputs import refuse_unwritable
-    from winch_friction.cli.provenance import provenance_of
+    from winch_friction.cli.inputs import provenance_of, refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
@@ -239,7 +236,7 @@ def practice(
 
 
 def _example(path: Path) -> Path:
-    from winch_friction.records.paths import config_directory
+    from winch_friction.records.atomic import config_directory
 
     shipped = config_directory() / "examples" / path
     return shipped if not path.exists() and shipped.is_dir() else path

@@ -122,7 +122,7 @@ def import_logs(
     overwrite: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Write one run file per log, all or none."""
-    from winch_friction.cli.outputs import refuse_unwritable
+    from winch_friction.cli.console import refuse_unwritable
     from winch_friction.importing.carry_out import import_log
     from winch_friction.importing.contradiction import run_contradictions
     from winch_friction.importing.mapping import load_map, with_settings

@@ -7,8 +7,8 @@ displacement, inertia with its power 5/3, a wire with its diameter squared. They
 from dataclasses import dataclass
 from typing import Any
 
+from winch_friction.physics.channels import CM3_PER_REV, GRAVITY
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import CM3_PER_REV, GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
 # what the rules scale: crane_150t, its plant and its model

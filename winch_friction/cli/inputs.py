@@ -1,5 +1,11 @@
-"""What the verbs ask of their inputs before they work: which runs, of which crane, and can that be."""
+"""What the verbs ask of their inputs before they work, which runs, of which crane, and can that be; and what is said
+of them beside a result.
+"""
 
+import hashlib
+import shlex
+import subprocess
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
@@ -41,7 +47,7 @@ def _is_run(path: Path) -> bool:
 def load_terms(path: Path | None) -> None:
     """Register the friction terms of a user's file, where one is given."""
     if path is not None:
-        from winch_friction.physics.friction.registry import load_file
+        from winch_friction.physics.friction.term import load_file
 
         load_file(path)
 
@@ -82,7 +88,7 @@ def read_inputs(
 
 def machine_of(crane: str, model: str, paths: Sequence[Path], problems: Problems) -> tuple[Any, Any]:
     """The crane and the model (None without a name); what is wrong with them, or speaks against both, is gathered."""
-    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.physics.friction.model import refuse_other_crane
     from winch_friction.records.model_file import load_model
 
     seed, winch = None, None
@@ -158,8 +164,8 @@ def refuse_implausible(
     `near` are paths beside which the user's other cranes may lie. Returns what a result's provenance is to hold:
     nothing where the data are plausible, `forced` with the sentence where they are not.
     """
+    from winch_friction.commissioning.channels import first_contradiction
     from winch_friction.commissioning.check import known_cranes, quick_check, refuse
-    from winch_friction.commissioning.finding import first_contradiction
 
     findings = quick_check(runs, crane, model, known_cranes(*folders_of_cranes(near)))
     show_warnings(f"{each.sentence}" for each in findings if each.severity == "warning")
@@ -170,3 +176,35 @@ def refuse_implausible(
         refuse(findings)
     show_warnings([f"--force: {contradiction.sentence}"])
     return {"forced": contradiction.sentence}
+
+
+# -- where a result comes from
+def provenance_of(paths: Sequence[Path], crane: str = "", model: str = "", seed: int | None = None) -> dict[str, Any]:
+    """What a result was made of: command, version, commit, crane, model, seed, and every file with its hash."""
+    from winch_friction import __version__
+
+    return {
+        "command": " ".join(["winch-friction", *map(shlex.quote, sys.argv[1:])]), "version": __version__,
+        "commit": _commit(), "crane": crane, "model": model, "seed": seed,
+        "files": [{"name": path.name, "sha256": _hash(path)} for path in paths],
+    }  # fmt: skip
+
+
+def _hash(path: Path) -> str:
+    """Of a file, or of all files of a bag's folder in order."""
+    digest = hashlib.sha256()
+    for each in sorted(path.rglob("*")) if path.is_dir() else [path]:
+        if each.is_file():
+            with each.open("rb") as content:
+                while chunk := content.read(1 << 20):
+                    digest.update(chunk)
+    return digest.hexdigest()
+
+
+def _commit() -> str:
+    """Of the package's own repository, '' where it was installed without one."""
+    here = Path(__file__).resolve().parents[2]
+    if not (here / ".git").exists():
+        return ""
+    said = subprocess.run(["git", "-C", str(here), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return said.stdout.strip()

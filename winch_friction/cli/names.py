@@ -19,7 +19,7 @@ class Kind:
 
 
 def _files(folder: str, suffix: str = ".yaml") -> dict[str, Path]:
-    from winch_friction.records.paths import config_directory
+    from winch_friction.records.atomic import config_directory
 
     return {path.stem: path for path in sorted((config_directory() / folder).glob(f"*{suffix}"))}
 
@@ -102,8 +102,7 @@ def _effects() -> Rows:
 
 
 def _units() -> Rows:
-    from winch_friction.physics.channels import CHANNELS
-    from winch_friction.physics.units import accepted_units
+    from winch_friction.physics.channels import CHANNELS, accepted_units
 
     return [
         {

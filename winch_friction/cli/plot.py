@@ -31,8 +31,8 @@ def command(
 
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
+    from winch_friction.cli.console import PAGE, refuse_other_kind
     from winch_friction.cli.inputs import read_all, read_inputs
-    from winch_friction.cli.outputs import PAGE, refuse_other_kind
     from winch_friction.physics.errors import InputError
     from winch_friction.report.run_page import channel_rows, write_run_page
 

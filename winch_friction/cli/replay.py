@@ -46,12 +46,11 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.inputs import load_terms, machine_of, refuse_implausible
-    from winch_friction.cli.outputs import refuse_input_as_output
-    from winch_friction.cli.provenance import provenance_of
+    from winch_friction.cli.console import refuse_input_as_output
+    from winch_friction.cli.inputs import load_terms, machine_of, provenance_of, refuse_implausible
     from winch_friction.physics.errors import InputError, Problems
-    from winch_friction.physics.identity import ASSUMED_STD, unstated
-    from winch_friction.records.mapping import bag_options_of
+    from winch_friction.physics.friction.model import ASSUMED_STD, unstated
+    from winch_friction.records.runs import bag_options_of
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary

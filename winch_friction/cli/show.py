@@ -5,11 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.console import PAGE, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalPath
-from winch_friction.cli.outputs import PAGE, refuse_other_kind
 from winch_friction.physics.errors import InputError, meant
 
 LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
@@ -68,7 +67,7 @@ def _of_file(name: str) -> str:
 
 def curve_crane(model: Any, crane: str) -> Any:
     """The crane that a model is drawn on: the given one, the model's own, else what fits its drive."""
-    from winch_friction.physics.identity import refuse_other_crane
+    from winch_friction.physics.friction.model import refuse_other_crane
     from winch_friction.records.crane_file import load_crane
 
     if crane:
@@ -83,7 +82,7 @@ def curve_crane(model: Any, crane: str) -> Any:
 
 
 def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) -> None:
-    from winch_friction.physics.units import RPM
+    from winch_friction.physics.channels import RPM
     from winch_friction.physics.winch.model_curve import model_curve
     from winch_friction.records.model_file import load_model
 
@@ -191,7 +190,7 @@ def _write_page(text: Any, term: Any, out: Path) -> None:
 
 
 def _content(name: str, what: str, as_json: bool) -> None:
-    from winch_friction.records.paths import shipped
+    from winch_friction.records.atomic import shipped
     from winch_friction.records.strict_yaml import read_yaml
 
     path = shipped({"crane": "cranes", "scenario": "scenarios"}[what], name)

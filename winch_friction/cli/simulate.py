@@ -55,9 +55,8 @@ def command(
 
       winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
     """
-    from winch_friction.cli.console import progress, show_json, show_table
+    from winch_friction.cli.console import progress, refuse_unwritable, show_json, show_table
     from winch_friction.cli.inputs import machine_of
-    from winch_friction.cli.outputs import refuse_unwritable
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     load_terms(terms_file)

@@ -13,11 +13,10 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from winch_friction.commissioning.view import RunView
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.direction import smooth_signs
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import GRAVITY
-from winch_friction.physics.winch.operating_point import group_point, operating_point
+from winch_friction.physics.winch.operating_point import group_point, operating_point, smooth_signs
 
 EFFECTIVE = 40.0  # samples that a run counts for: neighbouring blocks repeat each other
 # ordinary errors, 1 sigma

@@ -1,18 +1,71 @@
-"""Every channel by itself: range, rate, gaps, steps, saturation, standing still; and the clock."""
+"""What a finding of the commissioning check is, and those of every channel by itself: range, rate, gaps, steps,
+saturation, standing still; and the clock.
+"""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from winch_friction.commissioning.finding import Finding
 from winch_friction.commissioning.view import broken_cells, usable
-from winch_friction.physics.channels import display_unit
-from winch_friction.physics.plausible import LIMITS
+from winch_friction.physics.channels import LIMITS, display_unit
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
 
+SEVERITIES = ("error", "warning", "note")  # what contradicts the crane, what deserves a look, what is only said
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was found.
+
+    `cause` is a stable identifier (`unit`, `sign`, `ports`, `groups`, `scale`, `crane`, `delay`, `tare`, `cell`, ...),
+    `channel` the column it concerns (empty: none), `sentence` one line for a person, `runs` the runs it holds for,
+    `evidence` plain numbers: residual before and after in N m at the shaft, scores, ratios.
+    """
+
+    severity: str
+    cause: str
+    sentence: str
+    channel: str = ""
+    runs: tuple[str, ...] = ()
+    evidence: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether data with this finding cannot be this crane's, so that no result may be written from them."""
+        return self.severity == "error"
+
+    def content(self) -> dict[str, Any]:
+        """Plain types."""
+        return {
+            "severity": self.severity,
+            "cause": self.cause,
+            "channel": self.channel,
+            "sentence": self.sentence,
+            "runs": list(self.runs),
+            "evidence": dict(self.evidence),
+        }
+
+
+def first_contradiction(findings: Sequence[Finding]) -> Finding | None:
+    """The most likely mistake, or None when the data may be this crane's; findings come in order of likelihood."""
+    return next((each for each in findings if each.contradicts), None)
+
+
+def run_words(names: Sequence[str], total: int) -> str:
+    """'all 12 runs', '3 of 12 runs (a, b, c)', or the run's name where there is one."""
+    if total == 1:
+        return f"run {names[0]}"
+    if len(names) == total:
+        return f"all {total} runs"
+    shown = ", ".join(names[:3]) + (" and more" if len(names) > 3 else "")
+    return f"{len(names)} of {total} runs ({shown})"
+
+
+# -- every channel by itself
 GAP = 5.0  # usual steps, as in records.run_checks
 LONG = 1000.0  # a recording is at most this many times as long as its samples say: else the clock has jumped
 SLOW_RATE = 5.0  # Hz; friction at a reversal takes place within a fifth of a second

@@ -1,24 +1,108 @@
-"""Can these runs be this crane's? The quick part, which `identify`, `replay` and `gap` ask first."""
+"""Can these runs be this crane's? The quick part, which `identify`, `replay` and `gap` ask first.
 
-from collections.abc import Mapping, Sequence
+Every channel by itself, the runs against each other, sensors that are not there, and the single mistakes.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from winch_friction.commissioning.against import lone_units
-from winch_friction.commissioning.channels import cell_findings, clock_findings, frozen_findings
-from winch_friction.commissioning.dead import dead_findings
+import numpy as np
+
+from winch_friction.commissioning.channels import (
+    Finding,
+    cell_findings,
+    clock_findings,
+    first_contradiction,
+    frozen_findings,
+    run_words,
+)
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
-from winch_friction.commissioning.finding import Finding, first_contradiction, run_words
-from winch_friction.commissioning.view import views_of
+from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
+from winch_friction.commissioning.view import RunView, views_of
+from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.paths import config_directory
 from winch_friction.records.strict_yaml import read_yaml
 
+# -- runs against each other
+FEWEST = 3  # runs of a motor group, for most of them to say what is usual
+ALIKE = 1.25  # times: boost pressures of one machine differ by less, most of the time
+EXACT = 0.05  # relative, by which a unit's factor is met
+
+
+def lone_units(runs: Sequence[Run]) -> Iterator[Finding]:
+    """Port B of a motor group, whose pressure is the boost's, off by exactly a unit in some of the runs: too little to
+    upset the torque balance, and no friction whatever."""
+    channels = dict.fromkeys(name for run in runs for name in run.columns if name.endswith(".pressure_b"))
+    for channel in channels:
+        own = [run for run in runs if channel in run.columns]
+        medians = np.array([float(np.nanmedian(run[channel])) for run in own])
+        if len(own) < FEWEST or not np.all(medians > 0.0):
+            continue
+        usual = float(np.median(medians))
+        alike = (medians < ALIKE * usual) & (medians > usual / ALIKE)
+        if 2 * alike.sum() <= len(own):
+            continue
+        for factor, words in PRESSURE_UNITS:
+            odd = ~alike & (np.abs(medians * factor / usual - 1.0) < EXACT)
+            if odd.any():
+                names = tuple(run.name for run, off in zip(own, odd, strict=True) if off)
+                said = (
+                    f"{', '.join(names)}: {channel} is {np.median(medians[odd]) / BAR:.3g} bar, in the other runs "
+                    f"{usual / BAR:.3g}: {words} there?"
+                )
+                yield Finding("error", "unit", said, channel, names, {"factor": factor, "usual": usual})
+
+
+# -- channels that nobody measured
+WIRE_MOVED = 0.5  # m of wire that came or went while motor_speed stood: five steps of a coarse counter
+
+
+def dead_findings(runs: Sequence[Run], views: Sequence[RunView]) -> Iterator[Finding]:
+    """A speed that stands while the wire runs, a hook load of nothing while the motors hold tonnes.
+
+    `views` are the runs' own, in their order; both of hydraulic winches. Data with either contradict the crane.
+    """
+    for run, view in zip(runs, views, strict=True):
+        yield from _speed(run)
+        yield from _load(run, view)
+
+
+def _speed(run: Run) -> Iterator[Finding]:
+    speed = run["motor_speed"][np.isfinite(run["motor_speed"])]
+    if not speed.size or np.ptp(speed) > 0.0 or "wire_out" not in run:
+        return
+    known = run["wire_out"][np.isfinite(run["wire_out"])]
+    moved = float(np.ptp(known)) if known.size else 0.0
+    if moved > WIRE_MOVED:
+        said = (
+            f"{run.name}: motor_speed never changes ({speed[0] / RPM:.3g} rpm) though wire_out moves by "
+            f"{moved:.3g} m: is the sensor connected?"
+        )
+        yield Finding("error", "stuck", said, "motor_speed", (run.name,), {"wire_moved": moved})
+
+
+def _load(run: Run, view: RunView) -> Iterator[Finding]:
+    if "hook_load" not in run or not view.groups:
+        return
+    load, lever = run["hook_load"][np.isfinite(run["hook_load"])], float(np.median(view.lever))
+    held = float(np.nanmean(view.drive_torque)) / (GRAVITY * lever)
+    least = LARGEST_TARE * view.rated_torque / (GRAVITY * lever)  # what hook, block and wire may weigh
+    if load.size and np.ptp(load) == 0.0 and abs(load[0]) < 0.01 * least < held and held > least:
+        said = (
+            f"{run.name}: hook_load is {load[0] / 1e3:.3g} t throughout though the motors hold about {held / 1e3:.3g} "
+            "t: is the load cell connected? (a known load: import --set 'hook_load.constant=... t')"
+        )
+        yield Finding("error", "cell", said, "hook_load", (run.name,), {"held": held})
+
+
+# -- the quick check
 RIVALS = 12.0  # score by which another mistake may be worse and still be told beside the likeliest
 MOST_FILES = 40  # crane files of a folder that are looked at
 

@@ -5,11 +5,16 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from winch_friction.commissioning.balance import Closure
-from winch_friction.commissioning.channels import ChannelSummary, channel_findings, summaries
+from winch_friction.commissioning.channels import (
+    ChannelSummary,
+    Finding,
+    channel_findings,
+    first_contradiction,
+    summaries,
+)
 from winch_friction.commissioning.check import diagnosed
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
-from winch_friction.commissioning.finding import Finding, first_contradiction
 from winch_friction.commissioning.kinematics import Agreement, agreements
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.friction import FrictionModel

@@ -1,18 +1,50 @@
-"""Which single mistake would make these runs this crane's? All are scored alike; the least score wins."""
+"""Which mistake would make these runs this crane's? All are scored alike; the least score wins.
 
-from collections.abc import Mapping, Sequence
+Two mistakes at once, a unit beside a sign, ports beside a delay, are asked for where no single one makes the runs fit.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
 from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, static_torque, typical_friction
-from winch_friction.commissioning.kinematics import agreements
-from winch_friction.commissioning.mistakes import Mistake, delayed, fixed_mistakes, free_mistakes
-from winch_friction.commissioning.ranges import excesses, range_score
-from winch_friction.commissioning.two_mistakes import both, common_pairs
+from winch_friction.commissioning.kinematics import agreements, excesses, range_score
+from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
+
+# -- two mistakes at once
+BOTH = 10.0  # prior cost of two mistakes beside those of each: as much as of a mistake that some of the runs hold
+_WHOLE = ("hook_load", "motor_speed", "pressure", "displacement")  # channels of all groups and both ports
+
+
+def both(first: Mistake, second: Mistake) -> Mistake:
+    """Two mistakes as one: the first is undone, then the second."""
+    return Mistake(
+        "two", ", ".join(dict.fromkeys(filter(None, (first.channel, second.channel)))),
+        f"two mistakes: {first.words}; and {second.words}", first.cost + second.cost + BOTH,
+        lambda view: second.undo(first.undo(view)), parts=(first, second),
+    )  # fmt: skip
+
+
+def common_pairs(mistakes: Sequence[Mistake]) -> Iterator[Mistake]:
+    """Each two of the common mistakes that do not concern the same thing: of those one alone may point elsewhere."""
+    usual = [each for each in mistakes if each.cause in ("sign", "ports", "groups") or _is_usual_unit(each)]
+    for first, second in combinations(usual, 2):
+        if (first.cause, first.channel) != (second.cause, second.channel):
+            yield both(first, second)
+
+
+def _is_usual_unit(mistake: Mistake) -> bool:
+    """A unit of a whole channel, not one of the rare ones."""
+    rare = mistake.words.partition(" holds ")[2].startswith(RARELY)
+    return mistake.cause == "unit" and mistake.channel in _WHOLE and not rare
+
+
+# -- one mistake
 
 # score of a run above which it cannot be the crane's: ordinary friction and twice a catalogue effect stay below 75
 CONTRADICTS = 100.0

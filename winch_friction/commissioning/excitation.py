@@ -7,10 +7,10 @@ import numpy as np
 
 from winch_friction.commissioning.balance import EFFECTIVE, friction_point, without_memory
 from winch_friction.commissioning.view import RunView
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.identity import with_stated_std
+from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import operating_point
 

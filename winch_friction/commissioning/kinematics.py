@@ -1,11 +1,16 @@
-"""Do the other channels agree with the speed? Angle, reference, wire length and heave tell it again."""
+"""Do the other channels agree with the speed? Angle, reference, wire length and heave tell it again.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+Can the values be this crane's at all, how far does each quantity lie beyond what its machine can do. And how a mistake
+is put right in a run's view: the same few changes, times a factor, for every kind of mistake.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from winch_friction.commissioning.view import RunView
+from winch_friction.commissioning.balance import static_torque
+from winch_friction.commissioning.view import GroupView, RunView
 from winch_friction.physics.signals import FloatArray
 
 # channel -> relative error that is ordinary, 1 sigma: an encoder counts, a wire lies on a layer or slips, a sea drifts
@@ -72,3 +77,116 @@ def _score(ratio: float, ordinary: float) -> float:
     if ratio <= 0.0:
         return MOST
     return min(float(np.log(ratio) / ordinary) ** 2, MOST)
+
+
+# -- what this crane's machine can do
+
+# what no winch of this kind does; generous, so that only a wrong unit or a wrong crane passes them
+FASTEST = 650.0  # rad/s at the motor shaft, 6200 rpm: above the limit of any piston motor of this size
+HIGHEST = 600e5  # Pa, above any relief valve
+LARGEST_DISPLACEMENT = 1.06  # of the crane's largest: the feedback's error
+HEAVIEST = 1.5  # of what all motors hold at 450 bar
+RATED_TO_LIMIT = 450.0 / 300.0
+LOWEST_SUM = 8e5  # Pa: p_A + p_B of any loop in use lies above; the boost alone is several times that
+SMALLEST_DISPLACEMENT = 0.03  # of the crane's largest, at the run's largest
+ROUGHEST = 15.0  # m/s of crane tip
+STEEP = 0.1  # a ratio of e^0.1 beyond the limit costs one sigma
+MOST_BEYOND = 400.0
+
+
+def excesses(view: RunView) -> dict[str, float]:
+    """By channel: its 99th percentile over the upper limit, or the lower limit over it, where that is above 1."""
+    found = {"heave_velocity": _top(view.heave) / ROUGHEST if view.heave is not None else 0.0}
+    if view.groups:
+        found["motor_speed"] = _top(view.speed) / FASTEST
+        heaviest = HEAVIEST * RATED_TO_LIMIT * view.rated_torque
+        found["hook_load"] = _top(static_torque(view)) / heaviest if heaviest > 0.0 else 0.0
+    for name, group in view.groups.items():
+        too_low = LOWEST_SUM / max(_top(group.pressure_sum), 1e-300)
+        found[f"{name}.pressure"] = max(_top(group.drop) / HIGHEST, too_low)
+        if view.max_displacement > 0.0:
+            largest = _top(group.displacement)
+            too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(largest, 1e-300)
+            too_large = largest / (LARGEST_DISPLACEMENT * view.max_displacement)
+            found[f"{name}.displacement"] = max(too_small, too_large)
+    return {name: ratio for name, ratio in found.items() if ratio > 1.0}
+
+
+def range_score(view: RunView) -> float:
+    """The excesses as one score."""
+    return sum(min((np.log(ratio) / STEEP) ** 2, MOST_BEYOND) for ratio in excesses(view).values())
+
+
+def _top(values: FloatArray) -> float:
+    good = np.abs(values[np.isfinite(values)])
+    return float(np.percentile(good, 99)) if good.size else 0.0
+
+
+# -- a mistake put right
+Repair = Callable[[RunView], RunView]
+
+
+def speed_times(factor: float) -> Repair:
+    """The speed and what follows from it, times a factor."""
+    return lambda view: replace(view, speed=view.speed * factor, acceleration=view.acceleration * factor)
+
+
+def speeds_times(factor: float, *also: str) -> Repair:
+    """The speed and other channels that tell it, times a factor: what one logger writes in one unit."""
+
+    def undo(view: RunView) -> RunView:
+        rates = {name: rate * factor if name in also else rate for name, rate in view.rates.items()}
+        return replace(speed_times(factor)(view), rates=rates)
+
+    return undo
+
+
+def load_times(factor: float) -> Repair:
+    """The load times a factor."""
+
+    def undo(view: RunView) -> RunView:
+        torque = None if view.load_torque is None else view.load_torque * factor
+        return replace(view, load=view.load * factor, load_torque=torque)
+
+    return undo
+
+
+def groups_changed(change: Callable[[str, GroupView], GroupView]) -> Repair:
+    """Every motor group changed by its name."""
+    return lambda view: replace(view, groups={name: change(name, group) for name, group in view.groups.items()})
+
+
+def drop_times(factor: float, only: str = "") -> Repair:
+    """Pressures times a factor, of one group or of all."""
+
+    def change(name: str, group: GroupView) -> GroupView:
+        if only and name != only:
+            return group
+        return replace(group, drop=group.drop * factor, pressure_sum=group.pressure_sum * abs(factor))
+
+    return groups_changed(change)
+
+
+def port_times(factor: float, port: str) -> Repair:
+    """The pressures of one port of all groups, times a factor."""
+
+    def change(_: str, group: GroupView) -> GroupView:
+        a, b = 0.5 * (group.pressure_sum + group.drop), 0.5 * (group.pressure_sum - group.drop)
+        a, b = (a * factor, b) if port == "a" else (a, b * factor)
+        return replace(group, drop=a - b, pressure_sum=a + b)
+
+    return groups_changed(change)
+
+
+def displacement_times(factor: float, only: str = "") -> Repair:
+    """Displacements times a factor, of one group or of all."""
+
+    def change(name: str, group: GroupView) -> GroupView:
+        return group if only and name != only else replace(group, displacement=group.displacement * factor)
+
+    return groups_changed(change)
+
+
+def motor_torque_times(factor: float) -> Repair:
+    """The motor torque times a factor."""
+    return lambda v: v if v.motor_torque is None else replace(v, motor_torque=v.motor_torque * factor)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from winch_friction.commissioning.repairs import (
+from winch_friction.commissioning.kinematics import (
     Repair,
     displacement_times,
     drop_times,
@@ -21,9 +21,9 @@ from winch_friction.commissioning.repairs import (
     speeds_times,
 )
 from winch_friction.commissioning.view import RunView
+from winch_friction.physics.channels import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.winch.crane import Crane
 
 UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 12.0, 6.0, 12.0  # prior costs

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from winch_friction.physics.plausible import LIMITS
+from winch_friction.physics.channels import GRAVITY, LIMITS
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
 BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an encoder's steps

@@ -3,6 +3,6 @@
 from winch_friction.compensation.compensator import FeedforwardCompensator
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.physics.hold import InputHold
+from winch_friction.records.sample_stream import InputHold
 
 __all__ = ["CompensatorConfig", "Feedforward", "FeedforwardCompensator", "InputHold"]

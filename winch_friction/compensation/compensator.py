@@ -5,21 +5,22 @@ from dataclasses import dataclass
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.friction_law import FrictionLaw, check_gains
-from winch_friction.compensation.inputs import Needs, pressure_per_torque
-from winch_friction.compensation.load import DrumTorque
+from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque
 from winch_friction.compensation.safe_output import SafeOutput
-from winch_friction.compensation.speed_predictor import PredictedSpeed, SpeedPredictor
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.direction import smooth_sign
+from winch_friction.physics.friction.model import refuse_other_crane
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
-from winch_friction.physics.identity import refuse_other_crane
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import sample_operating_point
-from winch_friction.physics.winch.ranges import ChannelRanges
+from winch_friction.physics.winch.operating_point import (
+    ChannelRanges,
+    SpeedPredictor,
+    sample_operating_point,
+    smooth_sign,
+    time_to_reversal,
+)
 
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
 
@@ -157,7 +158,7 @@ class FeedforwardCompensator:
 
     # -- one sample
     def step(self, sample: Sample, now: float | None = None, distrusted: tuple[str, ...] = ()) -> Feedforward:
-        """The feedforward for one sample; a value that is NaN counts as lost (`physics.hold` holds between samples).
+        """The feedforward for one sample; a value that is NaN counts as lost (`InputHold` holds between samples).
 
         `now` s is the steady time of its arrival; without it the stamps alone say how much time has passed.
         `distrusted` says in words which inputs cannot be right together: like a lost input.
@@ -249,7 +250,7 @@ class FeedforwardCompensator:
             self.output.carry(before - bounded)
             self._replaced = None
         size = abs(bounded) / max(abs(x[0]), UNSURE)
-        self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, _reversal(ahead))
+        self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, time_to_reversal(ahead))
         self._steepest(x, groups, magnitude)
         self._pressure_per_torque = pressure_per_torque(sample, self.crane, self.config)
         self._law.advance(x, groups, dt)
@@ -290,8 +291,3 @@ class FeedforwardCompensator:
         if not usable:
             return "stale" if self._last is not None and self._last.state != "waiting" else "waiting"
         return "active" if self.output.fade.value >= 1.0 else "fading"
-
-
-def _reversal(ahead: PredictedSpeed) -> float:
-    """Seconds until the motion turns if the acceleration stays."""
-    return -ahead.speed / ahead.acceleration if ahead.speed * ahead.acceleration < 0.0 else math.inf

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from winch_friction.physics.channels import SLOW_INPUTS
-from winch_friction.physics.errors import InputError
-from winch_friction.physics.options import check, limits_of, option
+from winch_friction.physics.errors import InputError, check, limits_of, option
 
 # below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed
 SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s

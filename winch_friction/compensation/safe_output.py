@@ -7,8 +7,7 @@ torque stays inside its limits, moves no faster than the slew limit, and goes to
 import math
 from dataclasses import dataclass, field
 
-from winch_friction.compensation.limits import TorqueLimits
-from winch_friction.compensation.transition import Bridge, Fade
+from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
 from winch_friction.physics.errors import InputError
 
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew

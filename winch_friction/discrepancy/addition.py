@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.records.atomic import write_text
 
 SPEED_BINS = 40

@@ -1,4 +1,7 @@
-"""From a search to the result: the repaired model, the proof on locked runs, regions and the next experiment."""
+"""From a search to the result: the repaired model, the proof on locked runs, regions and the next experiment.
+
+An instant between two training runs at which something changed is placed among the locked runs that lie between.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -6,31 +9,37 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Check, supplying
-from winch_friction.discrepancy.answer import Effect, GapResult, Side
+from winch_friction.discrepancy.adequacy import Check, Split, supplying
+from winch_friction.discrepancy.answer import (
+    AMBIGUOUS,
+    INSUFFICIENT,
+    MISSING,
+    NOTHING,
+    UNEXPLAINED,
+    Effect,
+    GapOptions,
+    GapResult,
+    Side,
+    Verdict,
+)
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
-from winch_friction.discrepancy.drift import drift_note
-from winch_friction.discrepancy.engine.crossfit import CrossFit
-from winch_friction.discrepancy.engine.omnibus import Dependence
-from winch_friction.discrepancy.engine.regions import find_regions
+from winch_friction.discrepancy.engine.blocks import Slot, find_regions
+from winch_friction.discrepancy.engine.chance import Dependence
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Given, meet
-from winch_friction.discrepancy.holdout import Split
-from winch_friction.discrepancy.instants import placed
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.discrepancy.proof import compare, nothing_compared, read_back
+from winch_friction.discrepancy.proof import compare, drift_note, nothing_compared, read_back
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair, draft, polished
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.ties import Company, company, known_combination
-from winch_friction.discrepancy.verdict import AMBIGUOUS, INSUFFICIENT, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.paths import shipped
+from winch_friction.records.atomic import shipped
 
 CATALOGUES = "catalogue's"  # of two laws, the one without a name of its own
 LEFT_AS_GIVEN = "the model is left as it was given: fitted to what nothing explains, it does worse on the locked runs"
@@ -211,3 +220,45 @@ def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     if bare:
         notes.append(f"no wire_layer in {len(bare)} runs: the outer layer is assumed")
     return tuple(notes)
+
+
+# -- when something changed
+def placed(search: Search, split: Split) -> Search:
+    """The search with each effect that has an instant at the one that the locked runs tell by their first halves.
+
+    The training runs say between which two of them a machine changed, and of the instants between these they cannot
+    say more: on them the columns are the same. A locked run between was before the change or after it, as it is in a
+    state (`run_states`): the first half of its samples says which, and all of it is what the names are proven on.
+    """
+    for k, slot in enumerate(search.selection.final.slots):
+        if others := _same_on_training(search.cross, slot):
+            search = _told(search, k, [slot, *others], split)
+    return search
+
+
+def _same_on_training(cross: CrossFit, slot: Slot) -> list[Slot]:
+    """Other shapes of the same law whose columns are the same over the training runs."""
+    x = cross.problem.blocks.x
+    alike = [each for each in cross.problem.slots if (each.name, each.law) == (slot.name, slot.law)]
+    own = x[:, slot.columns]
+    return [each for each in alike if each.columns != slot.columns and np.array_equal(x[:, each.columns], own)]
+
+
+def _told(search: Search, k: int, shapes: list[Slot], split: Split) -> Search:
+    """The search with that of the shapes for its effect number `k` that leaves least of the locked runs' first
+    halves."""
+    selection, final = search.selection, search.selection.final
+    sets = [(*final.slots[:k], each, *final.slots[k + 1 :]) for each in shapes]
+    locked = search.expansion.cross(split.holdout, final.slots)
+    best = min(sets, key=lambda slots: _left_of_first_halves(locked, replace(final, slots=slots)))
+    found = [replace(each, slot=best[k]) if each.slot is final.slots[k] else each for each in selection.found]
+    return replace(search, selection=replace(selection, final=search.cross.explain(best), found=tuple(found)))
+
+
+def _left_of_first_halves(locked: CrossFit, explanation: Explanation) -> float:
+    """Sum of squares, in units of the noise, that an explanation of the training runs leaves of the first half of every
+    locked run."""
+    blocks, left = locked.problem.blocks, locked.remainder(explanation)
+    runs = range(int(blocks.run.max(initial=-1)) + 1)
+    half = np.array([np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in runs])
+    return float((left[blocks.position <= half[blocks.run]] ** 2).sum()) if len(left) else 0.0

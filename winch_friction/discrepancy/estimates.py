@@ -1,17 +1,28 @@
-"""What a fit says of a cause, in the cause's own parameters and units."""
+"""What a fit says of a cause, in the cause's own parameters and units; and of the seed that it began with.
+
+The seed's uncertainty is a claim, and claims are tested: do the data want the base model further off than it says? The
+base is fitted once more with room for several stated deviations. If that alone explains the gap as well as named
+effects do, and the shift is too large for the stated covariance, it is the seed that is refuted, and no effect named.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
+from scipy.special import chdtrc, ndtri
 
+from winch_friction.discrepancy.answer import keeps_something, steady_excess, telling
 from winch_friction.discrepancy.candidates.candidate import Estimates, ParameterEstimate, Sides
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.chance import dependences
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.regressors import key_of
+from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
 _Known = TypeVar("_Known")
@@ -98,3 +109,149 @@ def agreed(first: Mapping[str, InFile | None], second: Mapping[str, InFile | Non
     None, which leaves it as the search had it, where they are in two."""
     both = {name: place if first[name] == place else None for name, place in second.items() if name in first}
     return {**first, **second, **both}
+
+
+# -- the seed's uncertainty
+
+# exact ties of the equations (docs/physics.md): what a parameter's shift would pass for
+MIMICS: Mapping[str, tuple[str, ...]] = {
+    "K1": ("viscous", "viscosity_temperature"), "C5": ("viscous", "viscosity_temperature"),
+    "K2": ("port_turbulence", "line_pressure_drop"), "K3": ("gear_load_loss", "sheave_bending", "pressure_scale"),
+    "K4": ("brake_drag", "coulomb", "wear_drift"), "C2": ("brake_drag", "coulomb", "wear_drift"),
+    "K5": ("high_pressure_mixed",), "C1": ("stribeck",), "C3": ("stribeck",), "C4": ("stribeck",),
+    "C6": ("gear_load_loss", "sheave_bending"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SeedRefuted:
+    """Which parameters want to leave their prior, by how many stated deviations each, and how sure that is.
+
+    `sigma` is the joint shift as deviations of a normal variable of the same probability.
+    """
+
+    shifts: Mapping[str, float]
+    sigma: float
+    mimics: tuple[str, ...]
+
+    def content(self) -> dict[str, Any]:
+        """The entry of `seed_refuted` in gap.json."""
+        return {
+            "parameters": list(self.shifts), "sigma": self.sigma, "shifts": dict(self.shifts),
+            "mimics": list(self.mimics),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SeedTrial:
+    """The base with its prior on trial: whether it explains the gap as well as the names do, and what that refutes."""
+
+    enough: bool = False
+    refuted: SeedRefuted | None = None
+
+
+def try_seed(search: Search, rng: np.random.Generator) -> SeedTrial:
+    """Whether the training runs want the base beyond its prior's box, and nothing but that.
+
+    A shift that the stated covariance does not make surprising refutes nothing; an effect that only does what the box
+    forbids is no effect all the same.
+    """
+    model = search.given.model
+    if model.covariance is None:
+        return SeedTrial()
+    wide = _wide(search)
+    loss, beta = wide.train_loss(())
+    base = wide.problem.base
+    count = base.parameters
+    shift = beta[:count] + base.shift[:count]
+    sigma, marginal = _surprise(wide, shift, count)
+    surprising = sigma >= LIMITS.seed_sigma or np.abs(marginal).max(initial=0.0) >= LIMITS.seed_marginal
+    if not surprising and not search.selection.final.slots:
+        return SeedTrial()
+    explanation = Explanation((), np.zeros(0), beta, loss, np.zeros((0, len(beta))))
+    if _something_else(wide, explanation, search, rng):
+        return SeedTrial()  # it comes first
+    named = _cost(search.cross, search.selection.final, count)
+    # a careless seed is off in several parameters, and in none by much; one alone is what an effect does
+    careless = (np.abs(shift) > LIMITS.prior_bound).sum() > 1 and np.abs(shift).max() <= LIMITS.ordinary_shift
+    allowed = LIMITS.effect_price if careless else 0.0
+    if search.selection.final.slots and _inflated(loss, shift) > named + allowed:
+        return SeedTrial()
+    if not surprising:
+        return SeedTrial(enough=True)
+    order = np.argsort(-np.abs(shift))
+    names = [model.parameter_names[k] for k in order if abs(shift[k]) > LIMITS.prior_bound] or [
+        model.parameter_names[order[0]]
+    ]
+    shifts = {name: float(shift[model.parameter_names.index(name)]) for name in names}
+    found = [n for f in search.selection.found for n in (f.slot.name, *(r.name for r in f.rivals))]
+    mimics = tuple(dict.fromkeys([*found, *(m for name in names for m in MIMICS.get(name, ()))]))
+    return SeedTrial(True, SeedRefuted(shifts, max(sigma, float(np.abs(marginal).max())), mimics))
+
+
+def widened(given: Given) -> Given:
+    """The same, with a seed whose stated deviations are as large as its refutation allows."""
+    model = given.model
+    assert model.covariance is not None
+    factor = LIMITS.seed_reach / LIMITS.prior_bound
+    return replace(given, model=_with_covariance(model, model.covariance * factor**2))
+
+
+def _with_covariance(model: FrictionModel, covariance: FloatArray) -> FrictionModel:
+    return replace(model, covariance=covariance)
+
+
+def _wide(search: Search) -> CrossFit:
+    """The regression with room for the base."""
+    cross, seed, at = search.cross, search.given.model, np.array(search.expansion.model.values)
+    problem = cross.problem
+    base, k = problem.base, problem.base.parameters
+    bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
+    lower, upper = problem.layout.lower.copy(), problem.layout.upper.copy()
+    lower[:k] = np.minimum(np.maximum(-LIMITS.seed_reach - base.shift[:k], (bounds[:, 0] - at) / base.scale[:k]), 0.0)
+    upper[:k] = np.maximum(np.minimum(LIMITS.seed_reach - base.shift[:k], (bounds[:, 1] - at) / base.scale[:k]), 0.0)
+    return CrossFit(replace(problem, layout=replace(problem.layout, lower=lower, upper=upper)))
+
+
+def _surprise(wide: CrossFit, shift: FloatArray, count: int) -> tuple[float, FloatArray]:
+    """The shift against what the prior lets one expect of it: joint, in deviations of a normal variable, and each.
+
+    A posterior mean scatters about the prior's by the identity less the posterior covariance (both in units of the
+    prior); directions of which the data say little do not count.
+    """
+    spread = np.eye(count) - wide.problem.covariance(wide.total_g, wide.problem.columns(()))[:count, :count]
+    values, vectors = np.linalg.eigh(0.5 * (spread + spread.T))
+    told = values > LIMITS.told
+    z = (vectors.T @ shift)[told] / np.sqrt(values[told])
+    p = float(chdtrc(int(told.sum()), float(z @ z))) if told.any() else 1.0
+    marginal = np.where(np.diag(spread) > LIMITS.told, shift / np.sqrt(np.maximum(np.diag(spread), 1e-9)), 0.0)
+    return float(-ndtri(max(p, 1e-300) / 2.0)), marginal
+
+
+def _inflated(loss: float, shift: FloatArray) -> float:
+    """Cost of a seed whose deviations are all too small by one factor: data, shift, and the factor itself."""
+    total, count = float(shift @ shift), len(shift)
+    factor = max(total / count, 1.0)
+    return loss / LIMITS.prior_weight + total / factor + count * float(np.log(factor)) + LIMITS.effect_price / 2.0
+
+
+def _cost(cross: CrossFit, explanation: Explanation, count: int) -> float:
+    """Cost of named effects: data, the base's shift inside its prior, and a price per name."""
+    shift = explanation.beta[:count] + cross.problem.base.shift[:count]
+    price = LIMITS.effect_price * len(explanation.slots)
+    return explanation.train_loss / LIMITS.prior_weight + float(shift @ shift) + price
+
+
+def _something_else(wide: CrossFit, freed: Explanation, search: Search, rng: np.random.Generator) -> bool:
+    """Whether the freed base keeps something that the names, if there are any, do not keep."""
+    base, final = search.selection.base, search.selection.final
+    if final.slots and _excess(wide, freed) <= LIMITS.as_much * _excess(search.cross, final):
+        return False
+    depends = telling(wide, dependences(wide, wide.remainder(freed), rng))
+    excess = max(_excess(wide, freed), steady_excess(wide, freed))
+    return keeps_something(excess, max(_excess(wide, base), 1e-9), depends)
+
+
+def _excess(cross: CrossFit, explanation: Explanation) -> float:
+    left = cross.remainder(explanation)
+    return float(np.mean(left**2 - 1.0 - cross.problem.unresolved))

@@ -12,14 +12,14 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_damping import agreed_damping, denies, pooled_damping, shared_damping
+from winch_friction.discrepancy.preparation.suspended_load import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch import Crane
 
 LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then

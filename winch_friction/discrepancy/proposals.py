@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.assembly import Trial
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.candidates.friction import friction_candidate
@@ -20,14 +21,12 @@ from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.proof import prove
-from winch_friction.discrepancy.proposed_term import ProposedTerm, declare
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import MISSING, UNEXPLAINED, Verdict
-from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, Word, factors, shape
+from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, ProposedTerm, Word, declare, factors, shape
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.registry import known_for_now
+from winch_friction.physics.friction.term import known_for_now
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, pro
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import BAR, GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.units import BAR, GRAVITY
 
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC

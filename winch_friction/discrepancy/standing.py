@@ -6,18 +6,17 @@ from functools import partial
 
 import numpy as np
 
+from winch_friction.discrepancy.adequacy import Split
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
 from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.omnibus import dependences
+from winch_friction.discrepancy.engine.chance import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
-from winch_friction.discrepancy.holdout import Split
-from winch_friction.discrepancy.options import GapOptions
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, is_minor, leaves_too_much, prove, worse_runs
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.verdict import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read

@@ -25,15 +25,15 @@ from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.candidates.geometry import hanging
 from winch_friction.discrepancy.candidates.signals import group_shapes, scale_columns
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.chance import does_as_well
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.rivals import does_as_well
 from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.balance import model_states
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.dimensions import quotient_unit
+from winch_friction.physics.channels import quotient_unit
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.friction.term import Parameter

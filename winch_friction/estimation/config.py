@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from winch_friction.physics.options import check, option
-from winch_friction.physics.units import BAR, RPM
+from winch_friction.physics.channels import BAR, RPM
+from winch_friction.physics.errors import check, option
 
 
 @dataclass(frozen=True)

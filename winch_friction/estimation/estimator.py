@@ -25,11 +25,10 @@ from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.identity import with_stated_std
+from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.ranges import ChannelRanges
-from winch_friction.physics.winch.torque_balance import sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
 

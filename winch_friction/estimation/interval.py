@@ -7,8 +7,7 @@ from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.dynamics import STICK_IGNORANCE, Step, Wire, wire_step
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, torque_variance
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.compiled import CompiledTerms
-from winch_friction.physics.friction.state import advance_all
+from winch_friction.physics.friction.compiled import CompiledTerms, advance_all
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point

@@ -27,7 +27,7 @@ from winch_friction.estimation.dynamics import (
     TORQUE,
     TORQUE_NOISE,
 )
-from winch_friction.physics.compiling import cache_root, compiled_in, source_digest
+from winch_friction.physics.friction.sources import cache_root, compiled_in, source_digest
 
 # what a step is given as one array: what acts, the noises' variances, and behind them the gradient and the sensors
 GIVEN_TORQUE, GIVEN_HEAVE, GIVEN_FADING, GIVEN_NOISES = range(4)

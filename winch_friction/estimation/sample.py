@@ -5,12 +5,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.units import GRAVITY
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.ranges import ChannelRanges
-from winch_friction.physics.winch.torque_balance import driving_group, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, driving_group, sample_drive_torque
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 
 class Accepted(NamedTuple):

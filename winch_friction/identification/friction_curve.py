@@ -7,9 +7,9 @@ import numpy as np
 
 from winch_friction.identification.fit_data import FitData
 from winch_friction.identification.plateaus import Plateau
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import RPM
 from winch_friction.physics.winch import Crane, group_point, operating_point
 
 SPEED_STEP = 25.0 * RPM  # paper 2 eq 9

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import RPM
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.operating_point import run_drum_torque
+from winch_friction.physics.winch.crane import run_drum_torque
 
 
 @dataclass(frozen=True)

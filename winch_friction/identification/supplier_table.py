@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from winch_friction.identification.fit_data import FitData
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.winch import operating_point
 
 WEIGHTINGS = ("equal", "nominal", "column")

@@ -9,12 +9,12 @@ from scipy.signal import bilinear, lfilter, savgol_filter
 
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data
+from winch_friction.physics.channels import GRAVITY, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import GRAVITY, RPM
 from winch_friction.physics.winch import Crane, group_point, operating_point
-from winch_friction.physics.winch.operating_point import run_drum_torque
+from winch_friction.physics.winch.crane import run_drum_torque
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque

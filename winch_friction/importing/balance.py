@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import GRAVITY
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.drive import POWER
+from winch_friction.physics.winch.crane import POWER, Crane
 
 _LOAD_SHARE = 0.20  # of the load's torque: transducers, displacement feedback, rope, a layer, an unequal friction
 _CAPACITY_SHARE = 0.025  # of the largest torque: what boost, tare and offsets make at an empty hook

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from winch_friction.physics.channels import limits_of
+from winch_friction.physics.channels import GRAVITY, limits_of
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
 _PRESSURE = (5.0e5, 6.0e7)  # Pa: above the boost of an idle line, below a burst hose

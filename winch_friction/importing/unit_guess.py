@@ -14,7 +14,7 @@ from winch_friction.importing.guess import Match, plausible_units
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.importing.log import Log
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, usual_units
-from winch_friction.physics.units import CM3_PER_REV
+from winch_friction.physics.channels import CM3_PER_REV
 
 _COMBINATIONS = 300  # of units tried against the torque balance
 _ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")

@@ -14,15 +14,14 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
-from winch_friction.nodes.guard import Guarded, answered, said_aloud
-from winch_friction.nodes.messages import diagnostic_array, diagnostic_status
+from winch_friction.nodes.inputs import Polled, diagnostic_array, diagnostic_status
+from winch_friction.nodes.loop import Clocks, Guarded, answered, said_aloud
 from winch_friction.nodes.options import FIXED, NodeOptions
 from winch_friction.nodes.parameters import OptionParameters, declare_all, unknown_parameters
-from winch_friction.nodes.polling import Polled
 from winch_friction.nodes.qos import fresh
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.registry import load_file
+from winch_friction.physics.friction.term import load_file
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -43,7 +42,7 @@ class Health:
     values: Mapping[str, Any]
 
 
-class WinchNode(Guarded, LifecycleNode):
+class WinchNode(Clocks, Guarded, LifecycleNode):
     """A lifecycle node around one object that steps through samples.
 
     A node says what it is made of in `build` (after the files are read), what it does while active in `start` and
@@ -231,18 +230,6 @@ class WinchNode(Guarded, LifecycleNode):
             return answered(lambda: action(request.data), response)
 
         self._switches.append(self.create_service(SetBool, f"~/{name}", answer))
-
-    def ros_now(self) -> float:
-        """The node's clock in s."""
-        return float(self.get_clock().now().nanoseconds * 1e-9)
-
-    def steady_now(self) -> float:
-        """The steady clock in s."""
-        return float(self.steady_clock.now().nanoseconds * 1e-9)
-
-    def service_now(self) -> float:
-        """The clock that the service inside goes by, s."""
-        return self.ros_now() if self.options.watchdog_clock == "ros" else self.steady_now()
 
     # -- parameters
     def _on_set(self, changes: Sequence[Any]) -> SetParametersResult:

@@ -12,19 +12,15 @@ from std_msgs.msg import String
 
 from winch_friction.compensation import CompensatorConfig, Feedforward
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
-from winch_friction.nodes.inputs import Inputs
-from winch_friction.nodes.messages import ROS, pressure_message
+from winch_friction.nodes.inputs import ROS, Inputs, pressure_message
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
-from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.consumer import mark
-from winch_friction.online.models import ModelIntake
-from winch_friction.online.options import ServiceOptions
-from winch_friction.physics.errors import InputError
+from winch_friction.online.compensator import CompensatorService, ModelIntake, mark
+from winch_friction.online.inputs import ServiceOptions
+from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel, registered_terms
-from winch_friction.physics.options import check, option
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import joint_state, stamp_header

@@ -12,18 +12,16 @@ from std_msgs.msg import String
 from winch_friction.compensation.config import OLDEST_INPUT
 from winch_friction.estimation import Estimate, EstimatorConfig
 from winch_friction.nodes.base import ERROR, OK, URGENT_PERIOD, WARN, Health, WinchNode
-from winch_friction.nodes.inputs import Inputs
-from winch_friction.nodes.messages import ROS
+from winch_friction.nodes.inputs import ROS, Inputs
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
-from winch_friction.online.consumer import mark
+from winch_friction.online.compensator import mark
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.online.options import ServiceOptions
-from winch_friction.physics.errors import InputError
+from winch_friction.online.inputs import ServiceOptions
+from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.options import check, option
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.checkpoint import read_checkpoint, write_checkpoint
 from winch_friction.records.model_file import model_to_text

@@ -1,14 +1,154 @@
-"""The subscriptions of a node: every message goes to its service, in the order that the stamps decide."""
+"""Messages in and out of a node: the subscriptions, whose messages go to the service in the order that the stamps
+decide, and rclpy's messages from plain values.
 
-from collections.abc import Callable
+rclpy builds its wait set anew at every wake-up, from everything that could wake it, which costs more than the message.
+A winch has some fifteen inputs and one of them drives: the others are read when it arrives, fifteen wake-ups become
+one. A node has as many services and events that nobody uses for days: they are in the wait set ten times a second.
+"""
+
+from array import array
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
-from winch_friction.nodes.messages import message_type
-from winch_friction.nodes.polling import Polled, drain
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.callback_groups import CallbackGroup
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import FluidPressure, JointState, Temperature
+from std_msgs.msg import Float64, Header, String
+
 from winch_friction.nodes.qos import SENSOR, fresh, overridable
 from winch_friction.online.inputs import InputGate
-from winch_friction.records.topics import Input, stamp_time
+from winch_friction.records.topics import Input, split_time, stamp_time
 
+# -- messages from plain values
+_TYPES = {
+    "builtin_interfaces/msg/Time": Time,
+    "diagnostic_msgs/msg/DiagnosticArray": DiagnosticArray,
+    "sensor_msgs/msg/FluidPressure": FluidPressure,
+    "sensor_msgs/msg/JointState": JointState,
+    "sensor_msgs/msg/Temperature": Temperature,
+    "std_msgs/msg/Float64": Float64,
+    "std_msgs/msg/Header": Header,
+    "std_msgs/msg/String": String,
+}
+
+
+class RosFactory:
+    """Builds the messages of `records.topics` with rclpy's types."""
+
+    def make(self, type_name: str, **fields: Any) -> Any:
+        """A message of this type."""
+        return _TYPES[type_name](**fields)
+
+    def doubles(self, values: Sequence[float]) -> Any:
+        """A `float64[]` field."""
+        return array("d", values)
+
+
+ROS = RosFactory()
+
+
+def message_type(type_name: str) -> Any:
+    """The class of an input's message type."""
+    return _TYPES[type_name]
+
+
+def ros_time(time: float) -> Time:
+    """A stamp from s."""
+    seconds, nanoseconds = split_time(time)
+    return Time(sec=seconds, nanosec=nanoseconds)
+
+
+def clock_message(time: float) -> Clock:
+    """What `/clock` says at `time` s."""
+    return Clock(clock=ros_time(time))
+
+
+def pressure_message(time: float, pressure: float, frame_id: str = "") -> FluidPressure:
+    """A pressure difference in Pa at `time` s; the variance is not known."""
+    header = Header(stamp=ros_time(time), frame_id=frame_id)
+    return FluidPressure(header=header, fluid_pressure=float(pressure), variance=0.0)
+
+
+def diagnostic_status(name: str, hardware: str, level: int, summary: str, values: Mapping[str, Any]) -> Any:
+    """One status with plain numbers as values, so that plot tools can draw them."""
+    pairs = [KeyValue(key=key, value=plain_value(value)) for key, value in values.items()]
+    return DiagnosticStatus(name=name, hardware_id=hardware, level=bytes([level]), message=summary, values=pairs)
+
+
+def diagnostic_array(stamp: Any, statuses: Sequence[Any]) -> DiagnosticArray:
+    """What goes out on `/diagnostics`."""
+    return DiagnosticArray(header=Header(stamp=stamp), status=list(statuses))
+
+
+def plain_value(value: Any) -> str:
+    """A number as digits, a truth value as 0 or 1, everything else as it prints."""
+    if isinstance(value, bool):
+        return str(int(value))
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+# -- subscriptions that are emptied on demand
+class Polled(CallbackGroup):
+    """The executor passes over the subscriptions of this group."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Never by the executor."""
+        return False
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Never by the executor."""
+        return False
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing was begun."""
+
+
+class Seldom(CallbackGroup):
+    """What comes here waits until `open` is called next; the executor then finds it in the wait set once.
+
+    Parameters, descriptions and events of the middleware, not the services that switch what a node does.
+    """
+
+    LOOKS = 2  # of the executor after an opening: it builds the wait set, it runs what was ready
+
+    def __init__(self, urgent: tuple[str, ...]) -> None:
+        super().__init__()
+        self._urgent, self._looks = urgent, dict[int, int]()
+
+    def open(self, node: Any) -> None:
+        """Let the executor look once more; takes in what the node has made since."""
+        self._looks.clear()
+        for each in node.services:
+            if not each.service_name.endswith(self._urgent):
+                each.callback_group = self
+        for each in node.waitables:
+            if each.callback_group is node.default_callback_group:
+                each.callback_group = self
+
+    def can_execute(self, entity: Any) -> bool:
+        """Until it was looked at often enough since the last opening."""
+        looks = self._looks.get(id(entity), 0)
+        self._looks[id(entity)] = looks + 1
+        return looks < self.LOOKS
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Whatever was ready is run."""
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing is left to do."""
+
+
+def drain(subscription: Any) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Every waiting message with its info (`source_timestamp`, ns), oldest first."""
+    with subscription.handle:
+        while (taken := subscription.handle.take_message(subscription.msg_type, subscription.raw)) is not None:
+            yield taken
+
+
+# -- the subscriptions of a node
 Answer = Callable[[Any], None]
 
 

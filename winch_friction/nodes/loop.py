@@ -1,18 +1,125 @@
-"""One turn of a node's spinning: a speed is taken at once, everything else is left to rclpy's executor.
+"""How a node spins: a speed is taken at once, everything else is left to rclpy's executor, and nothing that a
+callback, a transition, a service or a parameter raises ends the process.
 
 The executor builds its wait set twice for each message, from everything that could wake it, and wraps the call in a
 task, which costs more than the message and its answer. The wait set here holds what may wake a node at all.
 """
 
+import functools
+import inspect
 import time
+import traceback
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
-from winch_friction.nodes.polling import Polled, Seldom
+from winch_friction.nodes.inputs import Polled, Seldom
+from winch_friction.physics.errors import InputError
 
+# -- nothing that is raised ends the process
+LEAST_BETWEEN = 1.0  # s between two reports of what callbacks raise: a defect at 200 Hz must not fill the disk
+
+
+def said_aloud(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., TransitionCallbackReturn]:
+    """Log what a transition raises: rclpy would only answer ERROR and keep the reason to itself."""
+
+    @functools.wraps(transition)
+    def wrapped(node: Any, state: LifecycleState) -> TransitionCallbackReturn:
+        try:
+            return transition(node, state)
+        except Exception:
+            node.get_logger().error(f"{transition.__name__} failed:\n{traceback.format_exc()}")
+            raise
+
+    return wrapped
+
+
+def answered(action: Callable[[], str], response: Any) -> Any:
+    """A service's response: what `action` did, or why not."""
+    try:
+        response.message, response.success = action(), True
+    except (InputError, OSError) as error:
+        response.message, response.success = str(error), False
+    except Exception as error:  # a defect of ours is answered too
+        response.message, response.success = f"{type(error).__name__}: {error}", False
+    return response
+
+
+class Clocks:
+    """The clocks of a node: ROS time, the steady one, and the one that its service goes by."""
+
+    steady_clock: Any
+    options: Any
+    get_clock: Any
+
+    def ros_now(self) -> float:
+        """The node's clock in s."""
+        return float(self.get_clock().now().nanoseconds * 1e-9)
+
+    def steady_now(self) -> float:
+        """The steady clock in s."""
+        return float(self.steady_clock.now().nanoseconds * 1e-9)
+
+    def service_now(self) -> float:
+        """The clock that the service inside goes by, s."""
+        return self.ros_now() if self.options.watchdog_clock == "ros" else self.steady_now()
+
+
+class Guarded:
+    """For lifecycle nodes: callbacks that end nothing, and an answer to every transition that is asked for."""
+
+    _raised, _raised_at = 0, float("-inf")
+
+    def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
+        """A callback whose exceptions are said and counted."""
+
+        @functools.wraps(callback)
+        def wrapped(*arguments: Any) -> None:
+            try:
+                callback(*arguments)
+            except Exception:
+                self.report_defect(callback.__name__)
+
+        # rclpy counts the parameters to know whether a callback wants the message's info
+        wrapped.__signature__ = inspect.signature(callback)  # type: ignore[attr-defined]
+        return wrapped
+
+    def report_defect(self, where: str) -> None:
+        """Log the exception that is being handled, at most once in `LEAST_BETWEEN` s."""
+        self._raised += 1
+        now = time.monotonic()
+        if now - self._raised_at >= LEAST_BETWEEN:
+            self._raised_at = now
+            node: Any = self
+            node.get_logger().error(f"{where} failed ({self._raised} so far):\n{traceback.format_exc()}")
+
+    def answer_every_transition(self) -> None:
+        """rclpy raises on a transition that the state does not have; whoever asks gets an answer instead."""
+        node: Any = self
+        service = node._service_change_state
+        change = service.callback
+
+        def answer(request: Any, response: Any) -> Any:
+            known = {each[0] for each in node._state_machine.available_transitions}
+            state = node._state_machine.current_state[1]
+            if not request.transition.label and request.transition.id not in known:
+                node.get_logger().warning(f"refused transition {request.transition.id}: not one of state '{state}'")
+                response.success = False
+                return response
+            try:
+                return change(request, response)
+            except Exception as error:
+                node.get_logger().error(f"refused transition '{request.transition.label}': {error}")
+                response.success = False
+                return response
+
+        service.callback = answer
+
+
+# -- one turn of the spinning
 HEARTBEAT = 0.1  # s; so often it is looked whether the node was told to end, and for what comes seldom
 URGENT = ("change_state", "enable", "reset", "load_model", "save")  # services that are answered at once
 

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from winch_friction.physics.options import check, option
-from winch_friction.records.mapping import InputMapping
+from winch_friction.physics.errors import check, option
+from winch_friction.records.runs import InputMapping
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import Any, Generic, TypeVar
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 
-from winch_friction.physics.errors import InputError, Problems, meant
-from winch_friction.physics.options import Limits, default_of, from_mapping, limits_of
+from winch_friction.physics.errors import InputError, Limits, Problems, default_of, from_mapping, limits_of, meant
 
 T = TypeVar("T")
 _LARGEST = 2**62

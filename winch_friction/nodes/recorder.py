@@ -8,8 +8,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
-from winch_friction.nodes.messages import message_type
-from winch_friction.nodes.polling import Polled, drain
+from winch_friction.nodes.inputs import Polled, drain, message_type
 from winch_friction.nodes.qos import LATCHED
 from winch_friction.records.topics import TopicMap
 

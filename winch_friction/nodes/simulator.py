@@ -11,16 +11,15 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from winch_friction.nodes.base import OK, WARN, Health, WinchNode
-from winch_friction.nodes.messages import ROS, clock_message, message_type
+from winch_friction.nodes.inputs import ROS, clock_message, message_type
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.run import run
 from winch_friction.nodes.voyage import Answers, Voyage, adjusted, hidden_effects
 from winch_friction.online.consumer import HOLD_TIME, HeldTorque
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.scaled import scaled_system
-from winch_friction.physics.options import check, option
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.topics import stamp_header, stamp_time, whole_nanoseconds

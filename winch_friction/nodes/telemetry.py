@@ -14,7 +14,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 
-from winch_friction.nodes.messages import message_type
+from winch_friction.nodes.inputs import message_type
 from winch_friction.records.telemetry import TOPICS, Telemetry
 from winch_friction.records.topics import FLOAT64, FLUID_PRESSURE, JOINT_STATE, TEMPERATURE
 

@@ -1,13 +1,129 @@
-"""Whether the inputs fit each other: the command and the speed, the load and the drive's torque, at once and slowly."""
+"""What is believed: a stamp that advances, a sender with one voice, and inputs that fit each other.
+
+The last are the command and the speed, the load and the drive's torque, at once and slowly.
+"""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.ranges import ChannelRanges
-from winch_friction.physics.winch.torque_balance import sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.records.topics import Input, stamp_time
+
+# -- the stamp of a message
+SLOWEST = 0.1  # of the clock's pace; stamps that advance less than this stand still
+LONGEST_CATCH_UP = 1.0  # s of a pause that such stamps must make up for
+BACKWARD_JUMP = 1.0  # s; what falls back by less is late or repeated
+CONFIRMED_BY, CONFIRMED_AFTER = 5, 0.08  # messages, s: then another time is a clock that was set, not a stray stamp
+ALIKE = 0.25  # s between offsets that show the same other clock
+
+
+class Stamp(Enum):
+    """What a stamp is worth."""
+
+    GOOD = "good"
+    REPEATED = "stamp stands still"
+    AHEAD = "stamp ahead of the clock"
+    BACK = "stamp far behind"
+    JUMP = "the clock was set"
+
+
+@dataclass
+class StampWatch:
+    """Judges the stamps of one input, s, by the steady clock, s.
+
+    A stray stamp is refused; a clock that was set is believed after `CONFIRMED_BY` messages that agree. `window` s: how
+    far a stamp may run ahead; `paced` False: stamps only need to advance, for time is simulated.
+    """
+
+    window: float = 0.5
+    paced: bool = True
+    _stamp: float = field(default=float("nan"), init=False)
+    _now: float = field(default=float("nan"), init=False)
+    _other: list[tuple[float, float]] = field(default_factory=list, init=False)
+
+    def judge(self, stamp: float, now: float) -> Stamp:
+        """What this stamp, arriving at `now`, is worth; only GOOD and JUMP are believed."""
+        if self._stamp != self._stamp:
+            return self._believe(stamp, now, Stamp.GOOD)
+        passed, gained = now - self._now, stamp - self._stamp
+        if gained < -BACKWARD_JUMP:
+            return self._doubt(stamp, now, Stamp.BACK)
+        if gained > passed + self.window:
+            return self._doubt(stamp, now, Stamp.AHEAD)
+        slowest = SLOWEST * min(max(passed, 0.0), LONGEST_CATCH_UP) if self.paced else 0.0
+        if gained <= 0.0 or gained < slowest:
+            return Stamp.REPEATED
+        return self._believe(stamp, now, Stamp.GOOD)
+
+    def forget(self) -> None:
+        """Believe the next stamp."""
+        self._stamp = self._now = float("nan")
+        self._other.clear()
+
+    def _believe(self, stamp: float, now: float, worth: Stamp) -> Stamp:
+        self._stamp, self._now = stamp, now
+        self._other.clear()
+        return worth
+
+    def _doubt(self, stamp: float, now: float, worth: Stamp) -> Stamp:
+        others = self._other
+        if others and not (stamp > others[-1][0] and abs((now - stamp) - (others[0][1] - others[0][0])) < ALIKE):
+            others.clear()
+        others.append((stamp, now))
+        if len(others) >= CONFIRMED_BY and now - others[0][1] >= CONFIRMED_AFTER:
+            return self._believe(stamp, now, Stamp.JUMP)
+        return worth
+
+
+# -- one sender
+TOGETHER = 0.005  # s between copies: a sender whose stamps stand still comes a period apart, and is another matter
+APART = 0.2  # of the larger value: what a coarse clock gives one stamp is nearer
+NEAR = 0.02  # of a channel's reach: about zero, shares mean nothing
+DOUBTED = 0.5  # s: neither is believed again before the torque has gone
+
+
+class Voices:
+    """Remembers the latest message of each topic; who contradicts himself is not believed for a while."""
+
+    def __init__(self, ranges: ChannelRanges) -> None:
+        self._ranges = ranges
+        self._latest: dict[str, tuple[float, float, Any]] = {}
+        self._doubted: dict[str, float] = {}
+
+    def contradict(self, source: Input, message: Any, now: float) -> bool:
+        """Whether a message, arriving at `now` s, contradicts the one before, or one a short while ago did."""
+        stamp = stamp_time(message)
+        last = self._latest.get(source.topic)
+        self._latest[source.topic] = (stamp, now, message)
+        copy = last is not None and last[0] == stamp and now - last[1] <= TOGETHER
+        if copy and last is not None and self._differ(source.decode(last[2]), source.decode(message)):
+            self._doubted[source.topic] = now
+        return now - self._doubted.get(source.topic, -math.inf) < DOUBTED
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._latest.clear()
+        self._doubted.clear()
+
+    def _differ(self, one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+        shared = one.keys() & other.keys()
+        return any(
+            abs(one[name] - other[name]) > max(APART * max(abs(one[name]), abs(other[name])), NEAR * self._reach(name))
+            for name in shared
+        )
+
+    def _reach(self, name: str) -> float:
+        lower, upper = self._ranges.range(name)
+        return max(abs(lower), abs(upper))
+
+
+# -- the inputs beside each other
 
 # the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
 SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed

@@ -1,22 +1,126 @@
-"""The compensator as a service: what the node and the replay share. It knows no ROS; it is told what time it is."""
+"""The compensator as a service: what the node and the replay share. It knows no ROS; it is told what time it is.
+
+A model that was learned elsewhere takes effect at a sample that a replay finds again. One that arrives as text is
+parsed beside the control thread; texts are bounded in size and rate, and the newest one is kept. The validity and the
+number of a torque travel in `header.frame_id`, `valid 1234` or `invalid 1235`: fields of the standard message that
+carry no measurement.
+"""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
 from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
-from winch_friction.compensation.model_schedule import ModelSchedule
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.inputs import InputGate
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.model_file import model_from_text
+from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
 
+# -- when a learned model takes effect
+LEARNED_AT = "learned_at"  # provenance key: stamp in s of the last measurement behind the model
+
+
+@dataclass
+class ModelSchedule:
+    """Holds models back until `delay` s after the measurement they were learned from.
+
+    A model travels from estimator to compensator in its own time, and one sample earlier or later is another output.
+    Within the delay the journey does not matter. A model without a date takes effect at once.
+    """
+
+    delay: float = 0.5  # s
+    _waiting: list[tuple[float, FrictionModel]] = field(default_factory=list)
+
+    def offer(self, model: FrictionModel) -> None:
+        """Take a model in."""
+        due = float(model.provenance.get(LEARNED_AT, float("-inf"))) + self.delay
+        self._waiting = sorted([*self._waiting, (due, model)], key=lambda each: each[0])
+
+    def due(self, time: float) -> FrictionModel | None:
+        """The newest model that takes effect by `time` s; older ones are dropped with it."""
+        ready = [model for due, model in self._waiting if due <= time]
+        self._waiting = self._waiting[len(ready) :]
+        return ready[-1] if ready else None
+
+    def clear(self) -> None:
+        """Forget what is waiting, after a jump of time."""
+        self._waiting = []
+
+
+# -- models that arrive as text
+LARGEST = 96 * 1024  # characters; a model of 30 parameters with its correlations has 20 thousand
+MOST_BRACKETS = 2000  # lists and mappings that open; a correlation has one a parameter
+DEEPEST = 100  # columns of indentation
+PERIOD = 1.0  # s between two models that are looked at
+
+
+def parse(text: str, where: str) -> FrictionModel:
+    """A model from text of unknown origin; raises `InputError` for whatever is wrong with it."""
+    if len(text) > LARGEST:
+        raise InputError(f"{where}: {len(text)} characters are no model; the largest has {LARGEST}")
+    if text.count("[") + text.count("{") > MOST_BRACKETS or "\n" + DEEPEST * " " in text:
+        raise InputError(f"{where}: nested too deeply for a model")
+    try:
+        return model_from_text(text, where)
+    except InputError:
+        raise
+    except Exception as error:  # a parser meets what nobody thought of: RecursionError, OverflowError
+        raise InputError(f"{where}: not a model ({type(error).__name__})") from error
+
+
+@dataclass
+class ModelIntake:
+    """Takes texts in, hands models and refusals out.
+
+    `beside`: a thread of its own parses, one text every `PERIOD` s, the newest that came; else `offer` parses at once,
+    as a simulation that runs faster than the clock needs it.
+    """
+
+    where: str = "friction_model"
+    beside: bool = True
+    clock: Callable[[], float] = lambda: 0.0
+    _text: str | None = field(default=None, init=False)
+    _done: deque[FrictionModel | InputError] = field(default_factory=deque, init=False)  # never replaced: two threads
+    _worker: threading.Thread | None = field(default=None, init=False)
+    _looked: float = field(default=float("-inf"), init=False)
+
+    def offer(self, text: str) -> None:
+        """A text has come; it replaces one that waits."""
+        self._text = text
+        if not self.beside:
+            self._parse()
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there is anything to `take`."""
+        return self._text is not None or bool(self._done)
+
+    def take(self) -> list[FrictionModel | InputError]:
+        """What has been parsed since; starts on what waits. To be called often: it never waits."""
+        busy = self._worker is not None and self._worker.is_alive()
+        if self._text is not None and not busy and self.clock() - self._looked >= PERIOD:
+            self._looked = self.clock()
+            self._worker = threading.Thread(target=self._parse, name="model", daemon=True)
+            self._worker.start()
+        return [self._done.popleft() for _ in range(len(self._done))]
+
+    def _parse(self) -> None:
+        text, self._text = self._text, None
+        try:
+            self._done.append(parse(text or "", self.where))
+        except InputError as error:
+            self._done.append(error)
+
+
+# -- the service
 HEARTBEAT = 25  # steps of the watchdog between two zeros, once the ramp is over
 LONGEST_END = 2.0  # s that the last ramp may take: whoever ends the process waits five
 
@@ -162,3 +266,19 @@ class CompensatorService:
             status["state"] = "stale"
         status["contradictions"] = "; ".join(self.contradictions)
         return status
+
+
+VALID, INVALID = "valid", "invalid"
+
+
+def mark(valid: bool, sequence: int) -> str:
+    """Validity and number as text."""
+    return f"{VALID if valid else INVALID} {sequence}"
+
+
+def read_mark(text: str) -> tuple[bool, int]:
+    """Validity and number from `header.frame_id`; text of another origin is valid, without a number (-1)."""
+    word, _, number = text.partition(" ")
+    if word not in (VALID, INVALID) or not number.isdigit():
+        return True, -1
+    return word == VALID, int(number)

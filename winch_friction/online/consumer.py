@@ -1,29 +1,13 @@
-"""What whoever uses the torque must do: hold it no longer than said, and then let it go (docs/safety.md).
-
-The validity and the number of a torque travel in `header.frame_id`, `valid 1234` or `invalid 1235`: fields of the
-standard message that carry no measurement.
-"""
+"""What whoever uses the torque must do: hold it no longer than said, and then let it go (docs/safety.md)."""
 
 import math
 from dataclasses import dataclass, field
 
+from winch_friction.online.compensator import read_mark
+
 HOLD_TIME = 0.1  # s that a torque may be held without another one
 FADE_TIME = 0.5  # s in which it is then let go
 RETURN_TIME = 0.2  # s in which it comes back after a silence
-VALID, INVALID = "valid", "invalid"
-
-
-def mark(valid: bool, sequence: int) -> str:
-    """Validity and number as text."""
-    return f"{VALID if valid else INVALID} {sequence}"
-
-
-def read_mark(text: str) -> tuple[bool, int]:
-    """Validity and number from `header.frame_id`; text of another origin is valid, without a number (-1)."""
-    word, _, number = text.partition(" ")
-    if word not in (VALID, INVALID) or not number.isdigit():
-        return True, -1
-    return word == VALID, int(number)
 
 
 @dataclass

@@ -4,18 +4,17 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from winch_friction.compensation.model_schedule import LEARNED_AT
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.online.agreement import LoadBalance
+from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.inertia_balance import InertiaBalance
-from winch_friction.online.inputs import InputGate
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
 
 FASTEST_MODELS = 1.0  # s of the service's clock between two models, whatever the stamps say

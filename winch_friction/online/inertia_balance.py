@@ -12,8 +12,7 @@ import numpy as np
 
 from winch_friction.online.agreement import Doubt
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.torque_balance import sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 
 SMOOTHING = 0.1  # s, twice: of all signals alike, so that noise and the encoder's steps do not pass for acceleration
 MEMORY = 40.0  # s: some waves

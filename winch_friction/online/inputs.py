@@ -1,4 +1,7 @@
-"""The inputs of a service: messages or rows of a run in, believed samples out, and what became of every message."""
+"""The inputs of a service: messages or rows of a run in, believed samples out, and what became of every message.
+
+Readings are obeyed inside the crane's ranges, where they do not change faster than it can.
+"""
 
 import math
 from collections import Counter
@@ -6,18 +9,90 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from winch_friction.online.options import ServiceOptions
-from winch_friction.online.plausibility import Plausibility
-from winch_friction.online.stamps import Stamp, StampWatch
-from winch_friction.online.voices import Voices
+from winch_friction.online.agreement import Stamp, StampWatch, Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
-from winch_friction.physics.hold import InputHold
+from winch_friction.physics.errors import check, option
 from winch_friction.physics.signals import NAN, Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.ranges import ChannelRanges
-from winch_friction.records.sample_stream import SampleStream
+from winch_friction.physics.winch.operating_point import Change, ChannelRanges
+from winch_friction.records.sample_stream import InputHold, SampleStream
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
+# -- how time is judged
+LONGEST_REAL_TIME = 1.0  # s; who waits longer for a speed has no real time: a simulation that pauses, or runs fast
+WATCH_PERIOD = 0.02  # s between two steps of the ramp that follows a silence
+WATCH_SHARE = 0.2  # ... or this share of the time-out, where that is less
+
+
+@dataclass(frozen=True)
+class ServiceOptions:
+    """`watchdog_timeout` s of silence are a lost speed; a stamp may lie `stamp_window` s ahead of the clock; a
+    learned model takes effect `model_delay` s after its last measurement."""
+
+    watchdog_timeout: float = option(
+        0.1, lower=0.01, upper=600.0, unit="s", doc="time without a speed after which the inputs count as lost"
+    )
+    stamp_window: float = option(
+        0.5, lower=0.05, upper=60.0, unit="s", doc="how far a stamp may run ahead of the clock before it is refused"
+    )
+    model_delay: float = option(
+        0.5, lower=0.0, upper=60.0, unit="s", doc="a learned model takes effect this long after its last measurement"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def paced(self) -> bool:
+        """Whether the stamps are bound to the clock that the service is told."""
+        return self.watchdog_timeout <= LONGEST_REAL_TIME
+
+    @property
+    def watch_period(self) -> float:
+        """s between two looks at the silence."""
+        return min(WATCH_PERIOD, WATCH_SHARE * self.watchdog_timeout)
+
+
+# -- a single reading
+UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
+
+
+@dataclass
+class Plausibility:
+    """Judges single readings; keeps the last accepted one of each column."""
+
+    ranges: ChannelRanges
+    _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
+
+    def refusal(self, column: str, stamp: float, value: float) -> str:
+        """Why a reading is not believed, in a few words; empty when it is."""
+        if value != value:
+            return "no number"
+        known = self._known.get(column)
+        if known is None:
+            known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
+        lower, upper, change = known
+        if not lower <= value <= upper:
+            return f"{value:.4g} is outside {lower:.4g} ... {upper:.4g}"
+        if change is not None:
+            last = self._last.get(column)
+            if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
+                return f"{value:.4g} is {abs(value - last[1]):.3g} from the last"
+            self._last[column] = (stamp, value)
+        return ""
+
+    def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
+        if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
+            return False
+        return abs(difference) > change.at_once + change.per_second * max(passed, 0.0)
+
+    def forget(self) -> None:
+        """Another time begins."""
+        self._last.clear()
+
+
+# -- all of them
 TWO_VOICES = "two values under one stamp"
 UNREADABLE = "late, or without the joint that it should show"
 

@@ -1,11 +1,23 @@
-"""The channels of a winch in one table: every column of a run and every signal of a sample, said once.
+"""The channels of a winch in one table, every column of a run and every signal of a sample, said once; and units.
 
 Units, display units, limits, ages, topics, the columns of `Run`, the fields of `Sample` and what of them enters the
 operating point derive from here (docs/interfaces.md). A group's channel is written `<group>.<channel>` in a run.
+A number beyond a channel's limits, which are several times what any winch does, is a broken sensor, not a measurement:
+a bus fault, an overflow, a wrong unit.
+
+SI inside. The few units that crane files, model files and people use have their factors here, and equations are checked
+by their dimensions: headers with arbitrary units are parsed with pint in `records`, this is what is needed without it.
 """
 
+import math
+import re
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
+
+from winch_friction.physics.errors import InputError
 
 UNBOUNDED = (-1.0e300, 1.0e300)
 
@@ -123,3 +135,118 @@ def limits_of(column: str) -> tuple[float, float]:
 def columns_of(groups: tuple[str, ...]) -> tuple[str, ...]:
     """Every column that a run with these motor groups may have, in the table's order."""
     return (*WINCH, *(f"{group}.{name}" for group in groups for name in OF_GROUP))
+
+
+# -- what a sensor can say at all
+LIMITS = {each.name: each.limits for each in CHANNELS}  # channel, without its group -> smallest and largest value, SI
+
+
+def plausible(channel: str, value: float) -> bool:
+    """Whether a value of this channel (a run's column or its short name) is a number that a sensor can mean."""
+    lower, upper = limits(channel)
+    return lower <= value <= upper  # false for NaN too
+
+
+@lru_cache(maxsize=1024)
+def limits(channel: str) -> tuple[float, float]:
+    """Smallest and largest value of a channel, SI."""
+    return LIMITS.get(channel.rpartition(".")[2], UNBOUNDED)
+
+
+# -- units
+GRAVITY = 9.81  # m/s^2
+RPM = 2.0 * math.pi / 60.0  # rad/s per rev/min
+BAR = 1.0e5  # Pa per bar
+CM3_PER_REV = 1.0e-6 / (2.0 * math.pi)  # m^3/rad per cm^3/rev
+
+# unit -> (SI unit, factor); a unit that stands for itself has factor 1
+_CONVERSIONS = {
+    "rpm": ("rad/s", RPM),
+    "bar": ("Pa", BAR),
+    "cm^3/rev": ("m^3/rad", CM3_PER_REV),
+    "t": ("kg", 1.0e3),
+    "kN*m": ("N*m", 1.0e3),
+    "kN": ("N", 1.0e3),
+    "kW": ("W", 1.0e3),
+    "mm": ("m", 1.0e-3),
+    "ms": ("s", 1.0e-3),
+    "h": ("s", 3600.0),
+    "deg": ("rad", math.pi / 180.0),
+    "-": ("1", 1.0),
+    "N*m*s": ("N*m*s/rad", 1.0),
+}
+
+
+def factor_to_si(unit: str, expected: str, where: str = "") -> float:
+    """Factor that takes a value in `unit` to the SI unit `expected`; raises `InputError` for another dimension."""
+    if unit == expected:
+        return 1.0
+    si_unit, factor = _CONVERSIONS.get(unit, (unit, 1.0))
+    if si_unit == expected:
+        return factor
+    raise InputError(
+        f"{where or 'value'}: unit '{unit}' cannot be used, expected {' or '.join(accepted_units(expected))}"
+    )
+
+
+def accepted_units(si_unit: str) -> list[str]:
+    """The SI unit and every unit of the table that converts to it."""
+    return [si_unit, *(unit for unit, (target, _) in _CONVERSIONS.items() if target == si_unit)]
+
+
+# -- dimensions
+Dimension = Mapping[str, float]  # exponents of kg, m, s, K, A; absent: 0
+_UNITS: dict[str, dict[str, float]] = {
+    "1": {}, "rad": {}, "kg": {"kg": 1}, "m": {"m": 1}, "s": {"s": 1}, "K": {"K": 1}, "degC": {"K": 1},
+    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3}, "Hz": {"s": -1}, "A": {"A": 1},
+}  # fmt: skip
+_TOKEN = re.compile(r"([*/]?)([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
+
+
+def dimension_of(unit: str) -> dict[str, float]:
+    """Exponents of kg, m, s, K and A; `InputError` for what is no SI unit."""
+    total: Counter[str] = Counter()
+    at = 0
+    for token in _TOKEN.finditer(unit):
+        if token.start() != at or token[2] not in _UNITS or (token[1] == "") != (at == 0):
+            break
+        power = float(token[3] or 1.0) * (-1.0 if token[1] == "/" else 1.0)
+        for base, exponent in _UNITS[token[2]].items():
+            total[base] += exponent * power  # type: ignore[assignment]
+        at = token.end()
+    if at != len(unit) or not unit:
+        raise InputError(f"unit '{unit}' is not a product of SI units such as N*m*s/rad")
+    return _without_zeros(total)
+
+
+def product(*factors: tuple[str, float]) -> dict[str, float]:
+    """Dimension of a product of powers of units."""
+    total: Counter[str] = Counter()
+    for unit, power in factors:
+        for base, exponent in dimension_of(unit).items():
+            total[base] += exponent * power  # type: ignore[assignment]
+    return _without_zeros(total)
+
+
+def quotient_unit(over: str, *factors: tuple[str, float]) -> str:
+    """A readable unit that times the factors gives `over`, such as N*m*s/rad for N*m over rad/s."""
+    powers: dict[str, float] = {}
+    for unit, power in factors:
+        for token in _TOKEN.finditer(unit):
+            if token[2] != "1":
+                own = float(token[3] or 1.0) * (-1.0 if token[1] == "/" else 1.0)
+                powers[token[2]] = powers.get(token[2], 0.0) - own * power
+    if over == "N*m" and powers.get("N", 0.0) == powers.get("m", 0.0) == -1.0:  # a torque over a torque
+        over, powers = "1", {name: power for name, power in powers.items() if name not in ("N", "m")}
+    above = "".join(f"*{_power(n, p)}" for n, p in powers.items() if p > 1e-12)
+    below = "".join(f"/{_power(n, -p)}" for n, p in powers.items() if p < -1e-12)
+    return f"{over}{above}{below}".removeprefix("1*")
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1.0 else f"{name}^{power:g}"
+
+
+def _without_zeros(total: Mapping[str, float]) -> dict[str, float]:
+    return {base: float(exponent) for base, exponent in sorted(total.items()) if abs(exponent) > 1e-12}

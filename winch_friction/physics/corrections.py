@@ -13,6 +13,12 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.fluid import (
+    air_compressed,
+    leakage_per_coefficient,
+    relative_viscosity,
+    relaxed_compression,
+)
 from winch_friction.physics.friction.correction import (
     DECLARED,
     Action,
@@ -22,12 +28,8 @@ from winch_friction.physics.friction.correction import (
     declared_correction,
 )
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.gas import air_compressed, relaxed_compression
-from winch_friction.physics.leakage import leakage_per_coefficient
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, GroupSample, Run, Sample
-from winch_friction.physics.viscosity import relative_viscosity
-from winch_friction.physics.winch.crane import Crane, Drum
-from winch_friction.physics.winch.torque_balance import driving_group
+from winch_friction.physics.winch.crane import Crane, Drum, driving_group
 
 __all__ = [
     "DECLARED", "Action", "Correction", "DeclaredCorrection", "SampleCorrector", "check_corrections", "corrected",

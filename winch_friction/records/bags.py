@@ -12,12 +12,11 @@ import yaml
 
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Bag, open_bag
 from winch_friction.records.run_checks import Place, checked_run
-from winch_friction.records.sample_stream import SampleStream
+from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"
 

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.winch.crane import Crane, Drum
-from winch_friction.physics.winch.drive import SLOWEST_FOR_POWER, Drive
-from winch_friction.records.paths import shipped
+from winch_friction.physics.winch.crane import SLOWEST_FOR_POWER, Crane, Drive, Drum
+from winch_friction.records.atomic import shipped
 from winch_friction.records.schemas import with_all_problems
 from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
 

@@ -1,9 +1,14 @@
 """Headers of run files: `motor_speed [rpm]` is a column with its unit, read with pint, `rev` meaning a revolution.
 
 Angle is a dimension of its own here: `Hz` or `cm^3` alone would leave open whether a revolution or a radian is meant.
+
+How people write units, and what pint calls them, is one table for every header of every verb. A spelling is looked up
+by the SI unit that its column has, since `C`, `1/min` or `t` mean nothing by themselves. What a spelling leaves open
+(`ton`: three masses) is refused with the choices. Pint reads whatever the table does not know.
 """
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -13,7 +18,143 @@ import numpy as np
 from winch_friction.physics.channels import CHANNELS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, column_unit
-from winch_friction.records.unit_names import pint_name
+
+# -- how people write units
+
+# SI unit of the column -> pint's name -> other spellings (compared without case, spaces and dots at the end)
+SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
+    "rad/s": {
+        "rpm": (
+            "1/min", "min-1", "min^-1", "/min", "u/min", "upm", "umdr/min", "umdrehungen/min", "r/min", "rev/min",
+            "r.p.m", "o/min", "omdr/min", "omdr./min", "omdreininger/min", "tr/min", "giri/min", "u/minute", "rot/min",
+            "omw/min", "toeren/min", "tpm", "tr/mn", "tours/min", "varv/min", "v/min", "vueltas/min",
+            "obr/min", "obr./min", "ot/min", "d/dak", "dev/dak", "об/мин", "ob/min", "rot/min",
+        ),
+        "rev/s": ("u/s", "rps", "r/s", "rev/s", "umdr/s", "omdr/s", "o/s", "rev/sec"),
+        "rad/s": ("rad/sec", "rad/sek", "rads", "rad s-1", "rad*s^-1"),
+        "deg/s": ("°/s", "deg/sec", "grad/s", "grader/s"),
+    },
+    "Pa": {
+        "bar": (
+            "barg", "bar g", "bar(g)", "bar_g", "bar-g", "bar ü", "bar ue", "barü", "bar gauge", "bar rel", "bar(rel)",
+            "baro", "bar overtrykk", "bars",
+        ),
+        "bar_absolute": ("bara", "bar a", "bar(a)", "bar_a", "bar-a", "bar abs", "bar(abs)", "bar absolute",
+            "bar absolut"),
+        "psi": ("psig", "psi g", "psi(g)", "lbf/in2", "lbf/in^2"),
+        "psi_absolute": ("psia", "psi a", "psi(a)"),
+        "kgf/cm^2": ("kp/cm2", "kp/cm^2", "kgf/cm2", "kg/cm2", "kg/cm^2"),
+        "kPa": (), "hPa": (), "mbar": (), "Pa": ("pascal",),
+        "MPa": ("mpa", "n/mm2", "n/mm^2"),
+    },
+    "m^3/rad": {
+        "cm^3/rev": (
+            "ccm", "ccm/u", "ccm/rev", "ccm/r", "ccm/umdr", "ccm/omdr", "ccm/o", "cc", "cc/rev", "cc/r", "cc/u",
+            "cm3/rev",            "cm3/u", "cm3/r", "cm3/umdr", "cm3/o", "cm3/omdr", "cm^3/u",
+            "cm^3/r", "cm^3/o", "cm^3/omdr", "cm^3/umdr",
+            "cm3/omw", "cc/omw", "cm3/tr", "cc/tr", "cm3/varv", "cm3/vuelta", "cm3/giro", "cc/giro",
+            "cm3/obr", "cm3/ot", "cm3/rot", "cc/rot", "cm3/dev", "см3/об", "cm3/ob",
+            "ml/rev", "ml/u", "ml/r", "cm3/revolution", "cm3/umdrehung",
+        ),
+        "l/rev": ("l/u", "l/r", "liter/u", "dm3/rev", "dm^3/rev", "l/omdr"),
+        "in^3/rev": ("in3/rev", "cu in/rev", "cuin/rev", "cir", "in^3/r"),
+        "m^3/rad": ("m3/rad",),
+        "m^3/rev": ("m3/rev", "m3/u", "m^3/u"),
+    },
+    "kg": {
+        "metric_ton": (
+            "t", "te", "to", "tonne", "tonnes", "tonnen", "tonn", "mt", "metric ton", "metric tons", "metric t",
+            "metrische tonnen", "tonne(s)", "metric_ton", "metric_tons",
+        ),
+        "pound": ("lb", "lbs"),
+        "gram": ("g",), "kg": ("kgs", "kilo", "kilogramm", "kilogram"),
+        "short_ton": ("short ton", "short tons", "us ton", "us tons", "short_ton", "short_tons", "ston"),
+        "long_ton": ("long ton", "long tons", "long_ton", "long_tons", "imperial ton", "uk ton"),
+    },
+    "N": {
+        "N": ("newton",),
+        "kgf": ("kp", "kgf", "kilopond", "kg", "kgs"),
+        "metric_ton * gravity": ("tf", "t", "te", "tonnef", "to", "mp", "tonne", "tonnes", "tonn", "tonnen"),
+        "kN": ("kn",), "decanewton": ("dan",), "meganewton": ("mn",),
+        "lbf": ("lbs", "lb"),
+    },
+    "N*m": {
+        "N*m": ("nm", "n_m", "n m", "n.m", "n·m", "newtonmeter"),
+        "kN*m": ("knm", "kn m", "kn.m"),
+        "mN*m": ("mnm", "mn m", "mn.m"),
+        "N*cm": ("ncm",),
+        "lbf*ft": ("lb-ft", "lbft", "ft-lb", "ftlb", "lbf-ft", "ft lbf"),
+    },
+    "degC": {
+        "degC": ("°c", "c", "℃", "deg c", "grad c", "grad celsius", "celsius", "°celsius", "gr c", "degree c", "oc"),
+        "degF": ("°f", "f", "fahrenheit", "deg f"),
+        "kelvin": ("k", "kelvin"),
+    },
+    "m/s": {"m/s": ("mps", "m/sec", "m/sek", "ms-1", "m s-1", "m*s^-1", "m·s-1"),
+            "m/min": ("m/minute",), "mm/s": ("mm/sec",),
+            "knot": ("kn", "kt", "kts", "knop", "knoten")},
+    "s": {
+        "s": ("sec", "secs", "sek", "sekunden", "sekunder", "seconds", "second", "sekunde"),
+        "ms": ("msec", "msek", "millisekunden", "milliseconds", "millisek", "millisekunder"),
+        "us": ("µs", "μs", "usec", "microseconds", "mikrosekunden"), "ns": ("nsec", "nanoseconds"),
+        "minute": ("min", "minuten", "minutter", "mins"), "hour": ("h", "std", "stunden", "timer", "hrs", "hr"),
+        "day": ("d", "tage", "dager", "days"),
+    },
+    "m": {"m": ("meter", "metre", "meters", "metres"), "mm": ("millimeter",), "cm": (), "km": (),
+          "foot": ("ft", "feet")},
+    "rad": {"deg": ("°", "grad", "grader", "degree", "degrees"), "rev": ("u", "umdr", "omdr", "turns", "revs")},
+    "W": {"kW": ("kw",), "metric_horsepower": ("ps", "hk"), "W": ("watt",), "MW": ("megawatt",)},
+    "A": {"A": ("amp", "amps", "ampere"), "mA": ("milliampere",)},
+    "1": {"percent": ("%", "pct", "prozent", "prosent", "procent"), "dimensionless": ("-", "1", "–", "none", "[-]")},
+}  # fmt: skip
+
+# SI unit of the column -> spelling -> what it may mean
+AMBIGUOUS: dict[str, dict[str, str]] = {
+    "kg": dict.fromkeys(("ton", "tons", "tn"),
+        "'t' (metric, 1000 kg), 'short_ton' (US, 907 kg) or 'long_ton' (UK, 1016 kg)"),
+    "N": dict.fromkeys(("ton", "tons", "tonf"), "'tf' (metric, 9807 N), 'short_ton * gravity' or 'long_ton * gravity'"),
+    "rad/s": dict.fromkeys(("1/s", "s-1", "s^-1", "/s", "hz"), "'rad/s' or 'rev/s'"),
+}  # fmt: skip
+
+_SUPERSCRIPTS = str.maketrans(
+    {"⁻": "-", "²": "^2", "³": "^3", "¹": "1", "·": "*", "⋅": "*", "×": "*", "µ": "u", "μ": "u"}
+)
+
+
+def pint_name(unit: str, si_unit: str, where: str = "") -> str:
+    """What pint calls a unit as it is written over a column of `si_unit`; raises `InputError` for an ambiguous one."""
+    plain = plain_spelling(unit)
+    choices = AMBIGUOUS.get(si_unit, {}).get(plain)
+    if choices:
+        raise InputError(f"{where or 'unit'}: unit '{unit}' is ambiguous; write {choices}")
+    return _LOOKUP.get(si_unit, {}).get(plain) or _LOOKUP["1"].get(plain) or _cleaned(unit)
+
+
+def known_spelling(unit: str, si_unit: str) -> bool:
+    """Whether the table lists a spelling for columns of this SI unit, be it an ambiguous one."""
+    plain = plain_spelling(unit)
+    return plain in _LOOKUP.get(si_unit, {}) or plain in AMBIGUOUS.get(si_unit, {})
+
+
+def plain_spelling(unit: str) -> str:
+    """A spelling as the table compares it: no case, no doubled spaces, superscripts as powers."""
+    text = unicodedata.normalize("NFC", unit).strip().strip("[]").strip().casefold()
+    text = text.replace("min⁻¹", "min-1").translate(_SUPERSCRIPTS)
+    text = re.sub(r"\s*/\s*", "/", re.sub(r"\s+", " ", text))
+    return text.removesuffix(".")
+
+
+def _cleaned(unit: str) -> str:
+    return unicodedata.normalize("NFC", unit).strip().translate(_SUPERSCRIPTS)
+
+
+_LOOKUP = {
+    si_unit: {plain_spelling(each): name for name, spellings in names.items() for each in (name, *spellings)}
+    for si_unit, names in SPELLINGS.items()
+}
+
+
+# -- headers
 
 # what people write for the units a winch is logged in; quoted in error messages
 _EXAMPLES = {each.unit: each.display for each in CHANNELS if each.display != each.unit} | {

@@ -1,12 +1,18 @@
-"""Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well)."""
+"""Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well).
 
-from collections.abc import Iterable, Sequence
+How the inputs of one machine travel is said once, for nodes and for every verb that reads a bag.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from winch_friction.physics.errors import InputError, Problems
+from winch_friction.physics.errors import InputError, Problems, check, from_mapping, option
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
 
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
@@ -72,3 +78,75 @@ def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
 
         return write_bag(run, path, **bag_options)
     raise InputError(f"{path}: cannot write this kind of file; use {KINDS}")
+
+
+# -- how inputs travel
+@dataclass(frozen=True)
+class InputMapping:
+    """Groups, joints, fields and conventions of the input messages. Raises `InputError` for values out of range."""
+
+    groups: tuple[str, ...] = option(("active", "passive"), doc="motor groups on the shaft, by their names in topics")
+    speed_joint: str = option(
+        "winch_motor", doc="joint whose speed winch/joint_states carries: the motor's, or drum_joint"
+    )
+    drum_joint: str = option("winch_drum", doc="name of the drum's joint; its speed is multiplied by the gear ratio")
+    swash_joint: str = option("{group}_swash", doc="joint of winch/<group>/displacement; {group} is the group's name")
+    pressure_reference: str = option("gauge", choices=PRESSURE_REFERENCES, doc="what the pressure transducers measure")
+    displacement_unit: str = option(
+        "fraction", choices=DISPLACEMENT_UNITS, doc="unit of the displacement joints: of the maximum, or m3/rad"
+    )
+    float64_inputs: tuple[str, ...] = option(
+        (), doc="channels that a plain bridge sends as std_msgs/Float64, stamped on receipt, e.g. active.pressure_a"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def topics(self, crane: Crane) -> TopicMap:
+        """The input topics of this crane under these conventions."""
+        return crane_topics(
+            crane,
+            self.groups,
+            displacement_unit=self.displacement_unit,
+            float64_channels=self.float64_inputs,
+            **self.joints(),
+        )
+
+    def joints(self) -> dict[str, Any]:
+        """What `open_bag` needs to be told: it finds groups, units and plain inputs in the bag itself."""
+        motor = {} if self.speed_joint == self.drum_joint else {"motor_joint": self.speed_joint}
+        return {
+            "speed_joint": self.speed_joint, "drum_joint": self.drum_joint, "swash_joint": self.swash_joint,
+            "pressure_reference": self.pressure_reference, **motor,
+        }  # fmt: skip
+
+
+def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
+    """Parameters of a node in a ROS parameter file: those of every node (`/**`) and its own."""
+    if not isinstance(content, Mapping):
+        raise InputError(f"{where}: not a ROS parameter file: expected node names with ros__parameters")
+    merged: dict[str, Any] = {}
+    for name, section in content.items():
+        if str(name).rsplit("/", 1)[-1] in ("**", node):
+            if not isinstance(section, Mapping) or "ros__parameters" not in section:
+                raise InputError(f"{where}: {name} has no ros__parameters; is this a ROS parameter file?")
+            merged |= section["ros__parameters"] or {}
+    return merged
+
+
+def bag_options_of(params_file: Path | None, node: str = "compensator") -> dict[str, Any]:
+    """Options of `open_bag` from the nodes' ROS parameter file; none without one.
+
+    Raises `InputError` for what is no such file.
+    """
+    if params_file is None:
+        return {}
+    parameters = parameters_of(read_yaml(params_file), node, str(params_file))
+    names = {each.name for each in fields(InputMapping)}
+    own = {key: tuple(filter(None, v)) if isinstance(v, list) else v for key, v in parameters.items() if key in names}
+    mapping = from_mapping(InputMapping, own, str(params_file))
+    options = mapping.joints()
+    if "motor_speed" in mapping.float64_inputs:
+        options["float64_channels"] = mapping.float64_inputs
+    said = "displacement_unit" in own and any(own.get("float64_inputs", ()))
+    return options | ({"displacement_unit": own["displacement_unit"]} if said else {})

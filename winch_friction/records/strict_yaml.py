@@ -8,8 +8,8 @@ from typing import Any
 
 import yaml
 
+from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, unknown_key
-from winch_friction.physics.units import factor_to_si
 
 
 class Section:

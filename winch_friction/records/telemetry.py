@@ -6,7 +6,7 @@ diagnostics.
 
 from typing import Any
 
-from winch_friction.physics.units import RPM
+from winch_friction.physics.channels import RPM
 
 JOINT = "sensor_msgs/msg/JointState"
 # topic below the winch's namespace -> its type; /diagnostics is shared by all

@@ -6,8 +6,8 @@ from operator import attrgetter
 import numpy as np
 
 from winch_friction.compensation import Feedforward, FeedforwardCompensator
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import Run
+from winch_friction.records.sample_stream import InputHold
 
 COLUMNS = ("friction_torque", "pressure", "speed", "drum_torque", "fade")
 _numbers = attrgetter("time", *COLUMNS)

@@ -8,8 +8,8 @@ import numpy as np
 
 from winch_friction.estimation import Estimate, FrictionEstimator
 from winch_friction.physics.channels import SLOW_INPUTS
-from winch_friction.physics.hold import InputHold
 from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.records.sample_stream import InputHold
 
 COLUMNS = ("friction_torque", "speed", "drum_torque", "innovation", "innovation_variance", "nis")
 _numbers = attrgetter("time", *COLUMNS)

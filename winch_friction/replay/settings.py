@@ -8,11 +8,11 @@ from typing import Any
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation import EstimatorConfig
+from winch_friction.physics.errors import from_mapping
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.registry import load_file
-from winch_friction.physics.options import from_mapping
-from winch_friction.records.mapping import parameters_of
+from winch_friction.physics.friction.term import load_file
 from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import parameters_of
 from winch_friction.records.strict_yaml import read_yaml
 
 OF_THE_COMPENSATOR = ("model_delay", "watchdog_timeout", "stamp_window")

@@ -5,7 +5,7 @@ from math import inf, isfinite
 
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.online.options import ServiceOptions
+from winch_friction.online.inputs import ServiceOptions
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.physics.winch.model_curve import ModelCurve
 from winch_friction.report.base import TextSection, write_report
 from winch_friction.report.decision import decision_html, provenance_html

@@ -11,9 +11,9 @@ from html import escape
 
 import sympy as sp
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction.symbols import SIGNAL_OF_SYMBOL
 from winch_friction.physics.friction.term import Term
-from winch_friction.physics.units import RPM
 from winch_friction.report.tables import for_people, table_html
 
 # how a signal is written where its symbol in the code would not be understood

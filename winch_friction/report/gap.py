@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
 from winch_friction.physics.friction.table import FACTORS, at_knots, tabulated
-from winch_friction.physics.units import RPM
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.equations import latex_html, term_html

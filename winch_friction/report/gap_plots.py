@@ -7,8 +7,8 @@ import numpy as np
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import BAR, RPM
 from winch_friction.report.gap_words import shown_unit
 from winch_friction.report.plots import Frame, Heat, Line, Plot
 

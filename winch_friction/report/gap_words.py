@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
-from winch_friction.physics.units import RPM
 from winch_friction.report.tables import number
 
 if TYPE_CHECKING:

@@ -4,8 +4,7 @@ import base64
 import gzip
 import hashlib
 
-from winch_friction.physics.compiling import cache_root
-from winch_friction.physics.kept import keep, read_kept
+from winch_friction.physics.friction.sources import cache_root, keep, read_kept
 
 
 def packed(source: bytes) -> str:

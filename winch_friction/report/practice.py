@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.identification.practice import Practice
-from winch_friction.physics.units import RPM
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.winch.model_curve import ModelCurve, model_curve
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.curves import curve_plot

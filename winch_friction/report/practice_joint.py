@@ -3,7 +3,7 @@
 from winch_friction.identification.fit_data import contributions
 from winch_friction.identification.friction_curve import curve_data
 from winch_friction.identification.practice import Practice
-from winch_friction.physics.units import RPM
+from winch_friction.physics.channels import RPM
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_look import SPEED, curve_label
 from winch_friction.report.tables import for_people, paragraph, table_html, value_for_people

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from winch_friction.identification.friction_curve import FrictionCurve
+from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import CM3_PER_REV, RPM
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 
 SPEED = "motor speed [rpm]"

@@ -9,8 +9,8 @@ from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.supplier_table import motor_points
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.report.practice_look import (
     MOTOR,
     SPEED,

@@ -9,8 +9,8 @@ from winch_friction.identification.motor_identification import MotorIdentificati
 from winch_friction.identification.motor_models import motor_model_named
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.supplier_table import motor_points
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_look import SPEED, Curve, curves_html

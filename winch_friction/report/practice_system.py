@@ -7,7 +7,7 @@ import numpy as np
 from winch_friction.identification.friction_curve import FrictionCurve, winch_points
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.system_fit import system_start
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.records.model_file import load_model
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html

@@ -4,7 +4,7 @@ from typing import Any
 
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.verification import STANDSTILL, PressureCheck
-from winch_friction.physics.units import BAR, RPM
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.report.base import TextSection
 from winch_friction.report.practice_look import SPEED, Curve, curves_html, name
 from winch_friction.report.tables import paragraph, table_html

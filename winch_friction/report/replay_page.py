@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import RPM
 from winch_friction.replay.recording import Replayed
 from winch_friction.replay.summary import summary
 from winch_friction.report.base import TextSection, write_report

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
-from winch_friction.physics.units import RPM
 from winch_friction.report.figures import COLOURS, legend_above, new_figure
 
 _MOST_PARAMETERS = 4

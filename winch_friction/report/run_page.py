@@ -10,7 +10,8 @@ from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.operating_point import run_drum_torque, run_operating_points
+from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.report.base import TextSection, write_report
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.tables import for_people, table_html, value_for_people

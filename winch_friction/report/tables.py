@@ -6,7 +6,7 @@ from html import escape
 from math import isfinite
 from typing import Any
 
-from winch_friction.physics.units import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 
 
 def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "", digits: int = 4) -> str:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.control.settings import CONTROL
 from winch_friction.simulation.motion.measured import MeasuredHeave, load_heave

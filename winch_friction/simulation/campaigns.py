@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.units import CM3_PER_REV
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.simulation.scenario import Scenario, scenario_from_content
 
 # paper 2 Tables 2 and 5: test -> displacement per motor cm^3/rev, load t (the hook alone weighs about 2 t)

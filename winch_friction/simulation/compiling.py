@@ -9,9 +9,9 @@ from typing import Any
 import numba
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
+import winch_friction.physics.channels as channels
 import winch_friction.physics.friction.symbols as symbols
-import winch_friction.physics.units as units
-from winch_friction.physics.compiling import cache_root, compiled_in, source_digest
+from winch_friction.physics.friction.sources import cache_root, compiled_in, source_digest
 
 tuple_of: Any = to_fixed_tuple  # the first so many values of an array as a tuple, in compiled code
 
@@ -44,4 +44,4 @@ def in_order(function: Any, *given: str, **named: Any) -> tuple[Any, ...]:
 @lru_cache(maxsize=1)
 def _directory() -> str:
     own = sorted(Path(__file__).parent.rglob("*.py"))
-    return str(cache_root() / source_digest([*own, Path(str(symbols.__file__)), Path(str(units.__file__))]))
+    return str(cache_root() / source_digest([*own, Path(str(symbols.__file__)), Path(str(channels.__file__))]))

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.channels import column_unit
+from winch_friction.physics.channels import column_unit, factor_to_si
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import factor_to_si
 from winch_friction.records.strict_yaml import Section, read_yaml
 
 SCHEMA = "winch_friction.fmu/1"

@@ -12,7 +12,7 @@ from typing import Any
 
 import numba
 
-from winch_friction.physics.compiling import cache_root, uncollected
+from winch_friction.physics.friction.sources import cache_root, uncollected
 from winch_friction.records.atomic import write_text
 
 _HEADER = """from math import *

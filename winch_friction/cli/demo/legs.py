@@ -7,10 +7,9 @@ from typing import Any
 
 import yaml
 
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import CM3_PER_REV
-from winch_friction.records.atomic import write_text
-from winch_friction.records.paths import shipped
+from winch_friction.records.atomic import shipped, write_text
 from winch_friction.records.strict_yaml import read_yaml
 from winch_friction.simulation.scenario import Measured, Scenario, load_scenario, scenario_from_content
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from winch_friction.cli.demo.plan import DemoPlan, Phase
 from winch_friction.cli.demo.recording import Recording
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import RPM
 
 SETTLING = 20.0  # s: the sea grows for ten, the feedforward fades in for one
 REVERSAL = (-0.2, 1.0)  # s around each change of the speed's sign

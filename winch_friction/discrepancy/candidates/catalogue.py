@@ -1,24 +1,76 @@
-"""All candidates: the shipped ones, a user's own, and what the channels at hand cannot show."""
+"""All candidates: the shipped ones, a user's own, and what the channels at hand cannot show.
+
+Those that repeat with the turns of the drum are made for a crane: an eccentric drum, an oval one, the planets and
+wheels of its gear, whole numbers of periods per turn of the drum, a share of the load's torque, whichever way it turns.
+They are slower than a block, so that a regression sees them; a ripple of the motor's own turn is too fast for blocks
+and has a detector of its own.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from winch_friction.discrepancy.candidates.bends import bends_over
-from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Untestable
-from winch_friction.discrepancy.candidates.drum_turn import drum_ripples
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Shape, Untestable, label_of
 from winch_friction.discrepancy.candidates.families import free_members, literature
-from winch_friction.discrepancy.candidates.feedback import feedback_candidates
-from winch_friction.discrepancy.candidates.friction import friction_candidate, shipped_friction
-from winch_friction.discrepancy.candidates.gas import gas_candidates
-from winch_friction.discrepancy.candidates.geometry import geometry_candidates
+from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
+from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
+from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.registry import load_file
+from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction.term import load_file
+
+# -- turns of the drum
+CAUSE = "torque_ripple"
+ONE, HARMONICS, HIGHEST_HARMONIC = "drum_ripple", "drum_ripple_harmonics", 3
+FASTEST = 0.1  # periods per turn of the motor, from where on the spectrum over its angle looks
+MOST_ORDERS = 40  # per turn of the drum; what is faster is left to the spectrum over the motor's angle
+LEAST_TURN = 1.0  # of the drum, in at least two runs: less is no period
+COUNTED = 0.9  # of the way that the speed tells, that the logged angle must have gone: one that wraps has no turns
 
 
+def drum_ripples(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """One wave, and one with its harmonics; none that the model has already."""
+    most = min(int(FASTEST * runs[0].gear_ratio), MOST_ORDERS) if runs else 0
+    orders = {ONE: ("k_d", most), HARMONICS: ("k_dh", most // HIGHEST_HARMONIC)}
+    return [
+        replace(
+            friction_candidate(
+                term_named(name), law_name=name, needs=("shaft_angle",), blind=_no_turns, continuous=(),
+                shapes=partial(_whole_orders, order, highest),
+            ),
+            name=CAUSE,
+        )
+        for name, (order, highest) in orders.items()
+        if highest and name not in model.term_names
+    ]  # fmt: skip
+
+
+def _whole_orders(name: str, highest: int, _: Sequence[PreparedRun]) -> list[Shape]:
+    return [Shape(label_of({name: float(k)}), {name: float(k)}) for k in range(1, highest + 1)]
+
+
+def _no_turns(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    """What repeats shows where it has repeated, over an angle that is counted on from turn to turn."""
+    if (reason := no_load(runs)) is not None:
+        return reason
+    turns = [_turned(run) for run in runs]
+    if sum(each >= LEAST_TURN for each in turns) >= 2:
+        return None
+    return "shaft_angle", "no two runs turn the drum once, by an angle that counts its turns"
+
+
+def _turned(run: PreparedRun) -> float:
+    """Turns of the drum that the angle covers; none where it does not follow the speed."""
+    covered, told = float(np.ptp(run.angle)), float(np.ptp(np.cumsum(run.speed))) * run.dt
+    return covered / run.gear_ratio / (2.0 * np.pi) if covered >= COUNTED * told else 0.0
+
+
+# -- all of them
 def _no_command(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     known = any("speed_reference" in run.present for run in runs)
     return None if known else ("speed_reference", "lost flow shows only against a commanded speed")

@@ -14,13 +14,12 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes
-from winch_friction.discrepancy.candidates.friction import COULOMB, Grid, friction_candidate, term_columns
-from winch_friction.discrepancy.candidates.speeds_seen import POSSIBLE
+from winch_friction.discrepancy.candidates.friction import COULOMB, POSSIBLE, Grid, friction_candidate, term_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.dimensions import quotient_unit
+from winch_friction.physics.channels import quotient_unit
 from winch_friction.physics.friction import FrictionModel, Scope, Term, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.friction.table import FACTORS, Table, outlined, tabulated

@@ -1,4 +1,8 @@
-"""Candidates in the feedback of the displacement: its zero, what the oil's warmth adds, and a bow over the stroke."""
+"""Candidates in the feedback of the displacement: its zero, what the oil's warmth adds, and a bow over the stroke.
+
+And in what shows a signal unevenly: a transducer whose gain changes at a pressure, a feedback whose curve the data
+draw.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,20 +12,24 @@ import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
 from winch_friction.discrepancy.candidates.signals import (
+    BALANCING,
     OIL,
+    affected_groups,
+    e_p,
     group_columns,
     group_shapes,
     groups_of,
     in_groups,
+    scale_columns,
     to,
     warm_columns,
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
-from winch_friction.physics.units import CM3_PER_REV
 
 LARGEST = "max_displacement"  # m^3/rad, of one motor
 FEWEST_STROKES = 3  # displacements a tenth of the largest apart: a zero and a bow, and one that could contradict
@@ -98,3 +106,121 @@ def feedback_candidates() -> list[Candidate]:
                   blind=_few_strokes),
     ]  # fmt: skip
     return [replace(each, of_stroke=True) for each in found]
+
+
+# -- signals shown unevenly
+PRESSURES = (0.2, 0.4, 0.6)  # quantiles of what was covered, at which the gain may change
+STROKES = (0.1, 0.4, 0.7)  # the same of the displacement, at which the feedback's curve bends
+FEWEST_OF_A_CURVE = (
+    6  # displacements a twentieth of the largest apart: a zero, three bends, and two that could contradict
+)
+
+b_p = Parameter("b_p", "1", 0.02, lower=-0.5, upper=0.5, doc="gain error of the transducers beyond a pressure")
+# a bow of an offset's typical height, 1 of 250 cm^3, up and down again over a quarter of the stroke each
+TURN = 2.0 * (1.0 / 250.0) / 0.25
+BENDS = tuple(
+    Parameter(f"b_D{k}", "1", TURN, lower=-0.5, upper=0.5, doc=f"change {k} of the feedback's gain over the stroke")
+    for k in range(1, len(STROKES) + 1)
+)
+
+
+def _high(g: GroupSignals) -> FloatArray:
+    return 0.5 * (g.pressure_sum + np.abs(g.pressure))
+
+
+def _covered(runs: Sequence[PreparedRun], values: Values) -> FloatArray:
+    """The high pressures that the moving samples of the groups have seen that a shape speaks of."""
+    parts = [np.broadcast_to(_high(g), run.time.shape)[run.used] for run in runs for g in affected_groups(run, values)]
+    return np.concatenate(parts) if parts else np.array([])
+
+
+def bent_pressure_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """A gain error, and what is added beyond a pressure, N m, shape (samples, 2)."""
+
+    def beyond(g: GroupSignals) -> FloatArray:
+        ports = (0.5 * (g.pressure_sum + sign * g.pressure) for sign in (1.0, -1.0))
+        a, b = (np.maximum(port - values["beyond"], 0.0) for port in ports)
+        return g.count * g.displacement * (a - b)
+
+    return np.hstack([scale_columns(run, {**values, "port_a": 0.0}), group_columns(beyond, run, values)])
+
+
+def _pressure_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = []
+    for each in group_shapes(runs):
+        covered = _covered(runs, each.values)
+        for at in np.quantile(covered, PRESSURES) if len(covered) else ():
+            label = f"{each.label}, beyond {at / 1e5:.0f} bar"
+            shapes.append(Shape(label, {**each.values, "beyond": float(at)}, carried=each.carried))
+    return shapes
+
+
+def _to_pressure(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = groups_of(shape, sides)
+    return [
+        correction("pressure_scale", found[e_p.name], groups=groups),
+        correction("pressure_bend", found[b_p.name], groups=groups, beyond=shape.values["beyond"]),
+    ]
+
+
+def curve_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the feedback and its changes of gain over the stroke, N m, shape (samples, 1 + bends)."""
+
+    def column(g: GroupSignals, at: float) -> FloatArray:
+        return _swivel(g) * np.maximum(g.displacement - at, 0.0)
+
+    zero = group_columns(_swivel, run, values)
+    bends = [group_columns(partial(column, at=values[f"beyond_{k}"]), run, values) for k in range(1, len(BENDS) + 1)]
+    return np.hstack([zero, *bends])
+
+
+def _curve_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    shapes = []
+    for each in group_shapes(runs):
+        at = np.quantile(_strokes(runs, each.values), STROKES)
+        if np.diff(at).min() > 0.0:
+            own = {f"beyond_{k}": float(v) for k, v in enumerate(at, start=1)}
+            shapes.append(Shape(each.label, {**each.values, **own}, carried=each.carried))
+    return shapes
+
+
+def _strokes(runs: Sequence[PreparedRun], values: Values) -> FloatArray:
+    """One displacement for every run and group: what a run holds counts once, however long it is."""
+    own = [float(np.median(g.displacement)) for run in runs for g in affected_groups(run, values)]
+    return np.array(own or [0.0])
+
+
+def _few_bends(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
+    if (
+        largest > 0.0
+        and len(set(np.round(20.0 * _strokes(runs, {"groups": BALANCING}) / largest))) >= FEWEST_OF_A_CURVE
+    ):
+        return None
+    return "more displacements", "a curve over the stroke shows between many displacements"
+
+
+def _to_curve(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    groups = groups_of(shape, sides)
+    return [
+        correction("displacement_offset", found[D_0.name], groups=groups),
+        *(
+            correction("displacement_bend", found[p.name], groups=groups, beyond=shape.values[f"beyond_{k}"])
+            for k, p in enumerate(BENDS, start=1)
+        ),
+    ]
+
+
+def bends_over(runs: Sequence[PreparedRun]) -> list[Candidate]:
+    """A transducer that bends at a pressure, and a feedback whose curve over the stroke the data draw; where they may
+    bend is what these runs have covered, and stays so while the pressures are reckoned anew around what was found.
+    """
+    pressures, strokes = _pressure_shapes(runs), _curve_shapes(runs)
+    found = [
+        in_groups("pressure_scale", r"\sum_g n_g D_g\,(e_p\,\Delta p_g + b_p\,(p_g - p_b)_+)", (e_p, b_p),
+                  bent_pressure_columns, lambda _: pressures, _to_pressure, law_name="bends at a pressure"),
+        in_groups("swivel_offset", r"\sum_g n_g\,\Delta p_g\,(D_0 + \sum_k b_{Dk}\,(D_g - D_k)_+)", (D_0, *BENDS),
+                  curve_columns, lambda _: strokes, _to_curve, law_name="a curve over the stroke", blind=_few_bends,
+                  free=True, of_stroke=True),
+    ]  # fmt: skip
+    return [each for each, shapes in zip(found, (pressures, strokes), strict=True) if shapes]

@@ -1,4 +1,8 @@
-"""Candidates that are declared friction terms: their regressors are the term's own derivatives by its parameters."""
+"""Candidates that are declared friction terms: their regressors are the term's own derivatives by its parameters.
+
+A law whose own speed lies where no run has been keeps its name and loses its shape: what it draws there is another
+cause's, and the name would be given for what it does not say.
+"""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -7,7 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import REVERSALS, Candidate, Shape, Shapes, Values, label_of
+from winch_friction.discrepancy.candidates.candidate import (
+    REVERSALS,
+    Candidate,
+    Possible,
+    Shape,
+    Shapes,
+    Values,
+    label_of,
+)
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.balance import state_history
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
@@ -15,6 +27,7 @@ from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import compiled
 from winch_friction.physics.friction.table import outlined
 from winch_friction.physics.friction.term import Term
+from winch_friction.physics.friction.terms.laws_motor import POLE, VOGEL_46
 
 Grid = Mapping[str, tuple[float, ...]]
 COULOMB = ("coulomb", "motor_coulomb")
@@ -191,3 +204,59 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
 def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
     """These samples of each; what is one number for a whole run stays one."""
     return tuple(each[some] if np.ndim(each) else each for each in arrays)
+
+
+# -- the speeds that were seen
+CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
+BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
+WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
+
+
+def _top(runs: Sequence[PreparedRun]) -> float:
+    """Largest speed of the runs but for outliers, rad/s."""
+    return max((float(np.percentile(np.abs(run.speed), 99)) for run in runs), default=np.inf)
+
+
+def stribeck(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """A Stribeck speed that the runs go well beyond: a wider curve is a constant, and that is Coulomb friction."""
+    return all(v < WIDEST * _top(runs) for name, v in values.items() if name.startswith("v_"))
+
+
+def hersey(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """The same of the curve whose speed follows the oil, at the oil temperature of the runs: its speed is stated at a
+    reference where no oil may have been, and beyond all that was driven it is a loss of the load, not of the oil."""
+    if "C4_h" not in values or not runs or not all("oil_temperature" in run.channels for run in runs):
+        return True
+    oil = float(np.median([np.median(run.channels["oil_temperature"]) for run in runs]))
+    thick = float(np.exp(VOGEL_46 / (oil + POLE) - VOGEL_46 / (values["T_vh"] + POLE)))
+    return bool(values["C4_h"] / thick < WIDEST * _top(runs))
+
+
+def notch(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """A maximum over the speed that the runs have reached: below it a notch's loss only rises, as those of flow and of
+    power do."""
+    return all(v < _top(runs) for name, v in values.items() if name.startswith("w_"))
+
+
+def blurred_travel(runs: Sequence[PreparedRun]) -> float:
+    """Travel of the shaft in rad within three samples of a reversal, median: shorter than that nothing is told from an
+    instant that is not known better; 0 without a reversal."""
+    travels = []
+    for run in runs:
+        speed, look = run.speed, max(round(BEYOND / run.dt), 2)
+        at = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+        at = at[(at >= look) & (at < len(speed) - look)]
+        real = at[(np.abs(speed[at - look]) > MOVING_SPEED) & (np.abs(speed[at + look]) > MOVING_SPEED)]
+        travels += [float(np.abs(speed[k + 1 : k + 4]).sum() * run.dt) for k in real]
+    return float(np.median(travels)) if travels else 0.0
+
+
+def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """A travel well beyond that in which nobody knows when the shaft turned: shorter ones are looked for just after
+    reversals alone (`detectors.reversals`)."""
+    return values["d_z"] > CLEAR * blurred_travel(runs)
+
+
+POSSIBLE: Mapping[str, Possible] = {
+    "stribeck": stribeck, "viscosity_temperature": hersey, "notch_loss": notch, "presliding": presliding,
+}  # fmt: skip

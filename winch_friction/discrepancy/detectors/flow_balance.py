@@ -17,9 +17,9 @@ from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEst
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics import viscosity
+from winch_friction.physics import fluid
+from winch_friction.physics.fluid import LEAKAGE_LAWS, REFERENCE_PRESSURE, leakage_per_coefficient
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.leakage import LEAKAGE_LAWS, REFERENCE_PRESSURE, leakage_per_coefficient
 from winch_friction.physics.signals import FloatArray, Run
 
 NAME = "slip_leakage"
@@ -209,7 +209,7 @@ def _per_leakage(prepared: PreparedRun) -> FloatArray:
     if "oil_temperature" in prepared.channels:
         celsius = prepared.channels["oil_temperature"]
         law = 10 ** (10 ** np.interp(celsius, *_table())) - 0.7
-        thinness = viscosity.kinematic_viscosity(viscosity.REFERENCE) / law
+        thinness = fluid.kinematic_viscosity(fluid.REFERENCE) / law
     flows = [leakage_per_coefficient(each, driving.pressure, thinness) for each in LEAKAGE_LAWS]
     return np.column_stack(flows) / driving.displacement[:, None]
 
@@ -218,7 +218,7 @@ def _per_leakage(prepared: PreparedRun) -> FloatArray:
 def _table() -> tuple[FloatArray, FloatArray]:
     """log10 log10 (nu + 0.7) of the reference oil over temperature."""
     celsius = np.linspace(-20.0, 120.0, 71)
-    return celsius, np.log10(np.log10(viscosity.kinematic_viscosity(celsius) + 0.7))
+    return celsius, np.log10(np.log10(fluid.kinematic_viscosity(celsius) + 0.7))
 
 
 def _fitted(

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
-from winch_friction.discrepancy.candidates.speeds_seen import blurred_travel
+from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.discrepancy.engine.interval import chance_of_no_gain
-from winch_friction.discrepancy.engine.trials import candidate_trials
+from winch_friction.discrepancy.engine.chance import chance_of_no_gain
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem

@@ -23,7 +23,7 @@ from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.torque_balance import run_drive_torque
+from winch_friction.physics.winch.crane import run_drive_torque
 
 TERM = "torque_ripple"
 WINDOW = 0.3  # s; slower than this is friction, not ripple

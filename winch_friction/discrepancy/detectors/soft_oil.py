@@ -15,12 +15,11 @@ from scipy.ndimage import gaussian_filter1d
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate, Untestable
 from winch_friction.discrepancy.detectors.flow_balance import REFERENCE, sign_flip_p_value
+from winch_friction.discrepancy.preparation.grid import lagged
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.recursion import lagged
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.fluid import LEAKAGE_LAWS, air_compressed, leakage_per_coefficient, path_of_high_side
 from winch_friction.physics.friction.correction import Correction, declared_correction
-from winch_friction.physics.gas import air_compressed, path_of_high_side
-from winch_friction.physics.leakage import LEAKAGE_LAWS, leakage_per_coefficient
 from winch_friction.physics.signals import FloatArray, Run
 
 NAME = "entrained_air"

@@ -1,6 +1,10 @@
-"""Held-out losses per segment: coefficients from the other runs, judged on tens of seconds at a time."""
+"""Held-out losses per segment: coefficients from the other runs, judged on tens of seconds at a time.
 
-from collections.abc import Sequence
+What a search puts to them: of each law its best variant and of each family its best law, and where else it may begin
+when adding one effect after the other has led where more than noise is left.
+"""
+
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -162,3 +166,77 @@ def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
     signs = rng.choice([-1.0, 1.0], size=(LIMITS.flips, gains.shape[1]))
     largest = ((signs @ gains.T) / scale).max(axis=1)
     return (1.0 + (largest[:, None] >= observed).sum(axis=0)) / (1.0 + LIMITS.flips)
+
+
+# -- candidates beside what is taken already
+def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
+    """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
+    each family the law that does best on held-out runs.
+    """
+    slots = fitted(cross, current.slots, taken)
+    return heads(cross, current.loss, [cross.explain((*current.slots, slot)) for slot in slots])
+
+
+def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str], by_part: bool = False) -> list[Slot]:
+    """Of each law of each candidate, with `by_part` of each of the things that it may speak of, the variant that fits
+    the training runs best beside the rest."""
+    best: dict[tuple[str, str, str], tuple[float, Slot]] = {}
+    for slot in cross.problem.slots:
+        if slot.name in taken:
+            continue
+        loss, _ = cross.train_loss((*rest, slot))
+        key = (slot.name, slot.law, slot.part if by_part else "")
+        if key not in best or loss < best[key][0]:
+            best[key] = (loss, slot)
+    return [slot for _, slot in best.values()]
+
+
+def heads(cross: CrossFit, before: float, trials: Sequence[Explanation]) -> list[Explanation]:
+    """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
+    families: dict[str, list[Explanation]] = {}
+    for trial in sorted(trials, key=lambda each: charged(before, each.loss, each.slots[-1])):
+        families.setdefault(trial.slots[-1].name, []).append(trial)
+    return [_head(cross, members) for members in families.values()]
+
+
+def _head(cross: CrossFit, members: Sequence[Explanation]) -> Explanation:
+    """Of one cause's laws, the best first, that which speaks for it: the first, or the curve that leaves less than half
+    of what that one leaves above the floor, if this is more than nothing.
+
+    Between two causes flexibility costs a share of what is explained, for it imitates; within one it is how a law
+    differs from the literature's, and what counts is what is left.
+    """
+    first = members[0]
+    left = first.loss - cross.floor
+    if first.slots[-1].free or left <= LIMITS.least_excess * float(cross.problem.grams.count.sum()):
+        return first
+    closer = min((each for each in members if each.slots[-1].free), key=lambda each: each.loss, default=first)
+    return closer if closer.loss - cross.floor < LIMITS.outdone * left else first
+
+
+def charged(before: float, after: float, own: Slot) -> float:
+    """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
+    the least share that decides between two that do the same, for each of its parameters."""
+    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first * len(own.columns)
+    return after + share * max(before - after, 0.0)
+
+
+# -- where else to begin
+def other_start(cross: CrossFit, current: Explanation) -> Explanation | None:
+    """The set to begin from once more, the own law of the catalogue for its first cause alone, where this has another
+    law and more than noise is left: a bent law takes what belongs to a second effect, and no exchange of one for one
+    finds back."""
+    if not current.slots or not current.slots[0].law or cross.excess(current) <= LIMITS.least_excess:
+        return None
+    own = [slot for slot in cross.problem.slots if slot.name == current.slots[0].name]
+    trials = [cross.explain((slot,)) for slot in own if not slot.law and not slot.plain]
+    return min(trials, key=lambda each: each.loss, default=None)
+
+
+def far_less(cross: CrossFit, anew: Explanation, current: Explanation) -> bool:
+    """Whether a set of no more laws leaves half of what another does at most, or one of more leaves noise.
+
+    Laws and not causes: around two laws of one cause that leave more than noise the next preparation is no better.
+    """
+    few = len(anew.slots) <= len(current.slots) or cross.excess(anew) <= LIMITS.least_excess
+    return few and anew.loss - cross.floor <= LIMITS.outdone * (current.loss - cross.floor)

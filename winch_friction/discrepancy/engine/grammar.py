@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.bounded_fit import bounded_fit
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.problem import bounded_fit
 from winch_friction.discrepancy.thresholds import LIMITS
 
 

@@ -1,16 +1,129 @@
-"""The regression that every question is put to: a gap on base parameters, held to their prior, and candidates."""
+"""The regression that every question is put to: a gap on base parameters, held to their prior, and candidates.
+
+Its weights are the independent noise of a record, from the data alone: a parabola over two seconds follows any
+friction, load or wave, and what remains is sensor noise, whatever model is tried. No fit of candidates takes part,
+because a rich fit that lacks the true law would whiten the effect away. Its solution is least squares inside a box,
+exact by active sets: unconverged descent would corrupt held-out losses.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg.lapack import dposv
+from scipy.special import gammaincinv
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, Grams, RunBlocks, Slot, grams, joined
-from winch_friction.discrepancy.engine.bounded_fit import bounded_fit
-from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.thresholds import LIMITS
 
+# -- the noise of a record
+NOT_ZERO = 1e-300  # against a division by nothing, where nothing moves
+
+
+def noise_of_run(
+    values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise, skew: FloatArray | None = None
+) -> float:
+    """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
+
+    A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew`, one column
+    or several, is what signals out of step leave in the values: in a quick sea it turns within the windows, no noise.
+    """
+    floor = LIMITS.noise_floor * least
+    window, order = LIMITS.noise_window, LIMITS.noise_order
+    windows = _windows(values, position, window)
+    if len(windows) == 0:
+        simple = float(np.std(np.diff(values)) / np.sqrt(2.0)) if len(values) > 2 else 0.0
+        return max(simple, floor)
+    grid = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
+    projector = np.eye(window) - grid @ np.linalg.pinv(grid)
+    freedom = window - order - 1
+    quick = windows @ projector
+    if skew is not None:
+        each = [_windows(column, position, window) @ projector for column in np.atleast_2d(skew.T)]
+        along = np.column_stack([own.ravel() / max(float(np.abs(own).max()), NOT_ZERO) for own in each])
+        quick = quick - (along @ np.linalg.lstsq(along, quick.ravel(), rcond=None)[0]).reshape(quick.shape)
+    variances = (quick**2).sum(axis=1) / freedom
+    # that quantile of chi-squared, per degree of freedom
+    expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
+    return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), floor)
+
+
+def _windows(values: FloatArray, position: np.ndarray, window: int) -> FloatArray:
+    starts = range(0, len(values) - window + 1, window // 2)
+    found = [values[k : k + window] for k in starts if position[k + window - 1] - position[k] == window - 1]
+    return np.array(found)
+
+
+# -- least squares inside a box
+_TOLERANCE = 1e-10
+
+
+def bounded_fit(
+    h: FloatArray, g: FloatArray, lower: FloatArray, upper: FloatArray, start: FloatArray | None = None
+) -> FloatArray:
+    """Minimise b'Hb/2 - g'b for lower <= b <= upper.
+
+    `h` (n, n) positive definite, `g` (n,); `start` is a feasible guess (its active bounds are tried first). Exact up to
+    rounding: a primal active-set method with finitely many steps.
+    """
+    size = len(g)
+    beta = np.clip(np.zeros(size) if start is None else start, lower, upper)
+    free = (beta > lower) & (beta < upper) if start is not None else np.ones(size, bool)
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # of `_longest_step`; once, as the loop is short and runs often
+        for _ in range(20 * size + 20):
+            index = free.nonzero()[0]
+            step = _to_free_optimum(h, g, beta, free, index) - beta
+            limit, blocking = _longest_step(beta, step, lower, upper, index)
+            beta = beta + limit * step
+            if blocking >= 0:
+                beta[blocking] = lower[blocking] if step[blocking] < 0 else upper[blocking]
+                free[blocking] = False
+                continue
+            release = _release(h @ beta - g, beta, lower, upper, free)
+            if release < 0:
+                return beta
+            free[release] = True
+    return beta
+
+
+def _to_free_optimum(h, g, beta, free, index):  # type: ignore[no-untyped-def]
+    if len(index) == len(g):
+        return _solved(h, g)
+    target = beta.copy()
+    if len(index):
+        rows = h[index]
+        target[index] = _solved(rows[:, index], g[index] - rows[:, ~free] @ beta[~free])
+    return target
+
+
+def _solved(h, g):  # type: ignore[no-untyped-def]
+    _, solution, failed = dposv(h, g)  # at these sizes `np.linalg.solve` takes twice as long to begin
+    return np.linalg.solve(h, g) if failed else solution
+
+
+def _longest_step(beta, step, lower, upper, index):  # type: ignore[no-untyped-def]
+    if not len(index):
+        return 1.0, -1
+    move, at = step[index], beta[index]
+    # what does not move has room without end, 0/0 included
+    room = np.where(np.abs(move) > 0.0, (np.where(move > 0, upper[index], lower[index]) - at) / move, np.inf)
+    k = int(room.argmin())
+    return (float(max(room[k], 0.0)), int(index[k])) if room[k] < 1.0 else (1.0, -1)
+
+
+def _release(gradient, beta, lower, upper, free):  # type: ignore[no-untyped-def]
+    if free.all():
+        return -1
+    wrong = np.where(~free & (beta <= lower), -gradient, np.where(~free, gradient, 0.0))
+    wrong = np.where(upper - lower < _TOLERANCE, 0.0, wrong)
+    k = int(np.argmax(wrong))
+    return k if wrong[k] > _TOLERANCE * (1.0 + np.abs(gradient).max()) else -1
+
+
+# -- the regression
 TINY = 1e-9  # numerical: keeps a column without any data out of singularity
 RIDGE = 1e-6  # numerical: of a column's own sum of squares
 

@@ -7,10 +7,18 @@ import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
-from winch_friction.discrepancy.engine.rivals import does_as_well, rivals_of
-from winch_friction.discrepancy.engine.starts import far_less, other_start
-from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads
+from winch_friction.discrepancy.engine.chance import does_as_well, rivals_of
+from winch_friction.discrepancy.engine.crossfit import (
+    CrossFit,
+    Explanation,
+    candidate_trials,
+    charged,
+    far_less,
+    fitted,
+    flip_p_values,
+    heads,
+    other_start,
+)
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)

@@ -12,16 +12,15 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, dilated
-from winch_friction.discrepancy.preparation.motion import Motion
-from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
-from winch_friction.discrepancy.preparation.seen import SPARSE, Groups, GroupSignals, Seen
+from winch_friction.discrepancy.preparation.prepared_run import REFERENCE, Stood, displacement_error, simulated_error
+from winch_friction.discrepancy.preparation.seen import SPARSE, Groups, GroupSignals, Motion, Seen
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
+from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import BAR
 from winch_friction.physics.winch import Crane, group_point, operating_point
-from winch_friction.physics.winch.torque_balance import hydraulic_torque
+from winch_friction.physics.winch.crane import hydraulic_torque
 
 MOST_OF_STROKE = 0.5  # of a displacement, that an error may be of it: far more than any feedback is off
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent

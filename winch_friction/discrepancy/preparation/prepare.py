@@ -15,16 +15,15 @@ from winch_friction.discrepancy.preparation.balance import (
     Groups,
 )
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
-from winch_friction.discrepancy.preparation.motion import Motion
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.seen import Seen, see
+from winch_friction.discrepancy.preparation.seen import Motion, Seen, see
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.physics.winch import Crane
 
 AS_LOGGED = ("oil_temperature", "wire_layer", "wire_out", "heave_velocity")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.recursion import filtered
+from winch_friction.discrepancy.preparation.grid import filtered
 from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)

@@ -1,9 +1,11 @@
 """From declared equations to functions: scalar, vectorised, numba kernel; each with its Jacobian.
 
 All of them take (x, theta, z): the operating point in the order of `symbols.layout`, the parameters, and the states of
-the terms with memory, each in the model's order. Nothing here restates an equation.
+the terms with memory, each in the model's order. Nothing here restates an equation. A state is stepped by
+dz/dt = gain - decay z, exactly for signals frozen over a step.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from typing import Any
@@ -224,3 +226,21 @@ def broadcast_columns(columns: Sequence[Any], length: int) -> np.ndarray:
     for k, column in enumerate(columns):
         out[:, k] = column
     return out
+
+
+# -- memory
+def advance(z: float, gain: float, decay: float, dt: float) -> float:
+    """One exact step of a linear state; for decay dt -> 0 it tends to z + gain dt."""
+    exponent = decay * dt
+    weight = -math.expm1(-exponent) / exponent if exponent > 1e-12 else 1.0
+    return z * math.exp(-exponent) + gain * dt * weight
+
+
+def advance_all(
+    compiled: CompiledTerms, x: Sequence[float], theta: Sequence[float], z: Sequence[float], dt: float
+) -> tuple[float, ...]:
+    """All states of a model one step on, at one operating point."""
+    if not z:
+        return ()
+    rates = compiled.scalar_state_rates(x, theta, z)
+    return tuple(advance(z[k], rates[2 * k], rates[2 * k + 1], dt) for k in range(len(z)))

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import Parameter
-from winch_friction.physics.units import BAR, CM3_PER_REV
 
 THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the seed models
 

@@ -1,16 +1,24 @@
-"""Python sources of the functions that SymPy makes of declared equations, kept on disk: making them takes a second.
+"""What takes long to make is kept on disk from one start to the next: compiled code, and sources of equations.
 
-A source is found by everything that it was made of: the equations, SymPy, and the code that writes it. A file that is
-not whole, or another user's, is made anew; where nothing can be written, nothing is kept.
+A text's first line is a seal that says whether the rest is whole. A file that is not, or that is another user's, counts
+as none; where nothing can be written, nothing is kept.
+
+Numba itself notices changes of the file that a function stands in, not of the functions that it calls: its cache lies
+where a change of any source that a function is made of makes it a new one. It is imported on use: a node runs without
+it. Making the Python functions of declared equations takes SymPy a second; a source is found by everything that it was
+made of: the equations, SymPy, and the code that writes it.
 """
 
+import gc
 import hashlib
 import inspect
 import linecache
 import math
+import os
 import re
-from collections.abc import Callable
-from contextlib import suppress
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from types import CodeType
@@ -19,10 +27,102 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from winch_friction.physics.compiling import cache_root
 from winch_friction.physics.friction import symbols
-from winch_friction.physics.kept import keep, read_kept
 
+
+# -- texts with a seal
+def read_kept(path: Path) -> str | None:
+    """The text of a whole file of our own; None for any other."""
+    try:
+        with path.open(encoding="utf-8") as stream:
+            if os.fstat(stream.fileno()).st_uid != os.getuid():
+                return None
+            first, text = stream.readline(), stream.read()
+    except (OSError, ValueError):
+        return None
+    return text if first == _seal(text) else None
+
+
+def keep(path: Path, text: str) -> None:
+    """Write a text in one step, as several processes may make the same; the seal, not a flush to disk, says whether it
+    is whole. Raises `OSError` where it cannot be written."""
+    handle, name = tempfile.mkstemp(dir=path.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(_seal(text) + text)
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def _seal(text: str) -> str:
+    return f"# {hashlib.sha256(text.encode()).hexdigest()}\n"
+
+
+# -- numba's cache
+def compiled_in(directory: str, function: Callable[..., Any], signature: str | None = None) -> Any:
+    """`numba.njit` of a function, with its code kept in `directory`.
+
+    With a `signature` it is compiled (or read) here and now. Raises `RuntimeError` where nothing can be written.
+    """
+    with uncollected():
+        import numba
+
+        with _cache_directory(directory):
+            return numba.njit(signature, cache=True, error_model="numpy")(function)
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """No look for garbage while modules and compiled code are loaded: numba's are hundreds, none of it is garbage, and
+    every look goes through all that SymPy holds."""
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
+
+
+@contextmanager
+def _cache_directory(path: str) -> Iterator[None]:
+    import numba
+
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, path
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+def cache_root(kind: str = "numba") -> Path:
+    """Where compiled code is kept: the user's cache, or the temporary directory where that cannot be written."""
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "winch_friction" / kind
+    return root if _writable(root) else Path(tempfile.gettempdir()) / f"winch_friction_{kind}_{os.getuid()}"
+
+
+def source_digest(sources: Iterable[Path]) -> str:
+    """A key that changes with any of these files and with numba itself."""
+    import numba
+
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sources:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+# -- sources of equations
 Function = Callable[..., Any]
 
 NAME = "equation"

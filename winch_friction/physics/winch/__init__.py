@@ -1,7 +1,6 @@
 """The winch: motor groups, gear, drum layers and the torque balance at the motor shaft."""
 
-from winch_friction.physics.winch.crane import Crane, Drum
-from winch_friction.physics.winch.drive import Drive
+from winch_friction.physics.winch.crane import Crane, Drive, Drum
 from winch_friction.physics.winch.operating_point import (
     group_point,
     operating_point,

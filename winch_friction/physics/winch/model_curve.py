@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import RPM
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import group_point, operating_point
 

@@ -1,18 +1,97 @@
-"""From measured signals to the operating point that every friction function takes (the order of `symbols.layout`)."""
+"""From measured signals to the operating point that every friction function takes (the order of `symbols.layout`),
+now or at the speed ahead, and what of them this crane can show at all.
 
+The ranges, and the largest rate of each channel, come from the crane itself. They are tighter than the
+limits of `physics.channels`, which say only what any winch's sensor could mean: a value outside is a broken sensor, a
+wrong unit or somebody else's message.
+"""
+
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from winch_friction.physics.channels import WINCH
-from winch_friction.physics.friction.direction import smooth_sign, smooth_signs
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run, Sample
-from winch_friction.physics.units import GRAVITY
 from winch_friction.physics.winch.crane import Crane
 
+
+# -- the direction of motion
+def smooth_sign(speed: float, width: float) -> float:
+    """tanh(speed/width); the sign itself for width 0. Both in rad/s."""
+    if width > 0.0:
+        return math.tanh(speed / width)
+    return float(speed > 0.0) - float(speed < 0.0)
+
+
+def smooth_signs(speed: Any, width: Any) -> np.ndarray:
+    """`smooth_sign` over arrays; `width` may be an array of the same shape."""
+    speed = np.asarray(speed, float)
+    safe = np.where(np.asarray(width) > 0.0, width, 1.0)
+    return np.where(np.asarray(width) > 0.0, np.tanh(speed / safe), np.sign(speed))
+
+
+# -- the speed ahead
+class PredictedSpeed(NamedTuple):
+    """Speed and acceleration `lead` seconds ahead, rad/s and rad/s^2."""
+
+    speed: float
+    acceleration: float
+
+
+class SpeedPredictor:
+    """Extrapolates a sampled speed: omega + a t + j t^2 / 2, with a and j from backward differences.
+
+    A backward difference is the acceleration half a step ago; the jerk brings it up to date. The jerk is low-passed,
+    for it is the second difference of what may be a quantised signal.
+    """
+
+    def __init__(self, lead: float, acceleration_filter: float, jerk_filter: float) -> None:
+        self._lead = lead
+        self._acceleration_filter = acceleration_filter
+        self._jerk_filter = jerk_filter
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the past; the next speed is taken as constant."""
+        self._time = math.nan
+        self._speed = 0.0
+        self._acceleration = math.nan
+        self._jerk = 0.0
+
+    def step(self, time: float, speed: float) -> PredictedSpeed:
+        """Take the speed in rad/s at `time` s; a time that does not advance leaves the derivatives as they are."""
+        dt = time - self._time
+        if dt > 0.0:
+            self._differentiate(dt, (speed - self._speed) / dt)
+        if not dt <= 0.0:
+            self._time, self._speed = time, speed
+        acceleration = 0.0 if math.isnan(self._acceleration) else self._acceleration
+        age = self._lead + (0.5 * dt if dt > 0.0 else 0.0)
+        ahead = acceleration + self._jerk * age
+        mean = acceleration + self._jerk * (age - 0.5 * self._lead)
+        return PredictedSpeed(speed + mean * self._lead, ahead)
+
+    def _differentiate(self, dt: float, slope: float) -> None:
+        if math.isnan(self._acceleration):
+            self._acceleration = slope
+            return
+        acceleration = self._acceleration + (slope - self._acceleration) * dt / (dt + self._acceleration_filter)
+        jerk = (acceleration - self._acceleration) / dt
+        self._jerk += (jerk - self._jerk) * dt / (dt + self._jerk_filter)
+        self._acceleration = acceleration
+
+
+def time_to_reversal(ahead: PredictedSpeed) -> float:
+    """Seconds until the motion turns if the acceleration stays."""
+    return -ahead.speed / ahead.acceleration if ahead.speed * ahead.acceleration < 0.0 else math.inf
+
+
+# -- the operating point
 _ORDER = tuple(signal.name for signal in WINCH_SIGNALS)
 _DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
 # of a motor group's last signals, for whoever does not give them
@@ -116,10 +195,100 @@ def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
     return group_point(np.full(len(run), crane.motor_count(group)), a - b, run[f"{group}.displacement"], a + b)
 
 
-def run_drum_torque(run: Run, crane: Crane, load: float = float("nan")) -> FloatArray:
-    """T_d in N m along a run from `hook_load`, or from a given load in kg where the run has none."""
-    loads = run.column("hook_load", load)
-    layers = run.column("wire_layer")
-    radii = {layer: crane.drum.radius(layer) for layer in np.unique(layers[~np.isnan(layers)])}
-    radius = np.array([radii.get(layer, crane.drum.radius(float("nan"))) for layer in layers])
-    return loads * GRAVITY * radius
+# -- what this crane can show
+
+# where the crane file does not say (docs/safety.md)
+RATED_PRESSURE = 450.0 * BAR  # peak of the usual axial-piston motors (nominal 400 bar)
+RATED_SPEED, RATED_SIZE = 4800.0 * RPM, 215.0 * CM3_PER_REV  # a 215 cm^3 motor swung back; smaller ones turn faster
+SIZE_EXPONENT = -1.0 / 3.0  # of a motor series: the same velocity of its pistons
+# factors over the rated value
+PRESSURE_MARGIN = 4.0 / 3.0  # 600 bar, the usual transducer's full scale
+LOWEST_PRESSURE = -100.0 * BAR  # a zero error is far above; a broken 4 ... 20 mA loop says -150 bar
+SPEED_MARGIN = 1.25
+LOAD_MARGIN = 2.0  # dynamic amplification of a lift through the splash zone
+LIGHTEST_LOAD = -0.05  # of the rated one: a load cell's zero error
+DISPLACEMENT_MARGIN = 0.05  # of D_max: feedback of 1-3 %
+MOST_HEAVE = 10.0  # m/s, crane tip
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """The most that a channel changes: `per_second`, and `at_once` for noise, quantisation and skew."""
+
+    per_second: float
+    at_once: float
+
+
+class ChannelRanges:
+    """Ranges and rates of a crane's channels, SI; `groups` are the motor groups on the shaft (default: all)."""
+
+    def __init__(self, crane: Crane, groups: Sequence[str] = ()) -> None:
+        self.crane = crane
+        self.pressure = (crane.rated_pressure or RATED_PRESSURE) * PRESSURE_MARGIN
+        self.speed = self._speed()
+        self.load = self._load(groups)
+        self._ranges = {**LIMITS, **self._of_crane()}
+        self._changes = self._largest_changes()
+
+    def _speed(self) -> float:
+        if self.crane.rated_speed:
+            return self.crane.rated_speed * SPEED_MARGIN
+        if not self.crane.max_displacement:
+            return LIMITS["motor_speed"][1]
+        return RATED_SPEED * SPEED_MARGIN * (self.crane.max_displacement / RATED_SIZE) ** SIZE_EXPONENT
+
+    def _load(self, groups: Sequence[str]) -> float:
+        """kg: the rated load with its margin, else what the motors can hold at all."""
+        crane = self.crane
+        if crane.rated_load:
+            return crane.rated_load * LOAD_MARGIN
+        torque = crane.motor_total(tuple(groups)) * crane.max_displacement * (crane.rated_pressure or RATED_PRESSURE)
+        held = torque * crane.gear_ratio / (GRAVITY * crane.drum.layer_radii[0])
+        return held or LIMITS["hook_load"][1]
+
+    def _of_crane(self) -> dict[str, tuple[float, float]]:
+        ranges = {
+            "motor_speed": (-self.speed, self.speed),
+            "speed_reference": (-self.speed, self.speed),
+            "hook_load": (LIGHTEST_LOAD * self.load, self.load),
+            "rope_force": (LIGHTEST_LOAD * self.load * GRAVITY, self.load * GRAVITY),
+            "heave_velocity": (-MOST_HEAVE, MOST_HEAVE),
+            "wire_layer": (0.5, len(self.crane.drum.layer_radii) + 0.5),
+            "pressure_a": (LOWEST_PRESSURE, self.pressure),
+            "pressure_b": (LOWEST_PRESSURE, self.pressure),
+        }
+        if self.crane.max_displacement:
+            tolerance = DISPLACEMENT_MARGIN * self.crane.max_displacement
+            ranges["displacement"] = (-tolerance, self.crane.max_displacement + tolerance)
+        return ranges
+
+    def range(self, channel: str) -> tuple[float, float]:
+        """Smallest and largest value of a channel (a run's column or its short name)."""
+        return self._ranges.get(channel.rpartition(".")[2], (-1.0e300, 1.0e300))
+
+    def plausible(self, channel: str, value: float) -> bool:
+        """Whether this crane's channel can show this value; False for NaN."""
+        lower, upper = self._ranges.get(channel) or self.range(channel)
+        return lower <= value <= upper
+
+    def change(self, channel: str) -> Change | None:
+        """The largest change of a channel; None where none is known."""
+        return self._changes.get(channel.rpartition(".")[2])
+
+    def _largest_changes(self) -> dict[str, Change]:
+        # speed: ten times what heave asks for (130 rad/s^2), and an encoder's step; a command may step, a pressure
+        # rises at most as fast as relief valves and waves make it (1e4 bar/s); a swash plate needs 0.1 s for its stroke
+        pressure = Change(1.0e4 * BAR, 0.1 * self.pressure)
+        changes = {
+            "motor_speed": Change(4.0 * self.speed, 0.05 * self.speed),
+            "speed_reference": Change(20.0 * self.speed, 0.2 * self.speed),
+            "hook_load": Change(10.0 * self.load, 0.1 * self.load),
+            "heave_velocity": Change(30.0, 1.0),
+            "oil_temperature": Change(5.0, 5.0),
+            "pressure_a": pressure,
+            "pressure_b": pressure,
+        }
+        if self.crane.max_displacement:
+            full = self.crane.max_displacement
+            changes["displacement"] = Change(10.0 * full, 0.1 * full)
+        return changes

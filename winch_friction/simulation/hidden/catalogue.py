@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.simulation.hidden.torque import HIDDEN, HIDDEN_FIELDS
 from winch_friction.simulation.plant.parameters import record
 from winch_friction.simulation.sensors.channels import Channels

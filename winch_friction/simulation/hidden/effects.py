@@ -1,7 +1,7 @@
 """The declarations. Sizes are those of docs/discrepancy.md; each changes the physics where it arises."""
 
+from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.units import BAR, CM3_PER_REV
 from winch_friction.simulation.hidden.catalogue import DEGREE, MONTH, WEAR_EPOCH, Target, effect
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.units import GRAVITY
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ One function per part; each reads the plant's record, none knows the controller.
 
 import math
 
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.simulation.compiling import inlined
 from winch_friction.simulation.hidden.torque import fixed_torque, group_loss, shaft_loss
 from winch_friction.simulation.plant.friction_kernel import friction_torque

@@ -2,7 +2,7 @@
 
 import math
 
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.control.controller import control
 from winch_friction.simulation.plant.equations import gas_pressure, reported_gas_pressure, stored_energy

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.units import GRAVITY
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.simulation.plant.loop import record_row
 from winch_friction.simulation.plant.state import (
     DRIVE,

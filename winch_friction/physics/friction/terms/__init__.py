@@ -6,7 +6,6 @@ from winch_friction.physics.friction.terms import (
     effects_motor,
     effects_winch,
     gear_and_drum,
-    laws_fluid,
     laws_motor,
     laws_winch,
     motor,
@@ -14,6 +13,13 @@ from winch_friction.physics.friction.terms import (
 )
 
 __all__ = [
-    "drive", "effects_memory", "effects_motor", "effects_winch", "gear_and_drum", "laws_fluid", "laws_motor",
-    "laws_winch", "motor", "paper1",
-]  # fmt: skip
+    "drive",
+    "effects_memory",
+    "effects_motor",
+    "effects_winch",
+    "gear_and_drum",
+    "laws_motor",
+    "laws_winch",
+    "motor",
+    "paper1",
+]

@@ -1,8 +1,7 @@
 """Torques on the common shaft that do not simply oppose the motion."""
 
-from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 T_0 = Parameter("T_0", "N*m", 1.0, lower=-1e4, upper=1e4, doc="constant torque against the hoisting direction")
 A_v = Parameter(

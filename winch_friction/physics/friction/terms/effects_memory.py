@@ -2,9 +2,8 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import T_d, s, w
-from winch_friction.physics.friction.term import Parameter, Scope, State, Term
+from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 

@@ -2,10 +2,9 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction.symbols import D, X, n, p, p_sum, rho, w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
-from winch_friction.physics.units import RPM
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 REFERENCE_SPEED = 2000.0 * RPM  # normalises powers of speed, so that a factor keeps one unit for every exponent
 NOTCH_SPEED = (

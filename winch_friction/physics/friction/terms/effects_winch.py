@@ -2,10 +2,9 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
+from winch_friction.physics.fluid import LEVEL, SLOPE
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, oil_temperature, s, shaft_angle, time, w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
-from winch_friction.physics.viscosity import LEVEL, SLOPE
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 e_g = Parameter("e_g", "1", 0.006, lower=-0.1, upper=0.1, doc="difference of gear loss by direction, share of T_d/i")
 b_g = Parameter(

@@ -2,10 +2,9 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction.symbols import T_d, w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
-from winch_friction.physics.units import RPM
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 C1 = Parameter("C1", "1", 155e-7, upper=1e-3, doc="Stribeck rise per drum torque")
 C2 = Parameter("C2", "N*m", 5.0, upper=200.0, doc="Coulomb friction")

@@ -2,9 +2,8 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, shaft_angle, time, w, wire_layer
-from winch_friction.physics.friction.term import Parameter, Scope, State, Term
+from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 SLIDING_TO_FORGET = 300.0  # rad of shaft, some turns of a gear wheel, after which the rest is forgotten

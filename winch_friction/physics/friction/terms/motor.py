@@ -1,8 +1,7 @@
 """Torque losses of a variable displacement axial piston motor, per motor (paper 1; paper 2 eq 1)."""
 
-from winch_friction.physics.friction.registry import register
 from winch_friction.physics.friction.symbols import D, p, w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 K1 = Parameter("K1", "N*m*s/rad", 4.05e-3, upper=0.1, doc="viscous losses of bearings, slippers and barrel")
 K2 = Parameter("K2", "N*s^2/m^8", 3.69e10, upper=1e12, doc="turbulent losses of the inlet port plate")

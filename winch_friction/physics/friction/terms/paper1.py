@@ -8,10 +8,9 @@ import math
 
 import sympy as sp
 
-from winch_friction.physics.friction.registry import register
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.physics.friction.symbols import D, X, mu, p, rho, w
-from winch_friction.physics.friction.term import Parameter, Scope, Term
-from winch_friction.physics.units import BAR, RPM
+from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
 MAX_SWIVEL_ANGLE = math.radians(25.0)  # bent-axis motors of the A6VM kind swivel to about 25 degrees
 NOTCH_SPEED = 400.0 * RPM  # edge of the data; 1/|omega| is written |omega|/(omega^2 + omega_0^2)

@@ -1,0 +1,224 @@
+"""What may be chance: the size of a residual, a gain, a rival's place behind what was found, and what is left.
+
+What is left is asked of a flexible model of one signal at a time, for each direction of motion, which predicts the
+remainder of runs that it was not fitted to: hat functions, or a straight line for signals of which each run has hardly
+more than one value. It has no name to offer, so it only ever leads to 'unexplained'.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, charged, fitted, flip_p_values, heads
+from winch_friction.discrepancy.thresholds import LIMITS
+
+
+# -- how large a residual is
+@dataclass(frozen=True)
+class Size:
+    """A root mean square with its 95 % interval over redrawn runs and segments."""
+
+    value: float
+    interval: tuple[float, float]
+
+
+def rms_with_interval(residual: FloatArray, segment: np.ndarray, run: np.ndarray, rng: np.random.Generator) -> Size:
+    """RMS of block residuals; the interval redraws runs, and in them whole segments, because neighbours are alike."""
+    if not len(residual):
+        return Size(0.0, (0.0, 0.0))
+    sums, counts, of_run = _by_segment(residual**2, segment, run)
+    weights = _redrawn(of_run, rng)
+    draws = np.sqrt((weights @ sums) / np.maximum(weights @ counts, 1.0))
+    low, high = np.quantile(draws, LIMITS.interval)
+    value = float(np.sqrt(sums.sum() / counts.sum()))
+    return Size(value, (min(float(low), value), max(float(high), value)))
+
+
+def chance_of_no_gain(
+    before: FloatArray, after: FloatArray, segment: np.ndarray, run: np.ndarray, rng: np.random.Generator
+) -> float:
+    """How often redrawn segments show no reduction of the sum of squares from `before` to `after`; paired, so that what
+    both have in common does not blur the difference.
+    """
+    if not len(before):
+        return 1.0
+    gains, _, of_run = _by_segment(before**2 - after**2, segment, run)
+    weights = _redrawn(of_run, rng)
+    return float((1 + np.sum(weights @ gains <= 0.0)) / (1 + len(weights)))
+
+
+def _by_segment(values: FloatArray, segment: np.ndarray, run: np.ndarray) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Sums and counts per segment, and the run that each belongs to."""
+    _, first, index = np.unique(segment, return_index=True, return_inverse=True)
+    sums, counts = np.bincount(index, weights=values), np.bincount(index)
+    return np.asarray(sums, float), np.asarray(counts, float), run[first]
+
+
+def _redrawn(of_run: np.ndarray, rng: np.random.Generator) -> FloatArray:
+    """How often each segment is drawn, shape (draws, segments).
+
+    Runs with replacement, then segments in each; of a few runs, unlike by plan, each stays in and only its segments are
+    redrawn: an interval over three unlike runs would hold anything.
+    """
+    runs, draws = np.unique(of_run), LIMITS.bootstrap_draws
+    times = np.ones((draws, len(runs)), int)
+    if len(runs) >= LIMITS.runs_to_redraw:
+        times = rng.multinomial(len(runs), np.full(len(runs), 1.0 / len(runs)), size=draws)
+    weights = np.zeros((draws, len(of_run)))
+    for k, number in enumerate(runs):
+        own = np.flatnonzero(of_run == number)
+        drawn = rng.multinomial(times[:, k] * len(own), np.full(len(own), 1.0 / len(own)))
+        weights[:, own] = drawn
+    return weights
+
+
+# -- rivals of what was found
+def rivals_of(
+    cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator, same: bool = False
+) -> tuple[tuple[Slot, ...], float]:
+    """Effects that do as well in the place of the k-th, the best first and laws before curves; and how often it wins
+    when segments are redrawn.
+
+    With `same` only what is the same column in these runs, such as a tare at one load and a torque offset.
+    """
+    rest = current.slots[:k] + current.slots[k + 1 :]
+    own = current.slots[k]
+    slots = fitted(cross, rest, current.names)
+    every = [cross.explain((*rest, slot)) for slot in slots]
+    trials = heads(cross, without.loss, every)
+    if own.free:  # of each cause the law that speaks for it, and a curve of its own that leaves less
+        trials += [each for each in _closest(every) if all(each is not head for head in trials)]
+    equal: list[tuple[float, Slot]] = []
+    for trial in trials:
+        alike = abs(trial.loss - current.loss) <= LIMITS.plain_first * (without.loss - current.loss)
+        rival = does_as_well(trial, current, without, rng) or _near_curve(cross, trial, current, without, k)
+        taken = trial.slots[-1].name in {slot.name for _, slot in equal}
+        if not taken and (alike if same else rival):
+            equal.append((charged(without.loss, trial.loss, trial.slots[-1]), trial.slots[-1]))
+    equal.sort(key=lambda pair: pair[0])
+    frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
+    return tuple(slot for _, slot in equal if slot is not own), frequency
+
+
+def _closest(trials: Sequence[Explanation]) -> list[Explanation]:
+    """Of each cause's laws the one that leaves least."""
+    found: dict[str, Explanation] = {}
+    for trial in sorted(trials, key=lambda each: each.loss):
+        found.setdefault(trial.slots[-1].name, trial)
+    return list(found.values())
+
+
+def _near_curve(cross: CrossFit, trial: Explanation, current: Explanation, without: Explanation, k: int) -> bool:
+    """Whether the k-th effect is a curve and a law of another cause leaves less than twice as much above the floor: a
+    curve outdoes laws by its flexibility, of its own cause as well as of others.
+    """
+    if not current.slots[k].free or trial.slots[-1].free:
+        return False
+    if without.loss - trial.loss < LIMITS.rival_worth * (without.loss - current.loss):
+        return False
+    return LIMITS.outdone * (trial.loss - cross.floor) <= current.loss - cross.floor
+
+
+def near(cross: CrossFit, current: Explanation) -> list[Slot]:
+    """What stands in for one of a set's effects nearly as well: worth a closer look at its shape before it is said not
+    to be a rival."""
+    found: list[Slot] = []
+    for k in (k for k, slot in enumerate(current.slots) if not slot.plain):  # what is plain comes first anyhow
+        rest = current.slots[:k] + current.slots[k + 1 :]
+        without = cross.explain(rest)
+        worth = without.loss - current.loss
+        trials = [cross.explain((*rest, slot)) for slot in fitted(cross, rest, current.names)]
+        trials = [each for each in trials if without.loss - each.loss >= LIMITS.rival_worth * worth]
+        found += [each.slots[-1] for each in sorted(trials, key=lambda one: one.loss)[: LIMITS.looked_at_closer]]
+    return found
+
+
+def does_as_well(trial: Explanation, current: Explanation, without: Explanation, rng: np.random.Generator) -> bool:
+    """Whether another effect in the place of one, `without` neither, is no worse on held-out data."""
+    worth = without.loss - current.loss
+    worse = trial.losses - current.losses
+    if without.loss - trial.loss < LIMITS.rival_worth * worth:
+        return False
+    return bool(flip_p_values(worse[None], rng)[0] > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth)
+
+
+def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:
+    if not others:
+        return 1.0
+    weights = rng.multinomial(len(own), np.full(len(own), 1.0 / len(own)), size=draws)
+    rival = (weights @ np.array(others).T).min(axis=1)
+    return float(np.mean(weights @ own <= rival * (1.0 + 1e-12)))
+
+
+# -- whether anything is left
+@dataclass(frozen=True)
+class Dependence:
+    """How much of the remainder one signal predicts on held-out runs."""
+
+    signal: str
+    share: float  # of the remainder's sum of squares
+    p_value: float
+    size: float = float("inf")  # RMS of what it predicts, in the gap's unit
+
+
+def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> list[Dependence]:
+    """Every signal with what it predicts of the remainder on held-out runs, the best first; p-values are
+    family-wise."""
+    blocks = cross.problem.blocks
+    names, gains = [], []
+    for name, values in blocks.features.items():
+        for design in _designs(values, blocks.direction):
+            names.append(name)
+            gains.append(_segment_gains(design, left, blocks, cross.fold))
+    if not names:
+        return []
+    table = np.array(gains)
+    p = flip_p_values(table, rng)
+    total = float((left**2).sum()) + cross.unresolved
+    unit = float(np.mean(blocks.weight**-2.0)) / len(left)  # from noises to the gap's unit, squared
+    found = [
+        Dependence(n, float(row.sum() / total), float(q), float(np.sqrt(max(row.sum(), 0.0) * unit)))
+        for n, row, q in zip(names, table, p, strict=True)
+    ]
+    better: dict[str, Dependence] = {}
+    for each in sorted(found, key=lambda each: -each.share):
+        better.setdefault(each.signal, each)
+    return list(better.values())
+
+
+def _designs(values: FloatArray, direction: FloatArray) -> list[FloatArray]:
+    """Hats over the quantiles of a signal and a straight line, hoisting and lowering apart; where the signal is absent,
+    nothing."""
+    good = np.isfinite(values)
+    if good.sum() < 20 or np.ptp(values[good]) <= 1e-9 * (np.abs(values[good]).max() + 1e-12):
+        return []
+    line = np.column_stack([np.ones(len(values)), (values - values[good].mean()) / np.std(values[good])])
+    knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, LIMITS.knots)))
+    hats = [np.interp(np.where(good, values, knots[0]), knots, row) for row in np.eye(len(knots))]
+    return [_by_direction(each, good, direction) for each in (line, np.column_stack(hats))]
+
+
+def _by_direction(columns: FloatArray, good: np.ndarray, direction: FloatArray) -> FloatArray:
+    known = np.where(good[:, None], columns, 0.0)
+    return np.column_stack([known * (direction > 0)[:, None], known * (direction < 0)[:, None]])
+
+
+def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of_segment: np.ndarray) -> FloatArray:
+    """Reduction of each segment's sum of squares by a ridge fit to the other folds."""
+    weighted = design * blocks.weight[:, None]
+    scale = np.sqrt(np.mean(blocks.weight**2))
+    numbers, index = np.unique(blocks.segment, return_inverse=True)
+    fold = fold_of_segment[index]
+    ridge = LIMITS.ridge * scale**2 * np.eye(design.shape[1])
+    full_h, full_g = weighted.T @ weighted, weighted.T @ left
+    predicted = np.zeros(len(left))
+    for k in np.unique(fold):
+        own = fold == k
+        h = full_h - weighted[own].T @ weighted[own]
+        g = full_g - weighted[own].T @ left[own]
+        predicted[own] = weighted[own] @ np.linalg.solve(h + ridge, g)
+    gain = left**2 - (left - predicted) ** 2
+    return np.asarray(np.bincount(index, weights=gain, minlength=len(numbers)), float)

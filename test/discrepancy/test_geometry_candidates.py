@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
-from winch_friction.discrepancy.candidates.geometry import ONE_DEPTH, geometry_candidates, radius_columns, tare_columns
+from winch_friction.discrepancy.candidates.geometry import (
+    ONE_DEPTH,
+    geometry_candidates,
+    layers_apart,
+    radius_columns,
+    tare_columns,
+)
 from winch_friction.physics.channels import GRAVITY
 
 LEVER, GEAR = np.array([0.9, 1.0, 1.1]), 250.0
@@ -53,3 +59,17 @@ def test_a_radius_error_becomes_metres_on_the_layers_concerned(layer, values):
     own = geometry_candidates()[1]
     found = own.corrects({"e_R": ParameterEstimate(0.02, 0.001, "1")}, Shape("", {"layer": layer}), sides)
     assert {each.layers[0]: each.value for each in found} == pytest.approx(values)
+
+
+def test_every_layer_may_have_an_error_of_its_own_where_there_are_three():
+    own = run()
+    assert layers_apart([own]) == []  # of two the laws of one and of all say as much
+    own.channels["wire_layer"] = np.array([1.0, 2.0, 4.0])  # of a drum of four; the third no run has
+    (law,) = layers_apart([own])
+    assert (law.name, [p.name for p in law.linear]) == ("layer_radius", ["e_R1", "e_R2", "e_R4"])
+    whole = radius_columns(own, {"layer": 0.0})[:, 0]
+    np.testing.assert_allclose(law.columns(own, {}), np.diag(whole))
+    sides = Sides(SimpleNamespace(drum=SimpleNamespace(layer_radii=(0.8, 0.9, 1.0, 1.1))), ("main",), ())
+    found = {p.name: ParameterEstimate(0.01 * k, 0.001, "1") for k, p in enumerate(law.linear, start=1)}
+    written = law.corrects(found, Shape(""), sides)
+    assert {each.layers: each.value for each in written} == pytest.approx({(1,): 0.008, (2,): 0.018, (4,): 0.033})

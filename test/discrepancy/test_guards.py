@@ -789,6 +789,18 @@ def test_nothing_is_missing_only_where_the_training_runs_are_near_their_floor_to
     assert ("training runs keep" in judged.verdict.refused) is (kind == UNEXPLAINED)
 
 
+@pytest.mark.parametrize(("train", "locked", "kind"), [
+    (0.0, 0.0, NOTHING), (0.3, 0.3, NOTHING), (1.2, 0.0, UNEXPLAINED), (0.0, 1.2, UNEXPLAINED),
+])  # fmt: skip
+def test_a_name_of_an_implausible_size_is_nobodys_effect_where_nothing_but_noise_is_left(train, locked, kind):
+    cross = crossfit(noise())
+    refused = Verdict(UNEXPLAINED, "wave would need an implausible size")
+    search = _Whole(cross, Selection(cross.explain(()), cross.explain(()), ()), refused)
+    sides = [side(noise(), kept * WAVE + noise(1)) for kept in (train, locked)]
+    judged = standing_module._judged(Trial(search, None, *sides), "no name", np.random.default_rng(0))
+    assert judged.verdict.kind == kind
+
+
 @pytest.mark.parametrize(("refused", "locked", "train", "stands"), [
     (Verdict(UNEXPLAINED, "wave leaves 30 %", leaves=True), 0.2, 1.2, True),
     (Verdict(UNEXPLAINED, "wave leaves 30 %", leaves=True), 1.5, 1.2, False),  # 1.46 floors of the locked runs

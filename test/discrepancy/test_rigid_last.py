@@ -103,6 +103,24 @@ def test_only_names_whose_file_leaves_no_swing_are_taken(answers, rigid, judged,
         assert after.search.given is ELASTIC
 
 
+def surrounded(monkeypatch, met, told=True):
+    """What stands around the searches: runs that suffice, met by a balance, whose swing is `told`."""
+    runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
+    split = SimpleNamespace(runs=runs, train=("run_0",), holdout=("run_1",))
+    check = SimpleNamespace(met=told)
+    adequacy = SimpleNamespace(
+        long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
+        of_swing=lambda left: check,
+    )  # fmt: skip
+    monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
+    monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
+    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
+    monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
+    monkeypatch.setattr(workflow, "assemble", lambda split, options, trial: Result(trial.search.kind))
+    return runs
+
+
 @pytest.mark.parametrize(
     ("first", "met", "asked"),
     [
@@ -113,20 +131,21 @@ def test_only_names_whose_file_leaves_no_swing_are_taken(answers, rigid, judged,
     ],
 )
 def test_a_rigid_wire_is_asked_for_where_nothing_explains_and_a_load_swings(answers, monkeypatch, first, met, asked):
-    runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
-    split = SimpleNamespace(runs=runs, train=("run_0",), holdout=("run_1",))
-    fine = SimpleNamespace(met=True)
-    adequacy = SimpleNamespace(
-        long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
-        of_swing=lambda left: fine,
-    )  # fmt: skip
-    monkeypatch.setattr(workflow, "adequacy", adequacy)
-    monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
-    monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
-    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
-    monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
-    monkeypatch.setattr(workflow, "assemble", lambda split, options, trial: Result(trial.search.kind))
+    runs = surrounded(monkeypatch, met)
     answers.search, answers.judged = [Found(first), Found(MISSING, RIGID)], [(first, CLOSED), (MISSING, CLOSED)]
     found = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
     assert answers.asked == asked
     assert found.verdict == (MISSING if RIGID in asked[1:] else first)
+
+
+@pytest.mark.parametrize(("verdict", "quiet", "said"), [
+    (NOTHING, True, NOTHING), (NOTHING, False, "insufficient"), (UNEXPLAINED, True, "insufficient"),
+    (MISSING, False, MISSING),
+])  # fmt: skip
+def test_a_gap_above_the_noise_of_runs_too_short_for_a_swing_is_not_nothing(answers, monkeypatch, verdict, quiet, said):
+    """A floor that a load's swing has raised excuses no gap."""
+    runs = surrounded(monkeypatch, RIGID, told=False)
+    monkeypatch.setattr(workflow, "nobodys", lambda side: quiet)
+    monkeypatch.setattr(workflow, "insufficient", lambda *_: Result("insufficient"))
+    answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
+    assert workflow.find_gap(runs, None, None, GapOptions(proposals=False)).verdict == said

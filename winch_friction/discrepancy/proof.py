@@ -121,6 +121,11 @@ def at_the_floor(side: Side) -> bool:
     return side.size_after.interval[0] <= LIMITS.at_the_floor * side.floor and not far_off(side)
 
 
+def nobodys(side: Side) -> bool:
+    """Whether what is left above noise and what no balance closes is less than anybody's effect."""
+    return side.size_after.value**2 <= (1.0 + LIMITS.least_excess) * side.floor**2
+
+
 def far_off(side: Side) -> bool:
     """Whether what is left is plainly more than noise and what no balance closes, however few segments show it."""
     return side.size_after.value > LIMITS.far_off_the_floor * side.floor

@@ -14,7 +14,16 @@ from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import dependences
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
-from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, is_minor, leaves_too_much, prove, worse_runs
+from winch_friction.discrepancy.proof import (
+    adds,
+    at_the_floor,
+    far_off,
+    is_minor,
+    leaves_too_much,
+    nobodys,
+    prove,
+    worse_runs,
+)
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.winch import Crane
@@ -268,9 +277,11 @@ def nameless(search: Search) -> Search:
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
-    others, one of which may have met what none of the locked runs did, are not far off it."""
+    others, one of which may have met what none of the locked runs did, are not far off it. What the search found to be
+    no effect of a plausible size tells of something only where the file leaves more than noise somewhere."""
     search = trial.search
-    if search.verdict.kind != UNEXPLAINED and at_the_floor(trial.holdout) and not far_off(trial.train):
+    told = search.verdict.kind == UNEXPLAINED and not all(map(nobodys, (trial.train, trial.holdout)))
+    if not told and at_the_floor(trial.holdout) and not far_off(trial.train):
         found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
     side, which = (trial.train, "training") if at_the_floor(trial.holdout) else (trial.holdout, "locked")

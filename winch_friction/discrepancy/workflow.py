@@ -24,7 +24,7 @@ from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.prepared_run import against_simulations
-from winch_friction.discrepancy.proof import adds, at_the_floor
+from winch_friction.discrepancy.proof import adds, at_the_floor, nobodys
 from winch_friction.discrepancy.proposals import near_laws, propose
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
@@ -212,7 +212,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         notes=(*notes, *result.notes),
     )  # fmt: skip
     swing = adequacy.of_swing([*result.train.left_by_run, *result.holdout.left_by_run])
-    if result.verdict == UNEXPLAINED and not swing.met:
+    # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
+    if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
         return insufficient([*checks, swing], notes, crane, model, (given, split))
     if not options.proposals:
         return result

@@ -25,15 +25,18 @@ def main() -> int:
     node = rclpy.create_node("winch_friction_load", namespace=options.namespace, start_parameter_services=False)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
+    refusal = ""
     try:
         print(handed_over(RemoteNode(node, executor, options.node, PATIENCE), options.model, options.terms_file))
     except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+        refusal = str(error)
     finally:
+        executor.shutdown()  # before the node: its wait set holds what the node destroys
         node.destroy_node()
         rclpy.try_shutdown()
-    return 0
+    if refusal:  # last, so that nothing that the end says stands behind it
+        print(refusal, file=sys.stderr)
+    return 2 if refusal else 0
 
 
 def handed_over(remote: RemoteNode, model: str, terms_file: str = "") -> str:

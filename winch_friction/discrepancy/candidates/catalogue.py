@@ -17,7 +17,7 @@ from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candida
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
-from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates
+from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates, layers_apart
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.errors import InputError
@@ -108,7 +108,7 @@ def candidates_for(
     runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None
 ) -> list[Candidate]:
     """Every candidate, those that speak of what these runs have covered, and of each family the free member."""
-    own = [*bends_over(runs), *drum_ripples(runs, model), *free_members(runs, model)]
+    own = [*bends_over(runs), *layers_apart(runs), *drum_ripples(runs, model), *free_members(runs, model)]
     return [*all_candidates(effects_file), *own]
 
 

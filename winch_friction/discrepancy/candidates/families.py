@@ -56,6 +56,7 @@ def literature() -> list[Candidate]:
         _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, 1.0)},
             continuous=("n_po",)),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
+        _of("churning", "churning_one_way", {"n_cw": (1.5, 2.0, 3.0), "b_cw": (-1.0, 1.0)}, continuous=("n_cw",)),
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
         # at lower speeds and in proportion to the pressure it is a Stribeck curve
         _of("high_pressure_mixed", "high_pressure_film", {"n_hf": (1.5, 2.0, 3.0), "w_hf": (20.0, 60.0, 180.0)}),

@@ -4,6 +4,7 @@ And in the calculated pressure of an accumulator: a gas that warms, cools, or fo
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from winch_friction.physics.friction.term import Parameter
 
 ONE_DEPTH = -999.0  # a label among the layer numbers
 ONE_METRE = 1.0  # then e_R is the depth in m
+FEWEST_APART = 3  # layers
 
 m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain")
 mu_w = Parameter("mu_w", "kg/m", 12.0, lower=0.0, upper=200.0, doc="wire weight that the load signal does not contain")
@@ -57,11 +59,7 @@ def _tare_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 
 def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     """The load's torque on the layers concerned."""
-    # the radius acts twice on the load's inertia: on its lever and on its acceleration
-    inertia = 0.0 if run.tension_measured else run.load * (run.radius / run.gear_ratio) ** 2
-    turning = inertia * run.acceleration
-    torque = hanging(run, run.load) + turning
-    layer = run.channels.get("wire_layer")
+    torque, layer = _on_radius(run), run.channels.get("wire_layer")
     if values["layer"] == 0.0 or layer is None:
         return torque[:, None]
     if values["layer"] == ONE_DEPTH:
@@ -71,21 +69,53 @@ def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     return (torque * (np.rint(layer) == values["layer"]))[:, None]
 
 
+def _on_radius(run: PreparedRun) -> FloatArray:
+    """Torque at the motor shaft per relative change of the rope's radius, N m."""
+    # the radius acts twice on the load's inertia: on its lever and on its acceleration
+    inertia = 0.0 if run.tension_measured else run.load * (run.radius / run.gear_ratio) ** 2
+    return hanging(run, run.load) + inertia * run.acceleration
+
+
+def _layers(runs: Sequence[PreparedRun]) -> list[float]:
+    logged = [np.rint(run.channels["wire_layer"]) for run in runs if "wire_layer" in run.channels]
+    return sorted({float(layer) for own in logged for layer in np.unique(own)})
+
+
 def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-    layers = sorted(
-        {
-            float(v)
-            for run in runs
-            if "wire_layer" in run.channels
-            for v in np.unique(np.rint(run.channels["wire_layer"]))
-        }
-    )
+    layers = _layers(runs)
     shapes = [Shape("all layers", {"layer": 0.0})]
     if len(layers) > 1:
         shapes += [Shape(f"layer {layer:g}", {"layer": layer}) for layer in layers]
         shapes.append(Shape("the same depth on all layers", {"layer": ONE_DEPTH}))
         shapes.append(Shape("growing with depth", {"layer": -layers[-1]}))
     return shapes
+
+
+def layers_apart(runs: Sequence[PreparedRun]) -> list[Candidate]:
+    """Every layer with an error of its own, as a rope that was wound anew or is crushed unevenly has.
+
+    Only over layers that a run has; with two of them the laws of one and of all layers say as much.
+    """
+    layers = _layers(runs)
+    if len(layers) < FEWEST_APART:
+        return []
+    own = {layer: replace(e_R, name=f"e_R{layer:g}", doc=f"{e_R.doc} on layer {layer:g}") for layer in layers}
+
+    def columns(run: PreparedRun, _: Values) -> FloatArray:
+        layer = np.rint(run.channels["wire_layer"])
+        return _on_radius(run)[:, None] * (layer[:, None] == np.array(layers))
+
+    def corrects(found: Estimates, _: Shape, sides: Sides) -> list[Correction]:
+        radii = dict(enumerate(sides.crane.drum.layer_radii, start=1))
+        return [correction("layer_radius", found[p.name], radii[int(k)], layers=(int(k),)) for k, p in own.items()]
+
+    return [
+        Candidate(
+            "layer_radius", r"\sum_k e_{Rk}\,m\,(g+\ddot x)\,R_k/i", tuple(own.values()), columns, single_shape,
+            kind="geometry", needs=("hook_load", "wire_layer"), varies_with=("drum_torque", "wire_layer"),
+            corrects=corrects, law_name="each layer by itself", free=True,
+        )
+    ]  # fmt: skip
 
 
 TOKEN_INERTIA = 0.02  # of the gap; below it a crane file's inertia stands for one that nobody knows

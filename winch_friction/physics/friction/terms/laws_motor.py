@@ -74,13 +74,16 @@ a_lp = Parameter("a_lp", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="expone
 b_lp = Parameter("b_lp", "1", 1.0, lower=1.0, upper=5.0, shape=True, doc="exponent of 1 - D/X")
 K_pp = Parameter("K_pp", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and full displacement")
 n_pp = Parameter("n_pp", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
-m_pp = Parameter("m_pp", "1", 2.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
+m_pp = Parameter("m_pp", "1", 2.0, lower=1.0, upper=5.0, shape=True, doc="exponent of the displacement")
 K_po = Parameter("K_po", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and full displacement, mean of both ways")
 n_po = Parameter("n_po", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
-m_po = Parameter("m_po", "1", 3.0, lower=0.0, upper=5.0, shape=True, doc="exponent of the displacement")
+m_po = Parameter("m_po", "1", 3.0, lower=1.0, upper=5.0, shape=True, doc="exponent of the displacement")
 b_po = Parameter("b_po", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: hoisting alone, -1: lowering alone")
 T_cv = Parameter("T_cv", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm and 40 degC")
 n_cv = Parameter("n_cv", "1", 1.75, lower=1.0, upper=3.5, shape=True, doc="exponent of the speed")
+T_cw = Parameter("T_cw", "N*m", 2.0, upper=100.0, doc="churning loss at 2000 rpm, mean of both ways")
+n_cw = Parameter("n_cw", "1", 2.0, lower=1.0, upper=3.5, shape=True, doc="exponent of the speed")
+b_cw = Parameter("b_cw", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: hoisting alone, -1: lowering alone")
 K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
 n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 K_hf = Parameter("K_hf", "N*m", 10.0, upper=500.0, doc="mixed loss at 200 bar and standstill")
@@ -124,6 +127,10 @@ port_one_way = _motor(
 churning_viscous = _motor(
     "churning_viscous", T_cv.symbol * _w**n_cv.symbol * (walther(oil_temperature) / _NU_40) ** sp.Rational(1, 4),
     (T_cv, n_cv), "Changenet and Velex 2007: churning grows with a small power of the viscosity",
+)  # fmt: skip
+churning_one_way = _motor(
+    "churning_one_way", T_cw.symbol * _w**n_cw.symbol * (1 + b_cw.symbol * s), (T_cw, n_cw, b_cw),
+    "Changenet and Velex 2007: what a pair of gears churns depends on the sense of rotation",
 )  # fmt: skip
 high_pressure_power = _motor(
     "high_pressure_power",

@@ -116,6 +116,11 @@ class Side:
         return float(np.hypot(self.noise_floor, self.least_noise))
 
     @property
+    def excused(self) -> float:
+        """The floor with zeros that are off by no more than a step of the transducers."""
+        return float(np.hypot(self.noise_floor, LIMITS.step * self.least_noise))
+
+    @property
     def left_by_run(self) -> "list[tuple[PreparedRun, FloatArray]]":
         """Each run with what its blocks keep, in floors."""
         floor = max(self.floor, 1e-12)

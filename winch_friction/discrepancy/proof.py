@@ -116,9 +116,9 @@ def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
 
 
 def at_the_floor(side: Side) -> bool:
-    """Whether what is left is noise and what no balance of a winch closes, within its interval; a wide interval does
-    not excuse what is plainly more."""
-    return side.size_after.interval[0] <= LIMITS.at_the_floor * side.floor and not far_off(side)
+    """Whether what is left is noise, what no balance of a winch closes and a zero of its transducers, within its
+    interval; a wide interval does not excuse what is plainly more."""
+    return side.size_after.interval[0] <= LIMITS.at_the_floor * side.excused and not far_off(side)
 
 
 def nobodys(side: Side) -> bool:

@@ -21,14 +21,14 @@ from winch_friction.physics.friction.correction import Correction
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
+STEP = LIMITS.step * LIMITS.least_noise
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
     ("inertia", 5e-3, -1e-2, 1e-2),  # relative
     ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
     # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar
-    ("zero", 0.05, -0.15, 0.15),
-    ("passive zero", 0.05, -0.15, 0.15),
+    *((name, STEP / 3.0, -STEP, STEP) for name in ("zero", "passive zero")),
 )
 
 

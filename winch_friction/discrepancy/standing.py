@@ -74,8 +74,9 @@ def several_leave_more_than_noise(trial: Trial) -> str:
     names = {own.name for own in slots if not own.plain and not any(own.name in each.brings for each in slots)}
     left = trial.holdout.size_after.value
     closed = len(names) > 1 and search.cross.excess(search.explanation) <= LIMITS.least_excess
-    most = LIMITS.at_the_floor if closed else LIMITS.several_leave
-    if len(names) < 2 or left <= most * trial.holdout.floor:
+    side = trial.holdout
+    most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
+    if len(names) < 2 or left <= most:
         return ""
     return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {trial.holdout.floor:.3g}"
 

@@ -37,7 +37,8 @@ class Thresholds:
     default_relative_std: float = 0.2  # of a parameter of a model without covariance
     bare: int = 3  # parameters up to which a model is bare: of what it lacks any size is believed
     unbounded: float = 1e9  # typical sizes: what a bare model's plain terms may have
-    least_noise: float = 0.15  # bar; what a 12-bit transducer of 600 bar steps by
+    least_noise: float = 0.1  # bar; less than what a 12-bit transducer of 600 bar steps by, which is 0.15
+    step: float = 1.5  # times it: that step, up to which a zero is off without being wrong
     least_share_of_torque: float = 1e-3  # of an electric drive's torque
     bare_room: float = 10.0  # times the size found: how far a bare model's new parameter may move later
     # -- folds and evidence

@@ -5,8 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.candidates.candidate import Shape
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.families import CURVES, SURFACES, free_members, name_of
+from winch_friction.discrepancy.search import _refined
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 
 
@@ -104,3 +106,19 @@ def test_a_curve_that_was_found_bends_in_twice_as_many_places(row):
     assert len(many) == 2 * len(few) - 1
     assert (fine.name, fine.law_name, fine.free) == (coarse.name, coarse.law_name, True)
     assert fine.refined(fine.shapes([])[0]) is fine
+
+
+@pytest.mark.parametrize(("found", "free", "finer"), [
+    ("sheave_bending", True, {"gear_load_loss", "sheave_bending"}),
+    ("gear_load_loss", True, {"gear_load_loss", "sheave_bending"}),
+    ("sheave_bending", False, {"sheave_bending"}),
+    ("churning", True, {"churning"}),
+])  # fmt: skip
+def test_what_the_load_tells_of_the_gear_is_drawn_as_finely_of_the_sheaves(found, free, finer):
+    """The one with more places to bend would leave less, and its twin would be no rival of it."""
+    names = ("gear_load_loss", "sheave_bending", "churning")
+    candidates = [
+        SimpleNamespace(name=name, law_name=f"free_{name}", refined=lambda shape, name=name: name) for name in names
+    ]
+    slot = SimpleNamespace(name=found, law=f"free_{found}", free=free, origin=(None, Shape("")))
+    assert {each for each in _refined(candidates, [slot]) if isinstance(each, str)} == finer

@@ -35,6 +35,8 @@ from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.correction import Correction
 
+BY_LOAD = ("gear_load_loss", "sheave_bending")
+
 # -- a delay taken out
 AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
 REACH = 1.1  # times a delay: half way to the next one
@@ -193,10 +195,18 @@ def search_runs(
 
 
 def _refined(candidates: Sequence[Candidate], slots: Sequence[Slot]) -> list[Candidate]:
-    """The candidates, these with a finer grid of shapes around their own."""
+    """The candidates, these with a finer grid of shapes around their own, and of a curve its twin: the motors are
+    always as many, so that what the load alone tells of gear and of sheaves is one trace, to be drawn as finely."""
     found = {(slot.name, slot.law): slot.origin[1] for slot in slots}
+    twins = {
+        (other, slot.law.replace(slot.name, other)): slot.origin[1]
+        for slot in slots
+        for other in set(BY_LOAD) - {slot.name}
+        if slot.free and slot.name in BY_LOAD
+    }
+    known = {**twins, **found}
     own = [(each.name, each.law_name) for each in candidates]
-    return [each.refined(found[k]) if k in found else each for each, k in zip(candidates, own, strict=True)]
+    return [each.refined(known[k]) if k in known else each for each, k in zip(candidates, own, strict=True)]
 
 
 def _waves(expansion: Expansion, ripple: Ripple | None) -> Mapping[str, FloatArray]:

@@ -16,6 +16,7 @@ from winch_friction.commissioning.check import quick_check, shipped_cranes
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.view import view_of
 from winch_friction.physics.signals import Run
+from winch_friction.physics.winch.crane import Drum
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run
@@ -124,6 +125,22 @@ def test_another_crane_is_named(tmp):
     assert found is not None
     assert found.cause == "crane"
     assert crane.name in found.sentence
+
+
+def test_another_crane_is_claimed_only_where_its_motors_are_those_of_the_log(tmp):
+    crane, _ = world(0, rig.DRAWN, tmp)
+    runs, largest = runs_of(columns_of(0, rig.DRAWN)), crane.max_displacement
+    shown = max(float(run[f"{g}.displacement"].max()) for run in runs for g in run.groups)
+    wrong = replace(crane, drum=Drum(tuple(1e3 * radius for radius in crane.drum.layer_radii)))
+
+    def said(of_other, of_own=2.0 * largest):
+        other = replace(crane, name="other", max_displacement=of_other)
+        return next(iter(quick_check(runs, replace(wrong, max_displacement=of_own), None, {"other": other}))).sentence
+
+    assert said(shown).startswith("these are runs of crane 'other'")
+    assert "whose motors these are the log does not say" in said(1.5 * shown)
+    assert "'other'" not in said(1.5 * shown, of_own=shown)  # fully swivelled motors of the crane file
+    assert "'other'" not in said(0.8 * shown)  # motors that cannot go so far
 
 
 def test_one_bad_run_among_good_ones_is_pointed_at(tmp):

@@ -102,6 +102,39 @@ def test_a_wrong_crane_is_one_clear_line(change, message):
         crane_from_content(data, "crane.yaml")
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d["drum"].update(layer_radii=[403, 440]), r"layer_radii\[1\] is 403 m, of winches 0.001 ... 10 m: "
+         r"did you mean mm \(0.403 m\)\?$"),
+        (lambda d: d["drum"].update(layer_radii=[40.3, 44]), r"did you mean cm \(0.403 m\)"),
+        (lambda d: d.update(gear_ratio=0.004), r"gear_ratio is 0.004.* did you mean its inverse \(250\)"),
+        (lambda d: d.update(max_displacement=215), r"max_displacement is 215 m\^3/rad.* did you mean cm\^3/rev"),
+        (lambda d: d.update(inertia=15400), r"inertia \(at the motor shaft\) is 1.54e\+04.* kg\*cm\^2 \(1.54 kg"),
+        (lambda d: d.update(wire_mass=24500), r"did you mean kg/km \(24.5 kg/m\)"),
+        (lambda d: d.update(wire_mass=-24.5), "wire_mass is -24.5 kg/m.* correct the number or its unit"),
+        (lambda d: d.update(wire_stiffness=3e5), r"did you mean kN \(3e\+08 N\)"),
+        (lambda d: d.update(rated_pressure=450), "rated_pressure is 450 Pa.* did you mean bar"),
+        (lambda d: d.update(rated_speed=4800), "rated_speed is 4800 rad/s.* did you mean rpm"),
+        (lambda d: d["groups"].update(main=1100), r"groups: main has 1100 motors, of winches 1 ... 200"),
+    ],
+)  # fmt: skip
+def test_a_number_that_no_winch_has_is_said_with_its_range_and_the_likely_unit(change, message):
+    data = content("crane_150t", "cranes")
+    change(data)
+    with pytest.raises(InputError, match=message) as caught:
+        crane_from_content(data, "crane.yaml")
+    assert len(caught.value.problems) == 1
+
+
+def test_all_numbers_that_no_winch_has_are_said_at_once():
+    data = content("crane_150t", "cranes")
+    data.update(gear_ratio=0.004, rated_pressure=450)
+    with pytest.raises(InputError) as caught:
+        crane_from_content(data, "crane.yaml")
+    assert len(caught.value.problems) == 2
+
+
 def test_unknown_name_lists_what_is_shipped():
     with pytest.raises(InputError, match="shipped: crane_150t, emps"):
         load_crane("crane_15t")

@@ -20,9 +20,9 @@ from winch_friction.commissioning.kinematics import (
     speed_times,
     speeds_times,
 )
+from winch_friction.commissioning.other_cranes import claim
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.channels import CM3_PER_REV, GRAVITY, RPM
-from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
@@ -207,24 +207,12 @@ def _exchanged(first: str, second: str) -> Repair:
 
 def _cranes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
     for name, other in others.items():
-        if other == crane or other.drive.kind != crane.drive.kind or any(_lacks(view, other) for view in views):
-            continue
-        said = f"these are runs of crane '{name}', not of '{crane.name}'"
-        if name == crane.name:
-            said = f"the crane file differs from the shipped '{name}', whose figures fit: gear, drum or motor is wrong"
-        yield Mistake("crane", "", said, CRANE, _on(other))
+        if said := claim(views, crane, name, other):
+            yield Mistake("crane", "", said, CRANE, _on(other))
 
 
 def _on(crane: Crane) -> Repair:
     return lambda view: view.on(crane)
-
-
-def _lacks(view: RunView, crane: Crane) -> bool:
-    try:
-        view.on(crane)
-    except InputError:
-        return True
-    return False
 
 
 def _layers(views: Sequence[RunView], crane: Crane) -> Iterator[Mistake]:

@@ -1,10 +1,13 @@
-"""Crane files: the winch as the friction functions see it, from YAML."""
+"""Crane files: the winch as the friction functions see it, from YAML; and what a number in one can be at all."""
 
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.winch.crane import SLOWEST_FOR_POWER, Crane, Drive, Drum
 from winch_friction.records.atomic import shipped
 from winch_friction.records.schemas import with_all_problems
@@ -45,7 +48,7 @@ def crane_from_content(content: Any, where: str) -> Crane:
     )
     top.get("description")
     top.close()
-    return crane
+    return check_ranges(crane, where)
 
 
 def _drive(top: Section) -> Drive:
@@ -94,3 +97,83 @@ def _groups(top: Section) -> dict[str, int]:
             raise InputError(f"{section.where}: {name} must be a whole number of motors, found {count!r}")
         groups[str(name)] = count
     return groups
+
+
+# -- what a number can be at all: ranges that hold bench rigs and the largest offshore cranes alike
+MOST_MOTORS = 200  # on one shaft
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """Smallest and largest value in SI, a usual one, and the units, as factors to SI, that are taken for SI."""
+
+    unit: str
+    lower: float
+    upper: float
+    usual: float
+    slips: Mapping[str, float]
+
+    def check(self, value: float, where: str) -> None:
+        """Raise `InputError` where no winch has this value; what is not said (0 or infinite) is nobody's slip."""
+        if value in (0.0, math.inf) or self.lower <= value <= self.upper:
+            return
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        raise InputError(
+            f"{where} is {value:.4g}{unit}, of winches {self.lower:.4g} ... {self.upper:.4g}{unit}:{self._meant(value)}"
+        )
+
+    def _meant(self, value: float) -> str:
+        """The slip that makes it the most usual value; a ratio upside down is one too."""
+        made = {name: value * factor for name, factor in self.slips.items()}
+        if self.unit == "1" and value > 0.0:
+            made["its inverse"] = 1.0 / value
+        near = {name: v for name, v in made.items() if self.lower <= v <= self.upper}
+        if not near:
+            return " correct the number or its unit"
+        name = min(near, key=lambda each: abs(math.log(near[each] / self.usual)))
+        return f" did you mean {name} ({near[name]:.4g}{'' if self.unit == '1' else ' ' + self.unit})?"
+
+
+RADIUS = Plausible("m", 1e-3, 10.0, 0.5, {"mm": 1e-3, "cm": 1e-2})
+NUMBERS: Mapping[str, Plausible] = {
+    "gear_ratio": Plausible("1", 0.1, 5000.0, 200.0, {}),
+    "max_displacement": Plausible(
+        "m^3/rad", 0.5 * CM3_PER_REV, 3e5 * CM3_PER_REV, 200.0 * CM3_PER_REV,
+        {"cm^3/rev": CM3_PER_REV, "cm^3/rad": 1e-6, "l/rev": 1e3 * CM3_PER_REV},
+    ),
+    "wire_mass": Plausible("kg/m", 1e-3, 1000.0, 10.0, {"kg/km": 1e-3}),
+    "wire_stiffness": Plausible("N", 1e3, 1e11, 3e8, {"kN": 1e3, "MN": 1e6, "GN": 1e9}),
+    "rated_pressure": Plausible("Pa", 5.0 * BAR, 1500.0 * BAR, 350.0 * BAR, {"bar": BAR, "MPa": 1e6}),
+    "rated_speed": Plausible("rad/s", 0.01, 3000.0, 400.0, {"rpm": RPM}),
+    "rated_load": Plausible("kg", 0.1, 1e7, 5e4, {"t": 1e3}),
+}  # fmt: skip
+HYDRAULIC_STIFFNESS = Plausible("N", 1e6, 1e11, 3e8, {"kN": 1e3, "MN": 1e6, "GN": 1e9})  # a rope of 6 mm at least
+LARGEST_AT_DRUM = 1e7  # kg m^2, of all that turns, seen from the drum: a drum of 400 t with 5 m of radius
+
+
+def _inertia(gear_ratio: float) -> Plausible:
+    """What turns may be as heavy as the largest drum; at the motor it is less by the ratio squared."""
+    upper = LARGEST_AT_DRUM / max(gear_ratio, 1.0) ** 2
+    return Plausible("kg*m^2", 1e-9, upper, upper / 100.0, {"kg*cm^2": 1e-4, "g*m^2": 1e-3})
+
+
+def check_ranges(crane: Crane, where: str) -> Crane:
+    """The crane again; raises `InputError`, a line for each number that no winch has."""
+    problems = Problems()
+    for key, plausible in NUMBERS.items():
+        if key == "wire_stiffness" and crane.drive.hydraulic:
+            plausible = HYDRAULIC_STIFFNESS
+        with problems:
+            plausible.check(getattr(crane, key), f"{where}: {key}")
+    if NUMBERS["gear_ratio"].lower <= crane.gear_ratio <= NUMBERS["gear_ratio"].upper:
+        with problems:
+            _inertia(crane.gear_ratio).check(crane.inertia, f"{where}: inertia (at the motor shaft)")
+    with problems:
+        for k, radius in enumerate(crane.drum.layer_radii, 1):  # one line tells all layers
+            RADIUS.check(radius, f"{where}: drum: layer_radii[{k}]")
+    for name, count in crane.groups.items():
+        if count > MOST_MOTORS:
+            with problems:
+                raise InputError(f"{where}: groups: {name} has {count} motors, of winches 1 ... {MOST_MOTORS}")
+    problems.say()
+    return crane

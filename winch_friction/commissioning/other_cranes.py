@@ -1,0 +1,47 @@
+"""Whether runs may be another crane's, as far as the motors that the log shows allow it, and in which words."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from winch_friction.commissioning.view import RunView
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
+
+STOP = 0.03  # relative: motors of different size differ by more, a swivel angle's sensor by less
+
+
+def claim(views: Sequence[RunView], crane: Crane, name: str, other: Crane) -> str:
+    """What is said where the figures of another crane make these runs fit; empty: they cannot be its runs."""
+    if other == crane or other.drive.kind != crane.drive.kind or any(_lacks(view, other) for view in views):
+        return ""
+    if name == crane.name:
+        return f"the crane file differs from the shipped '{name}', whose figures fit: gear, drum or motor is wrong"
+    swivelled = _largest_swivel(views)
+    if not crane.drive.hydraulic or _at_stop(swivelled, other):
+        return f"these are runs of crane '{name}', not of '{crane.name}'"
+    if _at_stop(swivelled, crane) or swivelled > other.max_displacement:
+        return ""  # the motors are those of the crane file, or no motors of the other's
+    return (
+        f"gear, drum and number of motors of crane '{name}' fit, those of '{crane.name}' do not; whose motors these "
+        "are the log does not say: another crane's runs, or a wrong number in the crane file"
+    )
+
+
+def _largest_swivel(views: Sequence[RunView]) -> float:
+    """The largest displacement per motor that any of the runs shows, m^3/rad; 0 where none has motor groups."""
+    groups = [group for view in views for group in view.groups.values()]
+    return max((float(np.nanmax(np.abs(group.displacement), initial=0.0)) for group in groups), default=0.0)
+
+
+def _at_stop(swivelled: float, crane: Crane) -> bool:
+    """Whether motors that go so far are this crane's, fully swivelled."""
+    return abs(swivelled - crane.max_displacement) <= STOP * crane.max_displacement > 0.0
+
+
+def _lacks(view: RunView, crane: Crane) -> bool:
+    try:
+        view.on(crane)
+    except InputError:
+        return True
+    return False

@@ -56,7 +56,17 @@ def edited(change):
         (lambda d: d["parameters"]["K4"].update(unit="bar"), "K4.*unit 'bar' cannot be used, expected N\\*m"),
         (lambda d: d["parameters"]["K4"].update(value=float("nan")), "K4: value must be a finite number"),
         (lambda d: d["parameters"]["K4"].update(value="lots"), "K4: value must be a finite number"),
-        (lambda d: d["parameters"]["K4"].update(value=-3), "K4 = -3 is outside 0"),
+        (
+            lambda d: d["parameters"]["K4"].update(value=-3),
+            r"model.yaml: parameters: K4: value -3 N\*m is outside 0 ... ",
+        ),
+        (lambda d: d["parameters"]["K4"].update(upper=3), r"K4: value 14 N\*m is outside 0 ... 3 N\*m"),
+        (
+            lambda d: d["parameters"]["K4"].update(std=-1),
+            "model.yaml: parameters: K4: std must be 0 or above .*found -1",
+        ),
+        (lambda d: d["parameters"]["K4"].update(std=float("nan")), "K4: std must be a finite number"),
+        (lambda d: d["parameters"]["K4"].update(std=float("inf")), "K4: std must be a finite number"),
         (lambda d: d["parameters"]["K4"].pop("std"), "K4 lacks 'std'"),
         (lambda d: d["parameters"]["K4"].update(sdt=1), "K4: unknown key 'sdt'"),
         (lambda d: d["terms"].append("friktion"), "term 'friktion' is not known"),

@@ -16,7 +16,7 @@ from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.records.atomic import shipped, write_text
 from winch_friction.records.corrections import corrections_content, read_corrections, read_tables, tables_content
 from winch_friction.records.schemas import with_all_problems
-from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml
+from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml, spread
 
 SCHEMA = "winch_friction.model/1"
 
@@ -107,10 +107,17 @@ class _Entry:
         factor = factor_to_si(str(section.need("unit")), parameter.unit, section.where)
         self.name, self.factor = parameter.name, factor
         self.value = section.number("value") * factor
-        self.std = section.number("std") * factor if "std" in section else None
+        self.std = spread(section) * factor if "std" in section else None
         lower, upper = section.get("lower"), section.get("upper")
         self.bounds = self._bounds(parameter, lower, upper, section.where)
+        self._check_value(parameter, section.where)
         section.close()
+
+    def _check_value(self, parameter: Parameter, where: str) -> None:
+        low, high = self.bounds or (parameter.lower, parameter.upper)
+        if not low <= self.value <= high:
+            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+            raise InputError(f"{where}: value {self.value:g}{unit} is outside {low:g} ... {high:g}{unit}")
 
     def _bounds(self, parameter: Parameter, lower: Any, upper: Any, where: str) -> tuple[float, float] | None:
         if lower is None and upper is None:

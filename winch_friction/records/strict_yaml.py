@@ -78,6 +78,14 @@ def finite(value: Any, where: str) -> float:
     return float(value)
 
 
+def spread(section: Section, key: str = "std") -> float:
+    """A standard deviation, as it stands: finite, and not below 0."""
+    value = section.number(key)
+    if value < 0.0:
+        raise InputError(f"{section.where}: {key} must be 0 or above (a standard deviation), found {value:g}")
+    return value
+
+
 def as_quantity(content: Any, si_unit: str, where: str) -> float:
     """A number in SI or a mapping with value and unit, converted to `si_unit`."""
     if not isinstance(content, Mapping):

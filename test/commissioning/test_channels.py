@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.channels import clock_findings, frozen_findings
+from winch_friction.commissioning.channels import clock_findings, frozen_findings, told_slow_clock
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.physics.signals import Run
@@ -19,6 +19,24 @@ def test_a_clock_that_jumps_by_days_is_an_error_and_an_even_one_is_nothing():
     even = np.arange(500) * 0.02
     assert said(even) == {}
     assert said(np.concatenate([even, even + 86400.0])) == {"clock": "error"}
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_a_unix_time_in_another_unit_than_s_is_named(unit, factor):
+    time = 1743911276.344 + np.arange(500) * 0.02
+    assert said(time) == {}
+    (found,) = clock_findings(Run("r", {"time": factor * time}))
+    assert (found.severity, found.cause, found.channel) == ("error", "unit", "time")
+    assert f"time holds {unit} under [s]" in found.sentence
+    assert found.sentence.endswith(f"0.02 s; write 'time [{unit}]'")
+
+
+def test_a_time_in_ms_from_any_origin_shows_in_the_rates_that_other_channels_tell():
+    run = Run("r", {"time": np.arange(500) * 20.0})
+    (found,) = told_slow_clock(run, {"wire_out": 1.3e-3, "heave_velocity": 1.0})
+    assert "time holds ms under [s]: wire_out tells 0.0013 times the speed, and" in found.sentence
+    assert not list(told_slow_clock(run, {"wire_out": 1.0}))
+    assert not list(told_slow_clock(Run("r", {"time": np.arange(500) * 0.02}), {"wire_out": 1e-3}))  # km under [m]
 
 
 @pytest.mark.parametrize(("rate", "found"), [(4.0, {"rate": "warning"}), (6.0, {})])

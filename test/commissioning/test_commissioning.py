@@ -171,6 +171,18 @@ def test_a_clock_that_jumps_is_an_error_and_a_slow_one_a_warning(tmp):
     assert "rate" in [each.cause for each in quick_check([Run("slow", slow)], crane, model)]
 
 
+@pytest.mark.parametrize("origin", [0.0, 1743911276.0])
+def test_a_time_in_ms_is_named(origin, tmp):
+    crane, model = world(1, "rough", tmp)
+    run = runs_of(columns_of(1, "rough"))[0]
+    in_ms = replace(run, columns={**run.columns, "time": 1e3 * (run.time - run.time[0] + origin)})
+    result = check([in_ms], crane, model)
+    assert "time holds ms under [s]" in result.sentence
+    assert [(each.cause, each.channel) for each in quick_check([in_ms], crane) if each.contradicts] == [
+        ("unit", "time")
+    ]
+
+
 def test_the_whole_check_says_what_the_runs_teach_and_what_is_missing(tmp):
     crane, model = world(1, "rough", tmp)
     runs = [

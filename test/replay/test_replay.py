@@ -10,6 +10,7 @@ from winch_friction.cli import main
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Run
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.model_file import load_model, model_to_text
@@ -209,3 +210,14 @@ def test_phases_of_a_recording_begin_after_its_pauses(tmp_path, run, crane_150t,
         np.testing.assert_allclose(
             torques[part], replay_compensator(run, alone)["friction_torque"], rtol=1e-5, atol=1e-3
         )
+
+
+def test_a_log_too_slow_to_be_replayed_is_said_by_its_step(tmp_path, run, capsys):
+    columns = {name: values[:20] for name, values in run.columns.items() if name != "wire_out"}
+    columns["time"] = np.arange(20) * 20.0
+    write_run(Run("slow", columns), tmp_path / "slow.csv")
+    options = ["--crane", "crane_150t", "--model", "a6vm215_crane2", "--force"]
+    assert main.run(["replay", str(tmp_path / "slow.csv"), *options]) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert "slow.csv: column 'time': a sample every 20 s is too slow for a replay, which takes one every 4 s" in said
+    assert "max_age" not in said

@@ -111,7 +111,8 @@ def _read(recording: Path, crane: Any, options: Mapping[str, Any], complete: boo
 
 def _settings_for(recording: Path, run: Any, settings: Any) -> Any:
     """Settings whose age limits a slow log can meet; those of a file or of the recording itself are only questioned."""
-    from winch_friction.replay.settings import ReplaySettings, settings_for_rate
+    from winch_friction.physics.errors import InputError
+    from winch_friction.replay.settings import ReplaySettings, longest_held, settings_for_rate
 
     if run is None:
         return settings
@@ -120,6 +121,11 @@ def _settings_for(recording: Path, run: Any, settings: Any) -> Any:
     limit = min((phase.config.max_age for phase in known.phases), default=math.inf) if known else math.inf
     if step * SLACK <= limit:
         return settings
+    if settings is None and SLACK * step > longest_held():
+        raise InputError(
+            f"{recording}: column 'time': a sample every {step:.4g} s is too slow for a replay, which takes one every "
+            f"{longest_held() / SLACK:.3g} s at least; is the time in ms? (10 Hz or more show reversals)"
+        )
     said = f"{recording.name}: logged at {1.0 / step:.3g} Hz; inputs count as lost after {limit:.3g} s"
     if settings is not None:
         show_warnings([f"{said}, as --params-file says: raise max_age there if the compensator falls silent"])

@@ -69,6 +69,10 @@ def run_words(names: Sequence[str], total: int) -> str:
 GAP = 5.0  # usual steps, as in records.run_checks
 LONG = 1000.0  # a recording is at most this many times as long as its samples say: else the clock has jumped
 SLOW_RATE = 5.0  # Hz; friction at a reversal takes place within a fifth of a second
+TIME_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # to s
+UNIX = (6.3e8, 2.6e9)  # s since 1970, years 1990 to 2052
+SLOW_STEP = 2.0  # s; in ms the step of a log with 500 Hz
+THOUSANDTH = (4e-4, 2.5e-3)  # of the speed, as a channel tells it that is sampled coarsely
 UNEVEN = 0.3  # of the usual step: scatter of the steps beyond which the clock is worth a word
 COARSE = 200.0  # steps over a channel's range; fewer are coarse
 SATURATED = 0.02  # of the samples at one extreme value of a moving channel
@@ -98,6 +102,9 @@ def clock_findings(run: Run) -> Iterator[Finding]:
     steps = np.diff(run.time)
     usual = float(np.median(steps))
     span = float(run.time[-1] - run.time[0])
+    if unit := _unix_unit(run.time):
+        yield time_in(unit, run, f"{run.time[0]:.13g} s since 1970 is in no year of ours, in {unit} it is")
+        return
     if not np.isfinite(span) or span > LONG * usual * len(run):
         said = f"{run.name}: the clock jumps: {span:.3g} s long with {len(run)} samples of {usual:.3g} s; cut it there"
         yield Finding("error", "clock", said, "time", (run.name,), {"span": span, "usual_step": usual})
@@ -113,6 +120,33 @@ def clock_findings(run: Run) -> Iterator[Finding]:
     if gaps.size:
         said = f"{run.name}: {gaps.size} gaps in time, the widest {gaps.max():.3g} s"
         yield Finding("note", "gaps", said, "time", (run.name,), {"count": int(gaps.size), "widest": float(gaps.max())})
+
+
+def _unix_unit(time: FloatArray) -> str:
+    """The unit in which a time under s dates the run, where in s it dates it beyond any year; else nothing."""
+    ends = np.array([time[0], time[-1]])
+    return next((u for u, f in TIME_UNITS.items() if np.all((UNIX[0] < ends * f) & (ends * f < UNIX[1]))), "")
+
+
+def time_in(unit: str, run: Run, why: str) -> Finding:
+    """The finding that a run's time is in another unit than s."""
+    usual = float(np.median(np.diff(run.time)))
+    said = (
+        f"{run.name}: time holds {unit} under [s]: {why}, and the usual step of {usual:.4g} s then is "
+        f"{usual * TIME_UNITS[unit]:.4g} s; write 'time [{unit}]'"
+    )
+    return Finding("error", "unit", said, "time", (run.name,), {"factor": TIME_UNITS[unit], "usual_step": usual})
+
+
+def told_slow_clock(run: Run, ratios: Mapping[str, float]) -> Iterator[Finding]:
+    """Time in ms from another origin than 1970: a rate that a channel tells (`ratios` to the speed) is a thousandth.
+
+    Asked only of steps that no log has; at others the channel itself may be in thousands.
+    """
+    slow = {name: ratio for name, ratio in ratios.items() if THOUSANDTH[0] < ratio < THOUSANDTH[1]}
+    if slow and float(np.median(np.diff(run.time))) > SLOW_STEP:
+        told = ", ".join(f"{name} tells {ratio:.3g} times the speed" for name, ratio in slow.items())
+        yield time_in("ms", run, told)
 
 
 def cell_findings(run: Run) -> Iterator[Finding]:

@@ -16,8 +16,10 @@ from winch_friction.commissioning.channels import (
     first_contradiction,
     frozen_findings,
     run_words,
+    told_slow_clock,
 )
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
+from winch_friction.commissioning.kinematics import agreements
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
@@ -129,11 +131,14 @@ def diagnosed(
     usable = [run for run in runs if run.name not in jumped]
     views = views_of([corrected(run, crane, model) if model is not None else (run, crane) for run in usable])
     diagnosis = diagnose(views, crane, model, known)
+    told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
+    slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
     findings = [
         *_named_crane(runs, crane, others),
+        *slow,
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
-        *_trusted(_mistake(diagnosis, crane), crane),
+        *(() if slow else _trusted(_mistake(diagnosis, crane), crane)),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,

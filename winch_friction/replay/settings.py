@@ -8,7 +8,7 @@ from typing import Any
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation import EstimatorConfig
-from winch_friction.physics.errors import from_mapping
+from winch_friction.physics.errors import from_mapping, limits_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import load_file
 from winch_friction.records.model_file import load_model
@@ -51,6 +51,11 @@ def settings_for_rate(max_age: float) -> ReplaySettings:
     """The nodes' defaults with another age limit (s), for a log that is slower than they allow."""
     phase = Phase(config=ReplayConfig(max_age=max_age))
     return ReplaySettings((phase,), estimator_max_age=max_age)
+
+
+def longest_held() -> float:
+    """The largest age limit, s, that `settings_for_rate` takes."""
+    return limits_of(ReplayConfig.__dataclass_fields__["max_age"]).upper
 
 
 def settings_from_metadata(metadata: Mapping[str, Any], where: str) -> ReplaySettings | None:

@@ -183,7 +183,8 @@ def test_motor_by_shipped_name(tmp_path, capsys):
 def test_bad_options_leave_the_seed_alone(tmp_path, capsys, options, message):
     out = tmp_path / "seed.yaml"
     out.write_text("good")
-    assert run(["identify", "motor", "a6vm280_generated", "--out", str(out), "--no-complex", *options]) == 2
+    arguments = ["identify", "motor", "a6vm280_generated", "--out", str(out), "--overwrite", "--no-complex"]
+    assert run([*arguments, *options]) == 2
     assert re.search(message, capsys.readouterr().err)
     assert out.read_text() == "good"
 

@@ -51,6 +51,41 @@ def test_nothing_that_was_there_is_overwritten(slip, here, capsys):
     assert {path.name: path.read_bytes() for path in here.iterdir()} == before
 
 
+EARLIER = {
+    "replay": (["replay", "run.csv", *MODEL, "--out", "there.csv"], "there.csv"),
+    "a picture of a replay": (["replay", "run.csv", *MODEL, "--picture", "there.html"], "there.html"),
+    "plot": (["plot", "run.csv", "--out", "there.html"], "there.html"),
+    "show": (["show", "model.yaml", "--out", "there.html"], "there.html"),
+    "compare": (["compare", "a6vm215_crane1", "model.yaml", "--out", "there.html"], "there.html"),
+    "convert": (["convert", "run", "run.csv", "new.csv", "there.parquet"], "there.parquet"),
+    "motor": (["identify", "motor", "table.csv", "--out", "there.yaml"], "there.yaml"),
+    "system": (
+        ["identify", "system", "run.csv", "--motor", "a6vm215", "--crane", "crane_150t", "--out", "there.yaml"],
+        "there.yaml",
+    ),
+}
+
+
+@pytest.mark.parametrize("verb", EARLIER)
+def test_an_earlier_result_is_replaced_only_when_told_so(verb, here, capsys):
+    arguments, there = EARLIER[verb]
+    (here / there).write_text("an earlier result")
+    assert run(arguments) == 2
+    said = [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning")]
+    assert said == [f"winch-friction: --out {there}: exists already; give another name, or --overwrite to replace it"]
+    assert (here / there).read_text() == "an earlier result"
+    assert not (here / "new.csv").exists()
+
+
+def test_an_earlier_result_is_replaced_when_told_so_and_a_bag_never(here, capsys):
+    for name in ("there.csv", "there.mcap"):
+        (here / name).write_text("an earlier result")
+    assert run(["convert", "run", "run.csv", "there.csv", "--overwrite"]) == 0
+    assert (here / "there.csv").read_text() != "an earlier result"
+    assert run(["convert", "run", "run.csv", "there.mcap", "--overwrite"]) == 2
+    assert "bag is never replaced" in capsys.readouterr().err
+
+
 def test_copies_of_a_run_prove_nothing(here, capsys):
     """A copy among the locked runs would prove the model on what it was fitted to."""
     for name in ("a", "b", "c"):

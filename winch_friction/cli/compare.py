@@ -5,10 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import PAGE, refuse_other_kind, show_json, show_table, show_warnings
+from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths
+from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError, Problems
 
 CERTAIN = 2.0  # standard deviations from which a difference is more than what the models do not know of themselves
@@ -22,6 +22,7 @@ def command(
     loads: Annotated[str, typer.Option(help="Hanging masses of the grid, t.")] = "15,55,100",
     out: Annotated[OptionalPath, typer.Option(help="Write a page (.html) with curves and differences.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """Compare two models: curves, sigma, contributions, and where they differ.
@@ -37,6 +38,7 @@ def command(
 
     load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
+    refuse_existing(overwrite, out)
     problems, models = Problems(), []
     for name in (first, second):
         with problems:

@@ -147,6 +147,17 @@ def refuse_other_kind(out: Path | None, suffixes: tuple[str, ...], what: str) ->
     refuse_unwritable(out)
 
 
+def refuse_existing(overwrite: bool, *places: Path | None) -> None:
+    """Raise `InputError` where one of these is there already: before the work. A bag is never overwritten."""
+    for place in places:
+        if place is None or not place.exists():
+            continue
+        if place.is_dir() or place.suffix in (".mcap", ".db3"):
+            raise InputError(f"--out {place}: exists already, and a folder or bag is never replaced; give another name")
+        if not overwrite:
+            raise InputError(f"--out {place}: exists already; give another name, or --overwrite to replace it")
+
+
 def refuse_unwritable(*places: Path | None) -> None:
     """Raise `InputError` where one of these files cannot be written: before the work, not behind it."""
     for place in places:

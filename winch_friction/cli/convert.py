@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import refuse_input_as_output, show_json, show_warnings
+from winch_friction.cli.console import refuse_existing, refuse_input_as_output, show_json, show_warnings
 from winch_friction.cli.names import complete_crane
-from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.optional import OptionalPath, Overwrite
 from winch_friction.physics.signals import Run
 
 app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
@@ -22,6 +22,7 @@ def run(
         str, typer.Option(help="Crane: for drum speeds and displacement fractions.", autocompletion=complete_crane)
     ] = "",
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
 ) -> None:
     """Convert a run file or bag.
@@ -35,6 +36,7 @@ def run(
 
     for each in out:
         refuse_input_as_output(each, [source])
+    refuse_existing(overwrite, *out)
     content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
     show_warnings(content.warnings)
     _write(content, out, as_json)
@@ -45,6 +47,7 @@ def emps(
     source: Annotated[Path, typer.Argument(help="The benchmark's DATA_EMPS.mat.")],
     out: Annotated[list[Path], OUT],
     causal: Annotated[bool, typer.Option(help="Speed as a drive would have it live, without looking ahead.")] = False,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
 ) -> None:
     """Convert the EMPS benchmark's measurement into a run for crane 'emps'.
@@ -55,6 +58,7 @@ def emps(
     """
     from winch_friction.records.emps import read_emps
 
+    refuse_existing(overwrite, *out)
     _write(read_emps(source, causal), out, as_json)
 
 

@@ -18,19 +18,23 @@ UNIX = 1e8  # s; a time below it counts from some origin of its own and has no d
 
 @dataclass(frozen=True)
 class FleetVerb:
-    """How a verb is called: its words, where its result goes, whether one crane's recordings go in together."""
+    """How a verb is called: its words, where its result goes, whether one crane's recordings go in together.
+
+    `own_file`: the result is a file that the verb replaces only when told so; a fleet makes its own anew.
+    """
 
     words: tuple[str, ...]
     target: str
     together: bool
     takes_out: bool = True
+    own_file: bool = False
 
 
 VERBS = {
-    "replay": FleetVerb(("replay",), "replay/{crane}/{name}.parquet", together=False),
+    "replay": FleetVerb(("replay",), "replay/{crane}/{name}.parquet", together=False, own_file=True),
     "check": FleetVerb(("check",), "check/{crane}/{name}", together=False),
     "gap": FleetVerb(("gap",), "gap/{crane}", together=True),
-    "identify": FleetVerb(("identify", "system"), "identify/{crane}.yaml", together=True),
+    "identify": FleetVerb(("identify", "system"), "identify/{crane}.yaml", together=True, own_file=True),
 }
 
 
@@ -121,7 +125,8 @@ def _called(task: Task, paths: Sequence[Path]) -> tuple[int, Any, str]:
     arguments = [*how.words, *map(str, paths), "--crane", task.crane_file, *model, *task.options]
     said, complained = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
-        status = run([*arguments, "--out", task.target, "--json"])
+        anew = ["--overwrite"] if how.own_file else []
+        status = run([*arguments, "--out", task.target, *anew, "--json"])
     lines = [line for line in complained.getvalue().splitlines() if line.strip()]
     return (
         status,

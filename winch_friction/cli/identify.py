@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts
+from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts, Overwrite
 
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
 
@@ -52,13 +52,14 @@ def motor(
     restarts: Restarts = 3,
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
+    overwrite: Overwrite = False,
     json: Json = False,
 ) -> None:
     """Fit the motor-loss models of paper 1 to a supplier's table and write the seed model.
 
     Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
     """
-    from winch_friction.cli.console import MODEL, progress, refuse_input_as_output, refuse_other_kind
+    from winch_friction.cli.console import MODEL, progress, refuse_existing, refuse_input_as_output, refuse_other_kind
     from winch_friction.cli.identify_output import show_motor
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
@@ -71,6 +72,7 @@ def motor(
     path = shipped("suppliers", table, ".csv")
     refuse_other_kind(out, MODEL, "a model")
     refuse_input_as_output(out, [path])
+    refuse_existing(overwrite, out)
     data = read_supplier_table(path, max_displacement * CM3_PER_REV or None)
     names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
     found = identify_motor(
@@ -108,13 +110,14 @@ def system(
     seed: Seed = 0,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     force: Force = False,
+    overwrite: Overwrite = False,
     json: Json = False,
 ) -> None:
     """Steps 2 to 4 of paper 2, its second loop and the joint fit: from logged tests to a winch model.
 
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
-    from winch_friction.cli.console import MODEL, refuse_input_as_output, refuse_other_kind
+    from winch_friction.cli.console import MODEL, refuse_existing, refuse_input_as_output, refuse_other_kind
     from winch_friction.cli.identify_output import show_system
     from winch_friction.cli.inputs import refuse_copies, refuse_implausible, run_paths
     from winch_friction.identification.prior import load_unit_spread
@@ -127,6 +130,7 @@ def system(
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     refuse_other_kind(out, MODEL, "a model")
     refuse_input_as_output(out, [motor, crane])
+    refuse_existing(overwrite, out)
     problems = Problems()
     known, supplied = _machine(crane, motor, runs, problems)
     tests, others = _read_tests(runs, held_out, known, bag_options_of(params_file), problems)

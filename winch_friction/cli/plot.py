@@ -8,7 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.optional import OptionalPath, Overwrite
 
 
 def command(
@@ -21,6 +21,7 @@ def command(
         str, typer.Option(help="Model whose friction is drawn beside.", autocompletion=complete_model)
     ] = "",
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Ranges of every channel as JSON.")] = False,
 ) -> None:
     """Draw runs: every channel in the units people read, zoomed together, data as CSV a click away.
@@ -31,7 +32,7 @@ def command(
 
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
-    from winch_friction.cli.console import PAGE, refuse_other_kind
+    from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind
     from winch_friction.cli.inputs import read_all, read_inputs
     from winch_friction.physics.errors import InputError
     from winch_friction.report.run_page import channel_rows, write_run_page
@@ -40,6 +41,7 @@ def command(
         raise InputError("plot: --model needs --crane")
     load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
+    refuse_existing(overwrite, out)
     if crane:
         read, machine, drawn = read_inputs(runs, crane, model)
     else:

@@ -11,7 +11,7 @@ import typer
 
 from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalTexts
+from winch_friction.cli.optional import OptionalPath, OptionalTexts, Overwrite
 
 SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
 MOSTLY = 0.5  # share of active samples below which the reasons are told
@@ -33,6 +33,7 @@ def command(
     pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "",
     namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")] = False,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Summary as JSON.")] = False,
 ) -> None:
     """Run compensator and estimator over a recording.
@@ -46,7 +47,7 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.console import refuse_input_as_output
+    from winch_friction.cli.console import refuse_existing, refuse_input_as_output
     from winch_friction.cli.inputs import load_terms, machine_of, provenance_of, refuse_implausible
     from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.model import ASSUMED_STD, unstated
@@ -59,6 +60,7 @@ def command(
         raise InputError(f"{recording}: a folder of runs; replay takes one recording: name one file of it, or a bag")
     refuse_input_as_output(out, [recording, model, crane])
     refuse_input_as_output(picture, [recording, model, crane])
+    refuse_existing(overwrite, out, picture)
     options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
     load_terms(terms_file)
     settings = settings_from_file(params_file) if params_file else None

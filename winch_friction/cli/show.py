@@ -5,10 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import PAGE, refuse_other_kind, show_json, show_table, show_warnings
+from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
-from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.optional import OptionalPath, Overwrite
 from winch_friction.physics.errors import InputError, meant
 
 LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
@@ -24,6 +24,7 @@ def command(
     load: Annotated[float, typer.Option(help="Hanging mass for a model's curve, t.")] = 55.0,
     out: Annotated[OptionalPath, typer.Option(help="Also write a page (.html), for a model or a term.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """Show what a name stands for: a model as a friction curve, a crane, a scenario, an effect or term.
@@ -38,6 +39,7 @@ def command(
     """
     load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
+    refuse_existing(overwrite, out)
     what = kind or kind_of(name) or _of_file(name)
     if what not in SHOWN:
         raise InputError(f"show: --kind '{what}' is none of {', '.join(SHOWN)}")

@@ -8,6 +8,18 @@ import pytest
 import winch_friction as wf
 from winch_friction.cli import names
 from winch_friction.cli.main import run
+from winch_friction.records.atomic import config_directory
+
+
+def test_a_crane_that_only_a_models_file_knows_is_asked_for(tmp_path, capsys):
+    model = tmp_path / "own.yaml"
+    text = (config_directory() / "models" / "a6vm215_crane2.yaml").read_text()
+    model.write_text(text.replace("crane: crane_150t", "crane: our_crane"))
+    assert run(["show", str(model)]) == 2
+    said = capsys.readouterr().err
+    assert f"{model}: key 'crane' names 'our_crane': give its file with --crane FILE ('our_crane' is neither" in said
+    assert run(["show", str(model), "--crane", "no_such_crane"]) == 2
+    assert "key 'crane'" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("kind", sorted(names.KINDS))

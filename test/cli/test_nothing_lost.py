@@ -92,8 +92,17 @@ def test_copies_of_a_run_prove_nothing(here, capsys):
         shutil.copy("run.csv", f"{name}.csv")
     assert run(["gap", "run.csv", "a.csv", "b.csv", "c.csv", *MODEL, "--out", "out"]) == 2
     said = capsys.readouterr().err
-    assert "run.csv and a.csv hold the same samples" in said
+    assert "run.csv and a.csv hold the same samples: a copy" in said
     assert not (here / "out").exists()
+
+
+def test_a_copy_with_its_ports_exchanged_is_said_so(here, capsys):
+    run_csv = wf.read_run("run.csv")
+    ports = {"main.pressure_a": run_csv["main.pressure_b"], "main.pressure_b": run_csv["main.pressure_a"]}
+    write_run(Run("swap", {**run_csv.columns, **ports}), here / "swap.csv")
+    assert run(["gap", "run.csv", "swap.csv", *MODEL, "--out", "out"]) == 2
+    said = capsys.readouterr().err
+    assert "run.csv and swap.csv hold the same samples, ports A and B of main exchanged in one of them" in said
 
 
 def test_a_test_that_is_kept_out_must_not_be_among_those_that_are_fitted(here, capsys):

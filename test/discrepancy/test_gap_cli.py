@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gap_rig import runs_with
 
-from winch_friction.cli.gap import _parameters
+from winch_friction.cli.gap import _parameters, _unexplained
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -152,3 +152,8 @@ def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
     assert _parameters({"law_kind": "literature", "parameters": {"free_play": size}}) == "free_play = 3 ± 0.12 bar"
     share = {"value": 0.0123, "std": 0.0004, "unit": "1"}
     assert _parameters({"law_kind": "literature", "parameters": {"e_p": share}}) == "e_p = 0.0123 ± 0.0004"
+
+
+def test_what_depends_on_no_signal_is_not_said_to_depend_on_anything():
+    assert _unexplained(["oil"], "too small", share_of_gap=0.5) == "it depends on: oil (too small)"
+    assert _unexplained([], "too small", share_of_gap=0.5) == "no effect is named: too small"

@@ -113,7 +113,7 @@ def changed(line, old, new):
         (changed(3, ",55,", ","), "line 3: 6 values for 7 columns"),
         (changed(3, "20,-60", "20,fast"), "line 3, column 'motor_speed [rpm]': 'fast' is not a number"),
         (changed(3, "20,", ","), "line 3, column 'time': no time"),
-        (changed(4, "2000,", "10,"), "line 4, column 'time': time goes back from 0.02 s to 0.01 s"),
+        (changed(4, "2000,", "10,"), "line 4, column 'time': time goes back by 0.01 s, from 0.02 s to 0.01 s;"),
         (NO_SPEED, "'motor_speed' (or 'drum_speed') is missing or empty"),
     ],
 )  # fmt: skip

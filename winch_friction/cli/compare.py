@@ -46,7 +46,7 @@ def command(
     problems.say()
     one, two = models
     _refuse_two_cranes(one, two)
-    machine = curve_crane(one, crane)
+    machine = curve_crane(one, crane, first)
     if runs:
         content = _on_runs(one, two, machine, list(runs))
         if out is not None:

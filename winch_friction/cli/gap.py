@@ -213,6 +213,10 @@ def _parameters(effect: dict[str, Any]) -> str:
     return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
 
 
+def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
+    return f"it depends on: {', '.join(depends_on)} ({reason})" if depends_on else f"no effect is named: {reason}"
+
+
 def show_result(content: dict[str, Any], out: Path) -> None:
     """The verdict for a person."""
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
@@ -229,7 +233,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
     if rows:
         show_table("missing effects", ["effect", "or", "parameters", "gain"], rows)
     if content["verdict"] == "unexplained":
-        print(f"it depends on: {', '.join(content['unexplained']['depends_on'])} ({content['unexplained']['reason']})")
+        print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
             print(f"lacking: {check['what']} {check['value']:.3g} {check['unit']}, needed {check['needed']:g}")

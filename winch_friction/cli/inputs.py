@@ -105,12 +105,28 @@ def machine_of(crane: str, model: str, paths: Sequence[Path], problems: Problems
 
 def refuse_copies(runs: Sequence[Any]) -> None:
     """Raise `InputError` where two runs hold the same samples: what a fit has seen would prove it."""
-    seen: dict[bytes, str] = {}
+    seen: dict[bytes, Any] = {}
     for run in runs:
         content = b"".join(np.ascontiguousarray(run[name], float).tobytes() for name in ("time", "motor_speed"))
-        other = seen.setdefault(sha256(content).digest(), run.name)
-        if other is not run.name:
-            raise InputError(f"{other} and {run.name} hold the same samples: a copy proves nothing; give each run once")
+        other = seen.setdefault(sha256(content).digest(), run)
+        if other is not run:
+            raise InputError(
+                f"{other.name} and {run.name} hold the same samples{_exchanged(other, run)}: a copy proves nothing; "
+                "give each run once"
+            )
+
+
+def _exchanged(one: Any, two: Any) -> str:
+    """What is said of a copy in which somebody exchanged the ports of motor groups."""
+    groups = [
+        group
+        for group in one.groups
+        if all(
+            np.array_equal(one.column(f"{group}.pressure_{a}"), two.column(f"{group}.pressure_{b}"))
+            for a, b in ("ab", "ba")
+        )
+    ]
+    return f", ports A and B of {', '.join(groups)} exchanged in one of them" if groups else ""
 
 
 def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:

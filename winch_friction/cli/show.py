@@ -67,8 +67,11 @@ def _of_file(name: str) -> str:
     return next((k for k in ("model", "crane", "scenario") if f".{k}/" in schema), "scenario")
 
 
-def curve_crane(model: Any, crane: str) -> Any:
-    """The crane that a model is drawn on: the given one, the model's own, else what fits its drive."""
+def curve_crane(model: Any, crane: str, where: str = "") -> Any:
+    """The crane that a model is drawn on: the given one, the model's own, else what fits its drive.
+
+    `where`: the model's file or name, for what is said of it.
+    """
     from winch_friction.physics.friction.model import refuse_other_crane
     from winch_friction.records.crane_file import load_crane
 
@@ -80,7 +83,13 @@ def curve_crane(model: Any, crane: str) -> Any:
         taken = "emps" if electric and "emps" in model.name else "crane_150t"
         show_warnings([f"no --crane, and model '{model.name}' names none: drawn on '{taken}'"])
         return load_crane(taken)
-    return load_crane(crane or own)
+    if crane:
+        return load_crane(crane)
+    try:
+        return load_crane(own)
+    except InputError as error:
+        said = f"{where or model.name}: key 'crane' names '{own}': give its file with --crane FILE"
+        raise InputError(f"{said} ({error})") from None
 
 
 def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) -> None:
@@ -89,7 +98,7 @@ def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) 
     from winch_friction.records.model_file import load_model
 
     model = load_model(name)
-    machine = curve_crane(model, crane)
+    machine = curve_crane(model, crane, name)
     curve = model_curve(model, machine, load=1e3 * load)
     rpm = curve.speed / RPM
     if as_json:

@@ -123,8 +123,8 @@ def _check_time(name: str, columns: Columns, place: Place) -> None:
     if back.size:
         k = back[0]
         raise InputError(
-            f"{name}: {place(k + 1)}, column 'time': time goes back from {time[k]:.6g} s to {time[k + 1]:.6g} s; "
-            "sort the rows or split the file there"
+            f"{name}: {place(k + 1)}, column 'time': time goes back by {time[k] - time[k + 1]:.4g} s, from "
+            f"{time[k]:.14g} s to {time[k + 1]:.14g} s; sort the rows or split the file there"
         )
 
 

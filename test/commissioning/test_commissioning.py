@@ -143,6 +143,20 @@ def test_another_crane_is_claimed_only_where_its_motors_are_those_of_the_log(tmp
     assert "'other'" not in said(0.8 * shown)  # motors that cannot go so far
 
 
+@pytest.mark.parametrize("some", [slice(None), slice(1, 2)])
+def test_a_negative_displacement_is_no_swap_of_ports(some, tmp):
+    crane, model = world(0, rig.DRAWN, tmp)
+    runs = runs_of(columns_of(0, rig.DRAWN))[:4]
+    runs[some] = [
+        replace(run, columns={k: -v if k == "main.displacement" else v for k, v in run.columns.items()})
+        for run in runs[some]
+    ]
+    found = first_contradiction(quick_check(runs, crane, model))
+    assert (found.cause, found.channel) == ("sign", "main.displacement")
+    assert found.sentence.startswith("the sign of main.displacement is flipped: negative throughout")
+    assert "swapped" not in found.sentence or len(runs[some]) < len(runs)
+
+
 def test_one_bad_run_among_good_ones_is_pointed_at(tmp):
     crane, model = world(1, "rough", tmp)
     runs = runs_of(columns_of(1, "rough"))

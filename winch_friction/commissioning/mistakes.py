@@ -151,12 +151,34 @@ def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> I
     for channel in crane.drive.channels:
         said = f"the sign of {channel} is flipped: positive must hold the load"
         yield Mistake("sign", channel, said, SIGN, motor_torque_times(-1.0), -1.0)
-    if groups:
+    negative = [name for name in groups if any(_negative(view, name) for view in views)]
+    if negative:  # which looks like swapped ports, and can be seen not to be
+        columns = ", ".join(f"{name}.displacement" for name in negative)
+        said = f"the sign of {columns} is flipped: negative throughout, and a displacement is a size"
+        yield Mistake("sign", columns, said, SIGN, _upright, -1.0)
+    if groups and not all(_negative(view, name) for view in views for name in view.groups):
         said = "the ports are swapped: pressure_a must be the port that holds the load"
         yield Mistake("ports", "pressure", said, PORTS, drop_times(-1.0), -1.0)
     for name in groups if len(groups) > 1 else ():
+        if name in negative:
+            continue
         said = f"{name}.pressure_a and {name}.pressure_b are swapped"
         yield Mistake("ports", f"{name}.pressure", said, PORTS, drop_times(-1.0, name), -1.0)
+
+
+def _negative(view: RunView, name: str) -> bool:
+    """Whether a group's displacement is below zero throughout; of motors that swivel over centre it is so at times."""
+    known = view.groups[name].displacement if name in view.groups else np.zeros(0)
+    known = known[np.isfinite(known)]
+    return bool(known.size and known.max() < 0.0)
+
+
+def _upright(view: RunView) -> RunView:
+    turned = {
+        name: replace(group, displacement=-group.displacement) if _negative(view, name) else group
+        for name, group in view.groups.items()
+    }
+    return replace(view, groups=turned)
 
 
 def _told_direction(view: RunView) -> FloatArray | None:

@@ -9,7 +9,7 @@ import pytest
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy.engine.grammar import Factor, Law
-from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, declare, factors, shape
+from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, amount_in_words, declare, factors, shape
 from winch_friction.physics.channels import dimension_of, product
 from winch_friction.physics.friction import FrictionModel, symbols
 from winch_friction.physics.friction.symbols import layout
@@ -60,6 +60,33 @@ def test_text_and_arrays_say_the_same():
         points = [[1.0] * at + [float(v)] + [1.0] * (len(layout(1)) - 1 - at) for v in x]
         scalar = [functions.scalar_torque(point, values, ()) for point in points]
         assert scalar == pytest.approx(shape(kind, x, dict(own), 0.02)), kind
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (Factor("above", "pressure", (("c", 1.79e7),)), "with pressure above 179 bar"),
+        (Factor("below", "displacement", (("c", 1.4006e-5),)), "with displacement below 88 cm^3/rev"),
+        (Factor("step", "motor_speed", (("c", 104.72),)), "as soon as motor speed exceeds 1000 rpm"),
+        (Factor("about", "wire_layer", (("c", 3.0),)), "linearly with wire layer beyond 3"),
+        (Factor("lag", "pressure", (("c", 10.0),)), "with the pressure of the last 10 s"),
+    ],
+)
+def test_a_law_is_said_in_the_units_that_people_read_and_declared_in_si(factor, words):
+    declared = declare(Law((factor,), opposing=True), 1.0)
+    assert declared.sentence == f"friction that opposes motion and acts {words}"
+    assert list(declared.constants.values()) == [value for _, value in factor.constants]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (9.28e-6, "N*m/Pa", "0.928 N*m/bar"), (2e-3, "N*m/Pa^0.5", "0.632 N*m/bar^0.5"), (3.0, "N*m", "3 N*m"),
+        (0.5, "1", "0.5"), (3e-6, "s/Pa^2", "30000 s/bar^2"), (2.0, "N*m*s/rad", "2 N*m*s/rad"),
+    ],
+)  # fmt: skip
+def test_an_amount_per_pascal_is_said_per_bar(value, unit, words):
+    assert amount_in_words(value, unit) == words
 
 
 def test_the_file_of_terms_declares_the_very_term(tmp_path):

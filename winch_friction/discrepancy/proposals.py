@@ -24,7 +24,16 @@ from winch_friction.discrepancy.proof import prove
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, ProposedTerm, Word, declare, factors, shape
+from winch_friction.discrepancy.vocabulary import (
+    BY_NAME,
+    WORDS,
+    ProposedTerm,
+    Word,
+    amount_in_words,
+    declare,
+    factors,
+    shape,
+)
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import known_for_now
 
@@ -53,8 +62,8 @@ class Proposal:
         """In plain words; never a cause."""
         k = next(iter(self.parameters.values()))
         return (
-            f"{self.declared.sentence}, {k.value:.3g} {k.unit}; closes {100 * min(self.closed, 1.0):.0f} % of the gap; "
-            "what it is, the data do not say"
+            f"{self.declared.sentence}, {amount_in_words(k.value, k.unit)}; "
+            f"closes {100 * min(self.closed, 1.0):.0f} % of the gap; what it is, the data do not say"
         )
 
     def content(self, stem: str) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Law
 from winch_friction.discrepancy.preparation.grid import lagged
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
-from winch_friction.physics.channels import quotient_unit
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM, quotient_unit
 from winch_friction.physics.friction import Parameter, Scope, State, Term, symbols
 
 QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -171,6 +171,7 @@ class ProposedTerm:
     sentence: str
 
 
+_READ_AS = {"Pa": ("bar", 1.0 / BAR), "m^3/rad": ("cm^3/rev", 1.0 / CM3_PER_REV), "rad/s": ("rpm", 1.0 / RPM)}
 _Row = tuple[str, str, str, float, bool, str]  # short name, name, unit, value, shape, doc
 
 
@@ -267,8 +268,20 @@ def _sentence(law: Law) -> str:
     return f"{acts} and acts {how}"
 
 
+def amount_in_words(value: float, unit: str) -> str:
+    """A value in SI with the unit in which people read it; of a product the pressure in it is read in bar."""
+    if unit in _READ_AS:
+        unit, factor = _READ_AS[unit]
+        value *= factor
+    for sign, power in re.findall(r"([*/])Pa\b(?:\^([\d.]+))?", unit):
+        value *= BAR ** (float(power or 1.0) * (1.0 if sign == "/" else -1.0))
+    unit = re.sub(r"([*/])Pa\b", r"\1bar", unit)
+    shown = f"{float(f'{value:.3g}'):.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
+    return shown + ("" if unit == "1" else f" {unit}")
+
+
 def _in_words(factor: Factor) -> str:
     word, constants = BY_NAME[factor.signal], dict(factor.constants)
-    unit = "" if word.unit in ("1",) or factor.kind == "lag" else f" {word.unit}"
-    c = f"{constants['c']:.3g}{unit}" if "c" in constants else ""
+    unit = "1" if factor.kind == "lag" else word.unit
+    c = amount_in_words(constants["c"], unit) if "c" in constants else ""
     return WORDS_OF[factor.kind].format(s=word.name.replace("_", " "), c=c)

@@ -134,6 +134,8 @@ def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
 
 def _hardly_any_inertia(run: PreparedRun) -> bool:
     """Whether next to nothing is accounted for as inertia: nothing that a poor acceleration could smear."""
+    if not run.used.any():
+        return False
     known = run.inertia * run.acceleration + run.load * run.radius / run.gear_ratio * run.load_acceleration
     return float(np.std(known[run.used])) <= TOKEN_INERTIA * float(np.std(run.gap[run.used]))
 

@@ -37,8 +37,14 @@ def test_the_volume_of_the_air_is_found(flavour, seed):
     assert found.volume == pytest.approx(0.01 * world_of(seed, flavour).line_volume, rel=0.3)
 
 
-@pytest.mark.parametrize(("flavour", "seed"), CRANES)
-@pytest.mark.parametrize("effect", [None, "signal_delay", "pressure_offset", "presliding"])
+@pytest.mark.parametrize(("flavour", "seed", "effect"), [
+    *(("quiet", 17, effect) for effect in (None, "signal_delay", "pressure_offset", "presliding")),
+    *((DRAWN, 8_000_278, effect) for effect in (None, "presliding")),
+    *(pytest.param(DRAWN, 8_000_278, effect, marks=pytest.mark.long) for effect in ("signal_delay", "pressure_offset")),
+    *(pytest.param(*crane, effect, marks=pytest.mark.long)
+      for crane in (("slow_log", 18), (DRAWN, 26))
+      for effect in (None, "signal_delay", "pressure_offset", "presliding")),
+])  # fmt: skip
 def test_nothing_else_is_air(flavour, seed, effect):
     runs, prepared = _data(flavour, seed, *([(effect, 1.0)] if effect else []))
     found = free_air(runs, prepared)

@@ -778,6 +778,26 @@ def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatc
     assert ("together leave" in result.search.verdict.refused) is not stand
 
 
+def leaving(rms):
+    """Locked runs with so much left, bar, of quiet sensors, where no balance closes better than 0.1 bar."""
+    return replace(side(noise(), noise(1)), size_after=Size(rms, (rms, rms)), noise_floor=0.07, least_noise=0.1)
+
+
+@pytest.mark.parametrize(("left", "there"), [(0.17, True), (0.22, True), (0.26, False)])
+def test_zeros_within_a_step_of_the_transducers_leave_nothing(left, there):
+    """0.22 bar are 1.8 times what no balance closes, and 1.3 times that with a step of 0.15 bar."""
+    assert at_the_floor(leaving(left)) is there
+
+
+@pytest.mark.parametrize(("excess", "left", "stand"), [(0.1, 0.22, True), (0.1, 0.26, False), (0.5, 0.22, False)])
+def test_names_that_close_the_training_runs_may_leave_the_zeros_of_the_transducers(excess, left, stand):
+    search = SimpleNamespace(
+        explanation=SimpleNamespace(slots=SLOTS[:2]), cross=SimpleNamespace(excess=lambda _: excess)
+    )
+    why = several_leave_more_than_noise(Trial(search, None, None, leaving(left)))
+    assert (why == "") is stand
+
+
 @pytest.mark.parametrize(("kept", "kind"), [(1.0, NOTHING), (3.0, UNEXPLAINED)])
 def test_nothing_is_missing_only_where_the_training_runs_are_near_their_floor_too(kept, kind):
     """What one of them met none of the locked runs may have met."""

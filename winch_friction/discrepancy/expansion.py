@@ -230,10 +230,11 @@ def _weighed(run: Run) -> bool:
 
 
 def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
-    load = 0.0
+    load, seen = 0.0, None
     for _ in range(LOAD_ROUNDS):
         # a swinging load weighs the same in the mean, so its wire is not looked into
-        prepared = prepare(run, crane, model, load, mode=Mode(0.0, 0.0), spikes=np.zeros(1, bool))
+        prepared = prepare(run, crane, model, load, mode=Mode(0.0, 0.0), spikes=np.zeros(1, bool), seen=seen)
+        seen = prepared.seen
         gap = prepared.gap[prepared.used] / (prepared.radius[prepared.used] / crane.gear_ratio * GRAVITY)
         direction = prepared.direction[prepared.used]
         sides = [np.median(gap[direction == s]) for s in (-1.0, 1.0) if (direction == s).any()]

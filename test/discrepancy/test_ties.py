@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from gap_rig import names_of, runs_with
 
+from campaign.gap import diagnose
+from campaign.gap_cases import Case
+from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.preparation.prepare import prepare
@@ -70,6 +73,14 @@ def test_a_gain_error_of_the_displacement_is_no_single_name(seed):
             assert known["expression"].endswith("e_D")
             assert known["value"] == pytest.approx(0.02, abs=0.01)
     assert any("displacement_scale" in note for note in result.notes)
+
+
+def test_what_is_one_with_the_finding_on_any_runs_takes_only_the_room_that_is_left():
+    """Radius and load show as a product alone; a third cause that does as well says more than the load beside it."""
+    said = diagnose(Case("law", (("gear_asymmetry:catalogue", 1.0),), DRAWN, 26000133, (0.0, 1.5)))
+    (names,) = said["sets"]
+    assert set(names) == {"gear_asymmetry", "layer_radius", "pressure_scale"}
+    assert any("without room in a set" in note and "load_scale" in note for note in said["answer"]["notes"])
 
 
 def test_hook_and_wire_come_physical_and_with_their_deviations():

@@ -70,7 +70,7 @@ def test_what_no_catalogue_knows_stays_unexplained_and_points_at_its_signal():
 def test_effects_that_are_tied_come_as_a_set():
     result = gap_of(4040, "paper", ("brake_drag", 1.5))
     assert result.verdict == "ambiguous"
-    assert names_of(result) == [{"brake_drag", "coulomb"}]
+    assert names_of(result) == [{"brake_drag", "coulomb", "sheave_bending"}]
 
 
 def test_the_repaired_model_reads_back_with_its_covariance():

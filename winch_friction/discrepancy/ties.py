@@ -1,8 +1,8 @@
 """Structural ties: what the equations make one thing, whatever the noise, and what is known in spite of it.
 
-T = D dp, so that a gain error of the pressure, of the displacement and of the torque are one number; the load and the
-radius on which it hangs come as a product; and so on. A search names one of the two: a partner that no search looks
-for joins its set, as long as the runs at hand do not tell them apart.
+T = D dp: a gain error of the pressure, of the displacement and of the torque are one number; load and radius come as a
+product; and so on. A search names one of the two: a partner that no search looks for joins its set, as long as the runs
+at hand do not tell them apart.
 """
 
 from collections.abc import Sequence
@@ -64,6 +64,7 @@ class Tie:
     second: Member
     why: str
     separates: str
+    product: bool = False  # only the product shows, whatever the runs
 
 
 _BOTH_PORTS = "T = D dp: a gain of either scales the drive torque; only the friction's own dependence on D differs"
@@ -78,7 +79,7 @@ TIES = (
     ),
     Tie(
         Member("layer_radius", "all layers"), Member("load_scale"), "load torque = m g R: only the product shows",
-        "a weighed load, or drum turns against metres of wire",
+        "a weighed load, or drum turns against metres of wire", product=True,
     ),
     Tie(
         Member("gear_load_loss"), Member("sheave_bending"), "both take a constant share of the load's torque",
@@ -87,6 +88,10 @@ TIES = (
     Tie(
         Member("brake_drag"), Member("coulomb"), "both are a constant torque against the motion",
         "the brake's release pressure, or a run with another number of motors on the shaft",
+    ),
+    Tie(
+        Member("brake_drag"), Member("sheave_stiffness"), "a stiff rope takes a constant torque at a sheave as well",
+        "the brake's release pressure, or a load cell on the drum's side of the sheaves",
     ),
     Tie(
         Member("motor_coulomb"), Member("coulomb"), "K4 and C2 are both a constant torque against the motion",
@@ -190,7 +195,7 @@ def company(search: Search, found: Finding) -> Company:
     """The rivals of a finding, and what no search looks for but is tied to it or to one of them and does as well.
 
     A set of names has little room: of rivals and what is tied to the finding itself the best on held-out runs stay;
-    what is tied to a rival takes only the room that is left.
+    what is tied to a rival, or is the same as the finding on any runs, takes only the room that is left.
     """
     model, slots = search.expansion.model, (found.slot, *found.rivals)
     names = tuple(slot.name for slot in found.rivals)
@@ -206,8 +211,7 @@ def company(search: Search, found: Finding) -> Company:
     others = [slot for slot in search.selection.final.slots if slot is not found.slot]
     fixed = [_fixed(*slot.origin) for slot in (*others, *slots)]
     fixed += [_fixed(ours[name], _shape_of(ours[name], tie.second, runs)) for name, (_, tie) in pairs.items()]
-    layout = layout_of(search.expansion.layout.base, fixed, runs, model)
-    n, m = len(others), len(slots)
+    layout, n, m = layout_of(search.expansion.layout.base, fixed, runs, model), len(others), len(slots)
     rest, own, new = layout.slots[:n], layout.slots[n : n + m], layout.slots[n + m :]
     cross = CrossFit(build_problem(runs, layout, known=(*rest, own[0])))
     without, first, *trials = (cross.explain(x) for x in (rest, *((*rest, slot) for slot in (*own, *new))))
@@ -215,7 +219,7 @@ def company(search: Search, found: Finding) -> Company:
     partners = []
     for trial, (k, tie) in zip(trials[m - 1 :], pairs.values(), strict=True):
         if does_as_well(trial, first, without, np.random.default_rng(0)):
-            losses[tie.second.name] = trial.loss if k == 0 else float("inf")
+            losses[tie.second.name] = trial.loss if k == 0 and not tie.product else float("inf")
             partners.append(_partner(tie, cross, (first, *trials)[k], trial))
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
     no_room = (*(name for name in losses if name not in best), *found.no_room)
@@ -230,10 +234,9 @@ def _partner(tie: Tie, cross: CrossFit, found: Explanation, own: Explanation) ->
     """With the size that each of the two needs alone."""
     scale = [float(cross.problem.layout.scales[each.slots[-1].columns[-1]]) for each in (found, own)]
     before, after = (float(each.beta[-1]) * s for each, s in zip((found, own), scale, strict=True))
-    std = float(np.sqrt(cross.covariance(own)[-1, -1])) * scale[1]
-    parameter = own.slots[-1].origin[0].linear[0]
-    estimate = ParameterEstimate(after, std, parameter.unit)
-    return Partner(tie, estimate, before / after if after else 1.0, parameter.name)
+    std, parameter = float(np.sqrt(cross.covariance(own)[-1, -1])) * scale[1], own.slots[-1].origin[0].linear[0]
+    factor = before / after if after else 1.0
+    return Partner(tie, ParameterEstimate(after, std, parameter.unit), factor, parameter.name)
 
 
 def _fixed(candidate: Candidate, shape: Shape) -> Candidate:
@@ -247,8 +250,8 @@ def known_combination(
     linear = [p.name for p in found.slot.origin[0].linear if p.name in estimates]
     own = [each for each in tied if each.tie.first.name == found.slot.name]
     if own and len(linear) == 1:
-        estimate, name = estimates[linear[0]], linear[0]
-        parts = [name, *(_times(each.factor, "1", each.parameter) for each in own)]
+        estimate = estimates[linear[0]]
+        parts = [linear[0], *(_times(each.factor, "1", each.parameter) for each in own)]
         return Combination(" ".join(parts), estimate.value, estimate.std, estimate.unit, own[0].tie.why)
     if len(linear) < 2:
         return None
@@ -281,8 +284,7 @@ def _best_pair(covariance: FloatArray, estimates: Estimates, linear: Sequence[st
         return None
     i, j = (int(k) for k in np.unravel_index(int(np.argmax(np.abs(related))), related.shape))
     because = f"{linear[i]} and {linear[j]} are tied in these runs, correlation {related[i, j]:.3f}"
-    if deviation[i] < deviation[j]:  # the factor is a length or a torque of the runs, not its reciprocal
-        i, j = j, i
+    i, j = (j, i) if deviation[i] < deviation[j] else (i, j)  # a length or a torque of the runs, not its reciprocal
     factor = float(-covariance[i, j] / covariance[j, j])
     x, y = estimates[linear[i]], estimates[linear[j]]
     std = float(np.sqrt(max(covariance[i, i] - covariance[i, j] ** 2 / covariance[j, j], 0.0)))

@@ -35,6 +35,7 @@ from winch_friction.discrepancy.engine.selection import (
     _one_set_each,
     _significant,
     select,
+    with_fewer,
 )
 from winch_friction.discrepancy.proof import (
     _noise,
@@ -565,6 +566,21 @@ def test_a_rival_is_asked_where_the_locked_runs_refuse_the_one_name():
     assert {own, *rivals} == {"wave", "other"}
     sets = _sets(_Found(cross, selection), np.random.default_rng(1))
     assert [each.selection.final.names for each in sets] == [(own,), *((name,) for name in rivals)]
+
+
+@pytest.mark.parametrize("less", [False, True])
+def test_what_the_training_runs_refuse_is_granted_only_to_a_rival_that_leaves_less(less):
+    cross = crossfit(3.0 * WAVE + noise(), other=WAVE + 0.02 * OTHER)
+    selection = select(cross, np.random.default_rng(1), 1)
+    (found,) = selection.found
+    if less:  # the other one refused, and the better one its rival
+        selection = with_fewer(cross, selection, found.rivals, np.random.default_rng(1))
+        (found,) = selection.found
+    kept, rival = (cross.excess(cross.explain((slot,))) for slot in (found.slot, *found.rivals))
+    assert (rival < kept) is less
+    refused = replace(_Found(cross, selection), verdict=Verdict(UNEXPLAINED, "leaves much", leaves=True))
+    names = [each.selection.final.names for each in _sets(refused, np.random.default_rng(1))]
+    assert names == [(found.slot.name,), *([(found.rivals[0].name,)] if less else [])]
 
 
 GRIP = tabulated(Table("grip", (("pressure", (5e6, 1e7, 2e7)),), scope=Scope.MOTOR, shape="rising", anchor="low"))

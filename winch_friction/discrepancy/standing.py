@@ -94,9 +94,13 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
         if len(search.selection.final.names) < len(slots):  # one cause by two laws, but perhaps it is two
             yield decided(search, select(search.cross, rng, apart=True), rng)
         yield from (_with_at_most(count, search, rng) for count in reversed(counts))
-    if len(slots) == 1:  # what the locked runs refuse of one law they may grant a rival that does as well
+    if len(slots) == 1:  # what the locked runs refuse of one law they may grant a rival that does as well; but what the
+        # training runs refuse of it for what it leaves, only one that leaves less
+        most = search.cross.excess(search.selection.final) if search.verdict.leaves else np.inf
         for rival in search.selection.found[0].rivals:
-            yield decided(search, with_fewer(search.cross, search.selection, (rival,), rng), rng)
+            own = decided(search, with_fewer(search.cross, search.selection, (rival,), rng), rng)
+            if own.cross.excess(own.selection.final) < most:
+                yield own
 
 
 def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
@@ -173,10 +177,9 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
 
 
 def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
-    """The trial without those names, the one that the training runs miss least first, that the locked runs do not
-    need beside the others: which
-    take nothing off them surely, or no more than the others' laws may be inexact by, or, beside a name whose law is
-    not the catalogue's own and may want mending, those without which nothing would be missing.
+    """The trial without those names, the one that the training runs miss least first, that the locked runs do not need
+    beside the others: which take nothing off them surely, or no more than the others' laws are inexact by, or, beside
+    one whose law is not the catalogue's own and may want mending, those without which nothing would be missing.
     """
     every, dropped = full.search, list[Slot]()
     for slot in _least_missed_first(full.search):

@@ -80,6 +80,19 @@ def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel, fitted: Collec
     return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed, names))
 
 
+def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
+    """The runs of `before` as a model of hardly other values sees them: their wires are what they were there."""
+    own = [run for run in runs if run.name in {each.name for each in before.runs}]
+    right, own_crane = _corrected(own, crane, model)
+    loads = estimated_loads(right, own_crane, model)
+    prepared = [
+        prepare(run, own_crane, model, loads.get(run.name, NAN), mode=old.wire_mode, seen=old.seen)
+        for run, old in zip(right, before.prepared, strict=True)
+    ]
+    found = with_corrections(own, crane, model, loads, prepared, [run.name for run in own])
+    return Given(right, own_crane, model, loads, found)
+
+
 def swings(given: Given) -> bool:
     """Whether the balance takes the wire of any run for one on which the load swings."""
     return any(run.wire_mode[1] > 0.0 for run in given.prepared)

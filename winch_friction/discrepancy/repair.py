@@ -20,7 +20,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.estimates import InFile, agreed, estimates_of, in_file, of_part, together
-from winch_friction.discrepancy.expansion import Given, meet
+from winch_friction.discrepancy.expansion import Given, meet, meet_again
 from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -192,7 +192,7 @@ def _model_of(
 def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: Sequence[str], crane: Crane) -> Repair:
     """The model fitted once more to the runs of these names along the path by which its file will be read.
 
-    All runs are prepared, for whether their wire gives is decided by all of them, and by fewer it may be otherwise.
+    All runs are prepared at first, for all of them decide whether their wire gives, and by fewer it may be otherwise.
     The draft comes from a linear problem around the seed: melted curves, pressures that depend on what was found and
     shapes from a grid leave a second order, which a few Gauss-Newton steps on the model take away. Steps that do not
     shrink the gap are not taken. The covariance is the last fit's, wider where more than noise is left.
@@ -203,7 +203,7 @@ def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: S
     for _ in range(LIMITS.polishing):
         step, covariance, deviations = _step(now, prior, loose)
         tried = _stepped(best.model, step, covariance, deviations)
-        new = meet(runs, crane, tried, train).only(train)
+        new = meet_again(now, runs, crane, tried)
         if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
             # no better, but the uncertainty is this fit's all the same
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from winch_friction.online.compensator import LEARNED_AT, ModelSchedule
+from winch_friction.online.compensator import LEARNED_AT, MOST_WAITING, ModelSchedule
 from winch_friction.records.model_file import load_model
 
 SEED = load_model("a6vm215_crane1")
@@ -45,3 +45,14 @@ def test_what_waits_is_forgotten_after_a_jump_of_time():
     schedule.offer(learned(10.0))
     schedule.clear()
     assert schedule.due(1e9) is None
+
+
+def test_models_of_a_time_to_come_do_not_pile_up_nor_hold_up_those_of_today():
+    schedule = ModelSchedule(0.5)
+    for k in range(3 * MOST_WAITING):
+        schedule.offer(learned(1e12 + k))
+    schedule.offer(learned(10.0))
+    assert len(schedule._waiting) == MOST_WAITING
+    found = schedule.due(11.0)
+    assert found is not None
+    assert found.name == "learned at 10"

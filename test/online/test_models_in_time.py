@@ -1,11 +1,12 @@
 """Models: parsed beside the control thread, the newest kept, no more than one a second, whatever the clocks do."""
 
 import time
+from dataclasses import replace
 
 import pytest
 from sea import CRANE, PERIOD, SEED, START, TOPICS, swell
 
-from winch_friction.online.compensator import LARGEST, ModelIntake, parse
+from winch_friction.online.compensator import LARGEST, LEARNED_AT, CompensatorService, ModelIntake, parse
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.errors import InputError
 from winch_friction.records.bag_write import MESSAGES
@@ -84,3 +85,14 @@ def test_models_are_published_once_a_second_whatever_the_clocks(shifts: tuple[fl
             published.append(now)
     assert 1 <= len(published) <= 6
     assert min((b - a for a, b in zip(published[:-1], published[1:], strict=True)), default=1.0) >= 0.999
+
+
+@pytest.mark.parametrize("date", ["yesterday", ".nan", ".inf", "null", "[1, 2]", "2026-01-01", "9" * 400])
+def test_a_model_that_is_dated_by_no_time_is_refused_in_one_line(date: str) -> None:
+    text = model_to_text(replace(SEED, provenance={})) + f"provenance: {{{LEARNED_AT}: {date}}}\n"
+    service = CompensatorService(CRANE, SEED, TOPICS)
+    service.offer(parse(text, "friction_model"))
+    assert len(service.refused_models) == 1
+    assert f"{LEARNED_AT} must be a time in s, found" in service.refused_models[0]
+    assert len(service.refused_models[0]) < 200
+    assert service.schedule.due(1e12) is None

@@ -26,6 +26,7 @@ from winch_friction.records.topics import Input, TopicMap
 
 # -- when a learned model takes effect
 LEARNED_AT = "learned_at"  # provenance key: stamp in s of the last measurement behind the model
+MOST_WAITING = 100  # models; one a second and a delay of a minute leave 60, dates of a time to come would pile up
 
 
 @dataclass
@@ -40,9 +41,9 @@ class ModelSchedule:
     _waiting: list[tuple[float, FrictionModel]] = field(default_factory=list)
 
     def offer(self, model: FrictionModel) -> None:
-        """Take a model in."""
-        due = float(model.provenance.get(LEARNED_AT, float("-inf"))) + self.delay
-        self._waiting = sorted([*self._waiting, (due, model)], key=lambda each: each[0])
+        """Take a model in; `InputError` when its date is no time. Of too many, those furthest ahead go."""
+        due = _learned_at(model) + self.delay
+        self._waiting = sorted([*self._waiting, (due, model)], key=lambda each: each[0])[:MOST_WAITING]
 
     def due(self, time: float) -> FrictionModel | None:
         """The newest model that takes effect by `time` s; older ones are dropped with it."""
@@ -53,6 +54,18 @@ class ModelSchedule:
     def clear(self) -> None:
         """Forget what is waiting, after a jump of time."""
         self._waiting = []
+
+
+def _learned_at(model: FrictionModel) -> float:
+    """The stamp in s that a model is dated by; it comes as text of unknown origin."""
+    found = model.provenance.get(LEARNED_AT, -math.inf)
+    try:
+        date = float(found)
+    except (TypeError, ValueError, OverflowError):
+        date = math.nan
+    if not date < math.inf:
+        raise InputError(f"model '{model.name}': {LEARNED_AT} must be a time in s, found {str(found)[:40]!r}")
+    return date
 
 
 # -- models that arrive as text
@@ -205,8 +218,11 @@ class CompensatorService:
 
     # -- models and settings
     def offer(self, model: FrictionModel) -> None:
-        """A learned model, to be taken over at its time."""
-        self.schedule.offer(model)
+        """A learned model, to be taken over at its time; one that is dated by no time is refused."""
+        try:
+            self.schedule.offer(model)
+        except InputError as error:
+            self.refused_models.append(str(error))
 
     def load_model(self, model: FrictionModel) -> None:
         """Use a model from the next sample on, without a bump; `InputError` keeps the one in use."""

@@ -1,12 +1,14 @@
 """What a callback raises is said once and ends nothing; speeds that come too late are dropped."""
 
 import inspect
+import signal
 from types import SimpleNamespace
 
 import pytest
 
 from winch_friction.nodes.inputs import ROS, Inputs
 from winch_friction.nodes.loop import Guarded, answered
+from winch_friction.nodes.run import Ending
 from winch_friction.physics.errors import InputError
 from winch_friction.records.topics import TopicMap, joint_state, stamp_header
 
@@ -55,3 +57,17 @@ def test_of_speeds_that_waited_only_the_latest_are_obeyed() -> None:
     assert len(latest._in_time(source, waiting)) in (5, 6)
     assert latest.late >= 69
     assert len(every._in_time(source, waiting)) == 75
+
+
+@pytest.mark.parametrize(("before", "asked"), [(signal.SIG_DFL, True), (signal.SIG_IGN, False)])
+def test_a_terminal_that_is_closed_is_an_end_but_not_under_nohup(before: signal.Handlers, asked: bool) -> None:
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    kept = {each: signal.getsignal(each) for each in numbers}
+    try:
+        signal.signal(signal.SIGHUP, before)
+        ending = Ending()
+        signal.raise_signal(signal.SIGHUP)
+        assert ending.asked is asked
+    finally:
+        for each, handler in kept.items():
+            signal.signal(each, handler)

@@ -42,7 +42,7 @@ def alive(bench: Bench, name: str = "compensator") -> bool:
     return bench.processes[name].poll() is None
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_the_last_message_of_a_process_is_zero(fed: tuple[Bench, list], number: signal.Signals) -> None:
     bench, torque = fed
     at_work = efforts(torque)[-1]

@@ -17,13 +17,14 @@ MOST_DEFECTS = 1000  # of the executor itself in a row, with nothing done in bet
 
 
 class Ending:
-    """Whether SIGINT or SIGTERM came. rclpy's own handlers would take the context down before the last ramp is
-    published."""
+    """Whether SIGINT, SIGTERM or SIGHUP (the terminal was closed, the remote login broke) came. rclpy's own handlers
+    would take the context down before the last ramp is published."""
 
     def __init__(self) -> None:
         self.asked = False
-        for each in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(each, self._ask)
+        for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if each is not signal.SIGHUP or signal.getsignal(each) is not signal.SIG_IGN:  # nohup: it is to go on
+                signal.signal(each, self._ask)
 
     def _ask(self, *_: Any) -> None:
         self.asked = True

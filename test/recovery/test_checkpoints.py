@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, write_checkpoint
+from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
@@ -135,3 +135,15 @@ def test_other_json_is_refused(tmp_path, content):
     path.write_text(json.dumps(content))
     with pytest.raises(InputError, match="not a checkpoint"):
         read_checkpoint(path)
+
+
+def test_what_was_refused_is_set_aside_and_nothing_there_is_replaced(tmp_path, learned):
+    path, kept = tmp_path / "c.json", []
+    for content in ("one", "two", "three"):
+        path.write_text(content)
+        kept.append(set_aside(path))
+        write_checkpoint(path, learned.snapshot())
+    assert [each.read_text() for each in kept] == ["one", "two", "three"]
+    assert kept[0].name == "c.json.refused"
+    with pytest.raises(InputError, match="not a file"):
+        set_aside(tmp_path)

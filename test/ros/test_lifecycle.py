@@ -128,3 +128,15 @@ def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(b
     assert "parameter 'scal' is not known and has no effect; did you mean scale?" in bench.log("compensator")
     (subscription,) = bench.node.get_subscriptions_info_by_topic("/winch/joint_states")
     assert subscription.qos_profile.reliability.name == "RELIABLE"
+
+
+def test_a_file_that_is_no_checkpoint_is_not_written_over(bench: Bench, tmp_path: Path) -> None:
+    given = tmp_path / "my_model.yaml"
+    given.write_text("schema: winch_friction.model/1\n")
+    bench.start("estimator", checkpoint=given)
+    assert bench.remote("estimator").state() == "active"
+    assert bench.stop("estimator") == 0
+    kept = tmp_path / "my_model.yaml.refused"
+    assert kept.read_text() == "schema: winch_friction.model/1\n"
+    assert f"starts from the seed: {given}: not a checkpoint" in bench.log("estimator")
+    assert f"the file is kept as {kept}" in bench.log("estimator")

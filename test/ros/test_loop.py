@@ -1,6 +1,7 @@
 """The whole loop over DDS on a short sea: learned, latched, recorded, replayed, kept."""
 
 import os
+import shutil
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -122,8 +123,9 @@ def test_the_estimator_continues_from_its_checkpoint(voyage: Voyage, bench: Benc
     assert bench.stop("estimator") == 0
 
 
-def test_a_checkpoint_of_another_seed_is_refused(voyage: Voyage, bench: Bench) -> None:
-    bench.start("estimator", checkpoint=voyage.plan.out / "estimator.json", model_file="a6vm215_crane1")
+def test_a_checkpoint_of_another_seed_is_refused(voyage: Voyage, bench: Bench, tmp_path: Path) -> None:
+    checkpoint = Path(shutil.copy(voyage.plan.out / "estimator.json", tmp_path))
+    bench.start("estimator", checkpoint=checkpoint, model_file="a6vm215_crane1")
     assert bench.remote("estimator").state() == "active"
     bench.spin(0.5)
     assert "starts from the seed" in bench.log("estimator")

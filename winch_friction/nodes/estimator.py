@@ -23,7 +23,7 @@ from winch_friction.online.inputs import ServiceOptions
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.checkpoint import read_checkpoint, write_checkpoint
+from winch_friction.records.checkpoint import read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.model_file import model_to_text
 from winch_friction.records.topics import joint_state, stamp_header
 
@@ -147,7 +147,8 @@ class EstimatorNode(WinchNode):
                 self.law.restore(snapshot)
                 self.get_logger().info(f"continues from {self.own.checkpoint}")
         except InputError as error:
-            self.get_logger().warning(f"starts from the seed: {error}")
+            kept = set_aside(self.own.checkpoint)  # it may be another crane's, or no checkpoint at all
+            self.get_logger().warning(f"starts from the seed: {error}; the file is kept as {kept}")
 
     def apply_settings(self) -> None:
         """Take over the periods."""

@@ -1,6 +1,7 @@
 """Checkpoints of the estimator: JSON, written atomically, versioned, with a digest; refused when they are not whole."""
 
 import hashlib
+import itertools
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,6 +35,20 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
     if content.get("sha256") != _digest(snapshot):
         raise InputError(f"{path}: not a checkpoint as it was written (its digest differs); delete it to start over")
     return snapshot
+
+
+def set_aside(path: Path | str) -> Path:
+    """Give a file that was refused another name, so that the next checkpoint does not replace it; the name.
+
+    Raises `InputError` for what is no file, and could not be written either.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path}: not a file: no checkpoint can be written there")
+    names = (path.with_name(f"{path.name}.refused{number}") for number in itertools.chain(("",), itertools.count(2)))
+    kept = next(each for each in names if not each.exists())
+    path.rename(kept)
+    return kept
 
 
 def _digest(snapshot: Mapping[str, Any]) -> str:

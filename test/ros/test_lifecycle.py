@@ -58,6 +58,10 @@ def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -
         node.set({"drive": "torque"}) or node.set({"velocity_source": "measured"})
     with pytest.raises(InputError, match=r"read.only"):
         node.set({"groups": ["main"]})
+    with pytest.raises(InputError, match=r"read.only"):
+        node.set({"pressure_group": "passive"})  # the pressure would jump by the ratio of the displacements
+    with pytest.raises(InputError, match=r"read.only"):
+        node.set({"min_displacement": 0.5})
     node.set({"scale": 0.5})
     assert node.get("scale").double_value == 0.5
     assert node.get("velocity_source").string_value == "reference"
@@ -68,6 +72,7 @@ def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -
     [
         ("compensator", "scale:=7.0", "scale"),
         ("compensator", "scale:=much", "scale"),
+        ("compensator", "pressure_group:=activ", "must be one of active, passive, found 'activ'"),
         ("estimator", "crane:=no_such_crane", "no_such_crane"),
         ("simulator", "scenario:=no_such_sea", "no_such_sea"),
         ("estimator", "terms_file:=no_such_terms.py", "no_such_terms.py"),

@@ -45,7 +45,8 @@ class CompensatorNode(WinchNode):
     """Publishes `~/friction_torque` and `~/pressure_feedforward` at every speed message."""
 
     def __init__(self, **node_arguments: Any) -> None:
-        self._config = OptionParameters(CompensatorConfig, keys=_a_gain_for_every_term)
+        fixed = ("pressure_group", "min_displacement")  # they change the pressure at once, which no ramp bounds
+        self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         super().__init__("compensator", self._config, self._own, **node_arguments)
 
@@ -53,6 +54,7 @@ class CompensatorNode(WinchNode):
         """The feedforward law on its seed, its outputs and its switches."""
         self.own, config = self._own.read(self), self._config.read(self)
         topics = self.options.topics(crane)
+        _check_pressure_group(config.pressure_group, topics.groups)
         model.compile(len(topics.groups))  # now, not while the first sample waits
         self.service = CompensatorService(crane, model, topics, config, self._service_options(), since=self.ros_now())
         if past := self.service.law.status()["past_corrections"]:
@@ -190,6 +192,12 @@ class CompensatorNode(WinchNode):
 
 def _a_gain_for_every_term() -> dict[str, dict[str, float]]:
     return {"gains": dict.fromkeys(sorted(registered_terms()), 1.0)}
+
+
+def _check_pressure_group(name: str, groups: Sequence[str]) -> None:
+    """One that is not there would carry 0 Pa for ever, and say that it is valid."""
+    if len(groups) > 1 and name not in groups:
+        raise InputError(f"compensator: parameter 'pressure_group' must be one of {', '.join(groups)}, found {name!r}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

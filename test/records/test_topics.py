@@ -122,3 +122,8 @@ def test_times_keep_their_nanoseconds(time):
 def test_other_conventions_are_refused(settings, said):
     with pytest.raises(InputError, match=said):
         TopicMap(**settings)
+
+
+def test_a_group_that_is_named_twice_is_refused():
+    with pytest.raises(InputError, match="'active' is named twice in groups: active, active"):
+        crane_topics(load_crane("crane_150t"), ("active", "active"))

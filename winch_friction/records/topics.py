@@ -230,6 +230,8 @@ def crane_topics(crane: Crane, groups: Sequence[str] = ("active", "passive"), **
     groups = tuple(groups) if crane.drive.hydraulic else ()
     for group in groups:
         crane.motor_count(group)
+        if groups.count(group) > 1:
+            raise InputError(f"motor group '{group}' is named twice in groups: {', '.join(groups)}")
     conventions.setdefault("drive_scalars", tuple(name for name in crane.drive.channels if name in DRIVE_SCALARS))
     return TopicMap(groups=groups, gear_ratio=crane.gear_ratio, max_displacement=crane.max_displacement, **conventions)
 

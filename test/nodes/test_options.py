@@ -4,7 +4,7 @@ import pytest
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.nodes.options import NodeOptions
-from winch_friction.nodes.parameters import OptionParameters
+from winch_friction.nodes.parameters import OptionParameters, check_qualities
 from winch_friction.nodes.simulator import SimulatorNodeOptions
 from winch_friction.physics.errors import InputError
 
@@ -66,3 +66,48 @@ def test_an_empty_list_of_strings_survives_ros() -> None:
     options.declare(board)
     assert board.values["float64_inputs"] == [""]  # rclpy cannot tell the type of an empty list
     assert options.read(board) == NodeOptions()
+
+
+def overridden(policy: str, value: object) -> Board:
+    board = Board()
+    board._parameter_overrides = {f"qos_overrides./winch/joint_states.subscription.{policy}": Override(value)}
+    return board
+
+
+class Override:
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+
+@pytest.mark.parametrize(
+    ("policy", "value", "said"),
+    [
+        ("reliability", "maybe", "one of reliable, best_effort"),
+        ("reliability", 1, "one of reliable, best_effort"),
+        ("durability", "unknown", "one of volatile, transient_local"),
+        ("history", "", "one of keep_last, keep_all"),
+        ("depth", -5, "a whole number 0"),
+        ("depth", 10**12, "a whole number 0"),
+        ("depth", "deep", "a whole number 0"),
+        ("depth", True, "a whole number 0"),
+    ],
+)
+def test_a_quality_of_service_that_there_is_not_is_refused_by_its_parameter(
+    policy: str, value: object, said: str
+) -> None:
+    with pytest.raises(InputError, match=rf"qos_overrides./winch/joint_states.subscription.{policy}' must be {said}"):
+        check_qualities(overridden(policy, value))
+
+
+@pytest.mark.parametrize(
+    ("policy", "value"),
+    [
+        ("reliability", "best_effort"),
+        ("durability", "TRANSIENT_LOCAL"),
+        ("history", "keep_all"),
+        ("depth", 1),
+        ("deadline", 5),
+    ],
+)
+def test_a_quality_of_service_that_there_is_passes(policy: str, value: object) -> None:
+    check_qualities(overridden(policy, value))

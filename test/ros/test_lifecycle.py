@@ -73,6 +73,7 @@ def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -
         ("compensator", "scale:=7.0", "scale"),
         ("compensator", "scale:=much", "scale"),
         ("compensator", "pressure_group:=activ", "must be one of active, passive, found 'activ'"),
+        ("compensator", "qos_overrides./winch/joint_states.subscription.reliability:=maybe", "reliable, best_effort"),
         ("estimator", "crane:=no_such_crane", "no_such_crane"),
         ("simulator", "scenario:=no_such_sea", "no_such_sea"),
         ("estimator", "terms_file:=no_such_terms.py", "no_such_terms.py"),

@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 from winch_friction.nodes.inputs import Polled, diagnostic_array, diagnostic_status
 from winch_friction.nodes.loop import Clocks, Guarded, answered, said_aloud
 from winch_friction.nodes.options import FIXED, NodeOptions
-from winch_friction.nodes.parameters import OptionParameters, declare_all, unknown_parameters
+from winch_friction.nodes.parameters import OptionParameters, check_qualities, declare_all, unknown_parameters
 from winch_friction.nodes.qos import fresh
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
@@ -122,6 +122,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         try:
             self.options = self._node_parameters.read(self)
             self.load_terms()
+            check_qualities(self)
             for each in unknown_parameters(self, self._settings):
                 self.get_logger().warning(each)
             problems = Problems()

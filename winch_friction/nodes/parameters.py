@@ -84,6 +84,31 @@ def unknown_parameters(node: Any, settings: Iterable[OptionParameters[Any]]) -> 
     ]
 
 
+_QUALITIES = {
+    "reliability": ("reliable", "best_effort", "system_default", "best_available"),
+    "durability": ("volatile", "transient_local", "system_default", "best_available"),
+    "history": ("keep_last", "keep_all", "system_default"),
+}
+_DEEPEST = 100_000  # messages; rclpy takes any number, and the middleware then fails without naming it
+
+
+def check_qualities(node: Any) -> None:
+    """Raise `InputError` for overrides of quality of service that rclpy would raise for, at whatever topic's turn."""
+    problems = Problems()
+    for name, given in sorted(_overrides(node).items()):
+        policy = name.rpartition(".")[2]
+        if not name.startswith("qos_overrides.") or policy not in (*_QUALITIES, "depth"):
+            continue
+        with problems:
+            if policy == "depth" and not (type(given.value) is int and 0 <= given.value <= _DEEPEST):
+                raise InputError(f"parameter '{name}' must be a whole number 0 ... {_DEEPEST}, found {given.value!r}")
+            if policy != "depth" and str(given.value).lower() not in _QUALITIES[policy]:
+                raise InputError(
+                    f"parameter '{name}' must be one of {', '.join(_QUALITIES[policy])}, found {given.value!r}"
+                )
+    problems.say()
+
+
 def _overrides(node: Any) -> Mapping[str, Any]:
     given: Mapping[str, Any] = getattr(node, "_parameter_overrides", {})
     return given

@@ -43,3 +43,10 @@ def test_nobody_there_is_said(bench: Bench) -> None:
     done = load(bench, "a6vm215_crane2")
     assert done.returncode == 2
     assert "did it start?" in done.stderr
+
+
+def test_a_namespace_that_there_cannot_be_is_said(bench: Bench) -> None:
+    done = load(bench, "a6vm215_crane2", "--namespace", "crane 1")
+    assert done.returncode == 2
+    assert "namespace must not contain" in done.stderr
+    assert "'/crane 1'" in done.stderr

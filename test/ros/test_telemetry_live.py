@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from winch_friction.cli.live import Listener, live_frames
+from winch_friction.cli.main import run
 
 
 def test_the_listener_hears_what_is_published(bench, monkeypatch):
@@ -62,3 +63,15 @@ def test_the_listener_does_not_outlive_a_killed_reader(bench, monkeypatch, after
     reader.kill()
     reader.wait()
     assert _gone(pid, 30.0)
+
+
+@pytest.mark.parametrize(
+    ("namespace", "domain", "said"),
+    [("a b", "", "namespace must not contain"), ("", "abc", "ROS_DOMAIN_ID is not"), ("", "999", "the listener ended")],
+)
+def test_a_namespace_or_domain_that_there_cannot_be_is_one_line(bench, monkeypatch, capfd, namespace, domain, said):
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain or str(bench.domain))
+    assert run(["watch", "--namespace", namespace, "--json", "--frames", "1"]) == 2
+    heard = capfd.readouterr().err.strip().splitlines()
+    assert said in heard[-1]
+    assert len(heard) == 1

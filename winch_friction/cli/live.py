@@ -52,10 +52,18 @@ class Listener:
         self._closed = False
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
+        said = ""
         for line in self._process.stdout or ():
-            yield json.loads(line)
+            try:
+                heard = json.loads(line)
+            except ValueError:  # the middleware's own words, or half a line of a process that was killed
+                said = f": {line.strip()}" if line.strip() else said
+                continue
+            if "error" in heard:
+                raise InputError(heard["error"])
+            yield heard
         if not self._closed:
-            raise InputError("the listener ended; is the middleware in order? 'winch-friction doctor' looks")
+            raise InputError(f"the listener ended{said}; is the middleware in order? 'winch-friction doctor' looks")
 
     def messages(self) -> Iterator[RawMessage]:
         """With the option --raw: every message of the winch's topics and /diagnostics, serialised as it came."""

@@ -7,7 +7,7 @@ from typing import Any
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 
-from winch_friction.nodes.remote import RemoteNode
+from winch_friction.nodes.remote import RemoteNode, looking_on
 from winch_friction.physics.errors import InputError
 
 PATIENCE = 15.0  # s; the node runs already, so nothing has to be compiled
@@ -21,8 +21,11 @@ def main() -> int:
     parser.add_argument("--namespace", default="")
     parser.add_argument("--node", default="compensator")
     options = parser.parse_args()
-    rclpy.init(args=[])
-    node = rclpy.create_node("winch_friction_load", namespace=options.namespace, start_parameter_services=False)
+    try:
+        node = looking_on("winch_friction_load", options.namespace)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     refusal = ""

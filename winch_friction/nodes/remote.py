@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 from typing import Any
 
+import rclpy
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.validate_namespace import validate_namespace
 from std_srvs.srv import SetBool, Trigger
 
 from winch_friction.physics.errors import InputError
@@ -25,6 +27,19 @@ TRANSITIONS = {
     "deactivate": Transition.TRANSITION_DEACTIVATE,
     "cleanup": Transition.TRANSITION_CLEANUP,
 }
+
+
+def looking_on(name: str, namespace: str) -> Node:
+    """A node that looks on from outside; `InputError` for a namespace or a ROS_DOMAIN_ID that there cannot be."""
+    try:
+        validate_namespace(f"/{namespace.removeprefix('/')}")  # a node that fails over it warns of itself besides
+        rclpy.init(args=[])
+        return rclpy.create_node(name, namespace=namespace, start_parameter_services=False)
+    except Exception as error:
+        if not type(error).__module__.startswith("rclpy"):
+            raise
+        rclpy.try_shutdown()
+        raise InputError(" ".join(str(error).split()).rstrip(" ^")) from error
 
 
 class RemoteNode:

@@ -15,6 +15,8 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 
 from winch_friction.nodes.inputs import message_type
+from winch_friction.nodes.remote import looking_on
+from winch_friction.physics.errors import InputError
 from winch_friction.records.telemetry import TOPICS, Telemetry
 from winch_friction.records.topics import FLOAT64, FLUID_PRESSURE, JOINT_STATE, TEMPERATURE
 
@@ -32,8 +34,11 @@ def main() -> int:
     # said by the reader itself: one that is killed while this process still starts is nobody's parent any more
     parser.add_argument("--reader", type=int, default=os.getppid())
     options = parser.parse_args()
-    rclpy.init(args=[])
-    node = rclpy.create_node("winch_friction_telemetry", namespace=options.namespace, start_parameter_services=False)
+    try:
+        node = looking_on("winch_friction_telemetry", options.namespace)
+    except InputError as error:
+        print(json.dumps({"error": str(error)}), flush=True)
+        return 2
     if options.raw:
         Raw(node)
     else:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from run_strategies import make_run, runs, same
 
+from winch_friction.cli.live import bag_frames
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_file import open_bag
@@ -124,6 +125,26 @@ def test_broken_messages_are_counted_not_fatal(tmp_path):
     run = read_run(tmp_path / "x", complete=False)
     assert len(run) == 60
     assert any("3 messages cannot be read" in each for each in run.warnings)
+
+
+def damaged_in_the_middle(path):
+    """A bag whose file has 4000 bytes of another content behind its first third; its index is whole."""
+    storage = next(path.glob("*.mcap"))
+    content = bytearray(storage.read_bytes())
+    third = len(content) // 3
+    content[third : third + 4000] = bytes(each ^ 0x5A for each in content[third : third + 4000])
+    storage.write_bytes(content)
+
+
+def test_what_a_damaged_file_has_lost_is_said(tmp_path):
+    path = write_run(make_run(rows=1000), tmp_path / "x")
+    assert not any("damaged" in each for each in read_run(path).warnings)
+    damaged_in_the_middle(path)
+    run = read_run(path, complete=False)
+    assert len(run) < 1000
+    assert sum("the file is damaged: of " in each for each in run.warnings) == 1
+    with pytest.raises(InputError, match="the file is damaged"):
+        list(bag_frames(path, "", 0.0))
 
 
 def test_fractions_need_the_crane(tmp_path, crane_150t):

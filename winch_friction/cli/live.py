@@ -79,6 +79,7 @@ class Listener:
 
 def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
     """Frames of a bag, one per 0.2 s of its time."""
+    from winch_friction.records.bag_file import damage
     from winch_friction.records.telemetry import TOPICS, Telemetry
 
     prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
@@ -88,8 +89,9 @@ def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, An
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:
             raise InputError(f"{path}: none of the winch's topics is in it ({', '.join(names)})")
-        last = 0
+        last = came = 0
         for connection, stamp, raw in reader.messages(chosen):
+            came += 1
             telemetry.take(names[connection.topic], reader.deserialize(raw, connection.msgtype))
             if stamp - last >= BAG_PERIOD * 1e9:
                 if rate > 0.0 and last:
@@ -97,6 +99,8 @@ def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, An
                 last = stamp
                 yield telemetry.frame()
         yield telemetry.frame()
+        for said in damage(str(path), chosen, came):
+            raise InputError(said)
 
 
 def bag_topics(path: Path) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """A rosbag2 recording opened for reading: its topics matched to the winch's, its messages in the order of arrival."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -71,11 +71,17 @@ class Bag:
         self._broken.clear()
 
     def messages(self, *topics: str) -> Iterator[tuple[str, float, Any]]:
-        """Topic, receipt in s and message of some of the bag's topics; unreadable messages are counted and left out."""
+        """Topic, receipt in s and message of some of the bag's topics; unreadable messages are counted and left out.
+
+        At the end it is said when fewer came than there are by the bag's own index: a file that is damaged in its
+        middle ends there without an error.
+        """
         connections = [each for each in self._reader.connections if each.topic in topics]
         if not connections:
             return
+        came = 0
         for connection, receipt, raw in self._reader.messages(connections):
+            came += 1
             reader = READERS.get(connection.msgtype)
             try:
                 if reader is not None and raw[:2] == LITTLE_ENDIAN:
@@ -86,10 +92,19 @@ class Bag:
                 self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
                 continue
             yield connection.topic, receipt * NANOSECOND, message
+        self.warnings += damage(self.name, connections, came)
 
     def topics_ending(self, suffix: str) -> list[str]:
         """Topics of the bag by the end of their name, e.g. `/friction_torque`."""
         return sorted({each.topic for each in self._reader.connections if each.topic.endswith(suffix)})
+
+
+def damage(name: str, connections: Sequence[Any], came: int) -> list[str]:
+    """What is said when of rosbags' `connections` fewer messages came than the bag's index counts; else nothing."""
+    counted = sum(each.msgcount or 0 for each in connections)
+    if came >= counted:
+        return []
+    return [f"{name}: the file is damaged: of {counted} messages {came} can be read, the rest is lost; copy it anew"]
 
 
 @contextmanager

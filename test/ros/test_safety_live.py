@@ -117,6 +117,30 @@ def test_diagnostics_tell_the_truth_within_a_second(fed: tuple[Bench, list]) -> 
     assert diagnostics(seen, "compensator: feedforward")["message"] == "not active"
 
 
+@pytest.mark.parametrize(
+    ("node", "part", "topic", "kind", "qos"),
+    [
+        ("compensator", "feedforward", "/compensator/friction_torque", JointState, OUTPUT),
+        ("estimator", "filter", "/friction_model", String, LATCHED),
+    ],
+)
+def test_a_second_node_on_the_same_output_is_said(
+    bench: Bench, node: str, part: str, topic: str, kind: type, qos: object
+) -> None:
+    bench.start(node)
+    seen = bench.listen("/diagnostics", DiagnosticArray)
+    bench.announce()
+    bench.drive(1.2)
+    assert "publishers" not in diagnostics(seen, f"{node}: {part}")["message"]
+    second = bench.node.create_publisher(kind, topic, qos)
+    bench.drive(1.5)
+    assert f"{topic} has 2 publishers: does another {node} run?" in diagnostics(seen, f"{node}: {part}")["message"]
+    assert _level(seen, f"{node}: {part}") == 2
+    bench.node.destroy_publisher(second)
+    bench.drive(1.5)
+    assert "publishers" not in diagnostics(seen, f"{node}: {part}")["message"]
+
+
 def held_behind(bench: Bench, stamp: float) -> Callable[[Sample], None]:
     """A pressure that goes on to come, under a stamp that stands still."""
 

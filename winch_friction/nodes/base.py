@@ -210,6 +210,14 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         self._publishers_made.append(made)
         return made
 
+    def alone(self, part: Health, publisher: Any) -> Health:
+        """The part's health, in error where somebody else publishes this output: who listens hears both in turn."""
+        topic = publisher.topic_name
+        if (count := self.count_publishers(topic)) < 2:
+            return part
+        said = f"{topic} has {count} publishers: does another {self.get_name()} run?"
+        return replace(part, level=ERROR, summary=f"{part.summary}; {said}")
+
     def every(self, period: float, action: Callable[[], None]) -> Any:
         """A timer on the steady clock while active: those on ROS time freeze when it steps back (rclpy#1490)."""
         timer = self.create_timer(period, self.guarded(action), clock=self.steady_clock)

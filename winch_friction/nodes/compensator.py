@@ -187,7 +187,8 @@ class CompensatorNode(WinchNode):
         never = state == "waiting" and now - self._activated > self.options.diagnostics_period
         level = ERROR if state == "stale" or never else {"waiting": WARN}.get(state, OK)
         why = status["contradictions"] or (status["missing"] if state in ("stale", "waiting") else "")
-        return [Health("feedforward", level, f"{state}: {why}" if why else state, status), self._input_health.report()]
+        feedforward = Health("feedforward", level, f"{state}: {why}" if why else state, status)
+        return [self.alone(feedforward, self._torque), self._input_health.report()]
 
 
 def _a_gain_for_every_term() -> dict[str, dict[str, float]]:

@@ -163,7 +163,8 @@ class EstimatorNode(WinchNode):
 
     def health(self) -> Sequence[Health]:
         """The filter, every parameter with deviation and status, and the inputs."""
-        return [self._filter_health(), self._parameter_health(), self._input_health.report()]
+        own = self.alone(self._filter_health(), self._model)
+        return [own, self._parameter_health(), self._input_health.report()]
 
     def _needed(self) -> set[str]:
         """The topics without which nothing is learned."""

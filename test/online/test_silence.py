@@ -224,3 +224,15 @@ def test_zeros_are_repeated_as_long_as_the_silence_lasts(fed: Fed) -> None:
     apart = [after - before for before, after in zip(times, times[1:], strict=False)]
     assert len(times) >= 10
     assert max(apart) <= HEARTBEAT * fed.options.watch_period + PERIOD + 1e-9
+
+
+def test_a_clock_that_is_set_back_and_then_silence_ends_at_zero(fed: Fed) -> None:
+    """As a node does that goes by the recording's clock, when the bag begins again and no speed comes."""
+    last = fed.torque
+    fed.now -= 1000.0
+    fed.service.reset()
+    said = fed.wait(1.5)
+    assert said[-1].friction_torque == 0.0
+    sizes = [abs(each.friction_torque) for each in said]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[0] > 0.5 * abs(last)  # a ramp, no step

@@ -249,7 +249,10 @@ class InputGate:
 
     # -- time
     def silence(self, now: float) -> float:
-        """Seconds since the last believed speed; 0 before the first."""
+        """Seconds since the last believed speed; 0 before the first. A clock that was set back counts from there: it
+        would else have to come back to where it was before anything is silent."""
+        if now < self.last_arrival < math.inf:
+            self.last_arrival = now
         return max(0.0, now - self.last_arrival)
 
     def forget(self) -> None:

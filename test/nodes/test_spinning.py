@@ -1,5 +1,7 @@
 """A node's own loop runs what rclpy's executor would: speeds, timers, services, in one thread."""
 
+import gc
+import sys
 import time
 
 import pytest
@@ -136,3 +138,21 @@ def test_it_comes_back_within_a_heartbeat(pair, made):
     loop.once()
     assert time.monotonic() - begun < 10.0 * loop_module.HEARTBEAT
     loop.end()
+
+
+def test_nothing_is_said_behind_the_end(made, monkeypatch):
+    """Its executor is part of a cycle, which may be collected after the context has gone."""
+    context, unraisable = Context(), []
+    monkeypatch.setattr(sys, "unraisablehook", unraisable.append)
+    rclpy.init(context=context, domain_id=unused_domain())
+    node = Node("ended", context=context)
+    node.inputs = Inputs()
+    loop = made(node)
+    loop.once()
+    loop.end()
+    assert loop._executor._sigint_gc is None
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    del loop
+    gc.collect()
+    assert not unraisable

@@ -136,6 +136,7 @@ class Loop:
     def end(self) -> None:
         """Let the node go."""
         self._executor.remove_node(self._node)
+        self._executor.shutdown(timeout_sec=0.0)  # else whoever collects it later prints a traceback behind the end
 
     def once(self) -> None:
         """Wait, at most for a heartbeat, and run what is ready; raises what a callback raises."""

@@ -9,6 +9,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.strict_yaml import parse_yaml
 
 MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
 
@@ -92,6 +93,23 @@ def test_a_wrong_model_is_one_clear_line(change, message):
 def test_not_yaml_or_not_a_model(text):
     with pytest.raises(InputError, match="here"):
         model_from_text(text, "here")
+
+
+def test_a_key_that_stands_twice_is_refused_and_none_is_taken(tmp_path):
+    text = (config_directory() / "cranes" / "crane_150t.yaml").read_text()
+    crane = tmp_path / "crane.yaml"
+    crane.write_text(text.replace("  passive: 8\n", "  passive: 8\n  main: 14\n") + "gear_ratio: 25\n")
+    first = [text.splitlines().index(next(x for x in text.splitlines() if x.startswith(key))) + 1
+             for key in ("gear_ratio", "  main")]  # fmt: skip
+    with pytest.raises(InputError) as caught:
+        load_crane(crane)
+    last = len(crane.read_text().splitlines())
+    assert f"{crane} line {last}: key 'gear_ratio' stands on line {first[0]} already" in caught.value.problems[0]
+    assert f"key 'main' stands on line {first[1]} already" in caught.value.problems[1]
+
+
+def test_a_key_that_stands_in_a_merged_mapping_too_overrules_it():
+    assert parse_yaml("a: &a {x: 1}\nb: {<<: *a, x: 2}\nc: {x: 3}", "here")["b"] == {"x": 2}
 
 
 @pytest.mark.parametrize(

@@ -108,10 +108,29 @@ def read_yaml(path: Path) -> Any:
     return parse_yaml(text, str(path))
 
 
+class _Loader(yaml.SafeLoader):
+    """YAML's safe types; a key that stands twice in one mapping, of which YAML takes the last, is gathered."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.repeated: list[tuple[int, str, int]] = []  # line, key, the line on which it stood first; lines from 1
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        """As YAML has it; what `<<` merges in may repeat a key, and gives way to it."""
+        first: dict[tuple[str, str], int] = {}
+        for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
+            name, line = (key.tag, key.value), key.start_mark.line + 1
+            if name in first:
+                self.repeated.append((line, key.value, first[name]))
+            first.setdefault(name, line)
+        return super().construct_mapping(node, deep)
+
+
 def parse_yaml(text: str, where: str) -> Any:
-    """The content of a YAML text."""
+    """The content of a YAML text; a key that stands twice in one mapping is refused."""
     try:
-        return yaml.safe_load(text)
+        loader = _Loader(text)
+        content = loader.get_single_data()
     except RecursionError:
         raise InputError(f"{where}: nested too deeply to be a configuration") from None
     except yaml.YAMLError as error:
@@ -120,6 +139,14 @@ def parse_yaml(text: str, where: str) -> Any:
         raise InputError(
             f"{where}{line}: not valid YAML ({getattr(error, 'problem', None) or 'syntax error'})"
         ) from error
+    if loader.repeated:
+        raise InputError(
+            *(
+                f"{where} line {line}: key '{key}' stands on line {before} already; keep one of them"
+                for line, key, before in loader.repeated
+            )
+        )
+    return content
 
 
 def _said(value: Any) -> str:

@@ -43,6 +43,10 @@ def test_units_are_converted():
     assert model.std[model.parameter_names.index("C6")] == pytest.approx(0.03 * 162e-7)
 
 
+def correlated(entries, size=10):
+    return [[entries.get((i, k), float(i == k)) for k in range(size)] for i in range(size)]
+
+
 def edited(change):
     data = content()
     change(data)
@@ -79,6 +83,15 @@ def edited(change):
             "unknown key 'gear_ratoi'; did you mean gear_ratio",
         ),
         (lambda d: d.update(correlation=[[1.0]]), "correlation must be 10 x 10"),
+        (lambda d: d.update(correlation=[["a"]]), "correlation must be 10 x 10"),
+        (lambda d: d.update(correlation=[[1.0, 2.0], [3.0]]), "correlation must be 10 x 10"),
+        (lambda d: d.update(correlation={"K1": {"K2": 0.3}}), "correlation must be 10 x 10"),
+        (lambda d: d.update(correlation=correlated({(0, 2): "x", (2, 0): "x"})), "row 1, column 3 must be a finite"),
+        (lambda d: d.update(correlation=correlated({(0, 2): 0.5})), "row 1, column 3 is 0.5 and its mirror 0;"),
+        (lambda d: d.update(correlation=correlated({(3, 3): 4.0})), "row 4, column 4 must be 1, found 4"),
+        (lambda d: d.update(correlation=correlated({(0, 2): 2.0, (2, 0): 2.0})), "model.yaml: correlation is not pos"),
+        (lambda d: d.update(provenance=3), "model.yaml: provenance: expected a mapping"),
+        (lambda d: d.update(provenance=["paper 2"]), "model.yaml: provenance: expected a mapping"),
         (lambda d: d.update(parameters=None), "expected a mapping"),
     ],
 )

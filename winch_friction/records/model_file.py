@@ -19,6 +19,7 @@ from winch_friction.records.schemas import with_all_problems
 from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml, spread
 
 SCHEMA = "winch_friction.model/1"
+SYMMETRIC = 1e-6  # what a correlation may miss by that was written with six digits or more
 
 
 def load_model(name: str | Path) -> FrictionModel:
@@ -60,7 +61,7 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
         covariance=_covariance(top, entries),
         bounds={entry.name: entry.bounds for entry in entries if entry.bounds},
         constants=_constants(top),
-        provenance=dict(top.get("provenance") or {}),
+        provenance=_provenance(top),
         corrections=read_corrections(top),
         crane=top.text("crane", ""),
     )
@@ -148,12 +149,36 @@ def _covariance(top: Section, entries: list[_Entry]) -> np.ndarray | None:
         raise InputError(
             f"{top.where}: parameters: {entries[int(np.isnan(stds).argmax())].name} lacks 'std' though others have it"
         )
-    correlation = np.array(top.get("correlation") or np.eye(len(entries)), float)
-    if correlation.shape != (len(entries), len(entries)):
-        raise InputError(
-            f"{top.where}: correlation must be {len(entries)} x {len(entries)}, in the order of the parameters"
-        )
-    return correlation * np.outer(stds, stds)
+    return _correlations(top, len(entries)) * np.outer(stds, stds)
+
+
+def _correlations(top: Section, size: int) -> np.ndarray:
+    """The matrix as it stands; ones on its diagonal, or it would change the standard deviations beside it."""
+    given = top.get("correlation") or np.eye(size).tolist()
+    rows = given if isinstance(given, list) and all(isinstance(row, list) for row in given) else []
+    if [len(row) for row in rows] != [size] * size:
+        raise InputError(f"{top.where}: correlation must be {size} x {size}, in the order of the parameters")
+    where = f"{top.where}: correlation: row"
+    matrix = np.array(
+        [[finite(x, f"{where} {i}, column {k}") for k, x in enumerate(row, 1)] for i, row in enumerate(rows, 1)]
+    ).reshape(size, size)
+    problems = [
+        f"{where} {i + 1}, column {k + 1} is {matrix[i, k]:g} and its mirror {matrix[k, i]:g}; it must be symmetric"
+        for i, k in np.argwhere(np.abs(matrix - matrix.T) > SYMMETRIC)
+        if i < k
+    ] + [
+        f"{where} {k + 1}, column {k + 1} must be 1, found {matrix[k, k]:g}: the size of a deviation belongs into std"
+        for k in np.flatnonzero(np.abs(np.diag(matrix) - 1.0) > SYMMETRIC)
+    ]
+    if problems:
+        raise InputError(*problems)
+    if size and np.linalg.eigvalsh(matrix).min() < -SYMMETRIC:
+        raise InputError(f"{top.where}: correlation is not positive semi-definite: no parameters vary together so")
+    return matrix
+
+
+def _provenance(top: Section) -> dict[str, Any]:
+    return dict(top.section("provenance").content) if top.get("provenance") is not None else {}
 
 
 def _constants(top: Section) -> dict[str, float]:

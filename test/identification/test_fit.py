@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
-from winch_friction.identification.fit import clustered_covariance, condition_number, fit
+from winch_friction.identification.fit import clustered_covariance, condition_number, exchangeable, fit
 from winch_friction.identification.fit_data import CountedModel
 from winch_friction.identification.motor_identification import identify_motor, motor_seed
 from winch_friction.identification.motor_models import MOTOR_MODELS, initial_model
@@ -136,6 +136,30 @@ def test_too_few_rows_and_unknown_method(table_215):
         fit(start, few.fit_data())
     with pytest.raises(InputError, match="fit method 'guess' is not known"):
         fit(start, table_215.fit_data(), "guess")
+
+
+@pytest.mark.parametrize(
+    ("keep", "said"),
+    [
+        (lambda t: np.isclose(t.pressure, 200 * BAR), "K4, K5 of 'mj4' .* 1 pressure, .* rows at another pressure"),
+        (lambda t: np.isclose(t.speed, 1000 * RPM), "K1, K4 of 'mj4' .* 1 speed, .* rows at another speed"),
+        (lambda t: np.zeros(len(t), int), "K1, K2, K3, K4, K5 of 'mj4' cannot be told apart"),
+    ],
+)
+def test_a_table_that_cannot_tell_parameters_apart_makes_no_seed(table_215, keep, said):
+    with pytest.raises(InputError, match=said):
+        identify_motor(table_215.where(keep(table_215)), ["mj4"], with_complex=False)
+
+
+def test_a_table_of_one_displacement_makes_a_seed_where_it_tells_all_parameters(table_215):
+    largest = table_215.where(np.isclose(table_215.displacement, table_215.max_displacement))
+    assert identify_motor(largest, ["mj4"], with_complex=False).chosen.fitted.condition < 100.0
+
+
+def test_a_shape_of_nothing_is_not_exchanged_for_another():
+    columns = np.array([[1.0, 0.0, 2.0], [1.0, 0.0, 3.0], [1.0, 0.0, 5.0]])
+    assert exchangeable(columns, ("a", "shape", "b")) == ()
+    assert exchangeable(np.column_stack([columns, 3.0 * columns[:, 0]]), ("a", "shape", "b", "c")) == ("a", "c")
 
 
 def test_the_seed_is_a_model_file(table_215, tmp_path):

@@ -1,6 +1,6 @@
 """One fit of one model: by Box's complex method or by least squares, with standard errors and condition number."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 
 METHODS = ("least_squares", "complex")
+SAME_DIRECTION = 1e-10  # of the largest singular value: below it rounding alone tells two columns apart
 _BOX_MARGIN = 3.0  # a term alone may explain three times the largest torque
 
 
@@ -128,6 +129,19 @@ def condition_number(jacobian: FloatArray) -> float:
     """Condition number with the columns scaled to unit length; infinite when a direction is not seen at all."""
     singular = np.linalg.svd(jacobian / _column_scale(jacobian), compute_uv=False)
     return float(singular[0] / singular[-1]) if singular[-1] > 1e-14 * singular[0] else float("inf")
+
+
+def exchangeable(jacobian: FloatArray, names: Sequence[str]) -> tuple[str, ...]:
+    """The parameters that can be changed together without any change of the torque at the points of the Jacobian.
+
+    One whose own column is zero (the shape of a term that was fitted to nothing) is none of them.
+    """
+    seen = np.flatnonzero(np.linalg.norm(jacobian, axis=0) > 0.0)
+    design = jacobian[:, seen] / _column_scale(jacobian[:, seen])
+    _, singular, directions = np.linalg.svd(design, full_matrices=False)
+    lost = directions[singular <= SAME_DIRECTION * singular.max(initial=0.0)]
+    shares = np.abs(lost).max(axis=0, initial=0.0)
+    return tuple(names[int(k)] for k, share in zip(seen, shares, strict=True) if share > 1e-6)
 
 
 def _column_scale(jacobian: FloatArray) -> FloatArray:

@@ -4,10 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from winch_friction.identification.fit import FitResult, fit
+import numpy as np
+
+from winch_friction.identification.fit import FitResult, exchangeable, fit
+from winch_friction.identification.fit_data import CountedModel
 from winch_friction.identification.motor_models import initial_model, motor_model_named
 from winch_friction.identification.selection import ModelScore, choose, score_models
 from winch_friction.identification.supplier_table import FitRange, SupplierTable
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 
 Progress = Callable[[Any, str], Any]
@@ -59,13 +63,29 @@ def identify_motor(
         by_complex[name] = fit(start, inside.fit_data(weighting), "complex", seed=seed, **(complex_options or {}))
     recommended = choose(scores)
     wanted = motor_model_named(chosen).name if chosen else recommended.name
+    best = next(each for each in scores if each.name == wanted)
+    _refuse_undetermined(best, inside)
     return MotorIdentification(
         table=inside,
         weighting=weighting,
         scores=tuple(scores),
         by_complex=by_complex,
         recommended=recommended.name,
-        chosen=next(each for each in scores if each.name == wanted),
+        chosen=best,
+    )
+
+
+def _refuse_undetermined(chosen: ModelScore, table: SupplierTable) -> None:
+    """Raise `InputError` where other values of some parameters fit as well: their deviations would say nothing."""
+    model = chosen.fitted.model
+    tied = exchangeable(CountedModel(model, table.fit_data()).columns(model.values), model.parameter_names)
+    if not tied:
+        return
+    many = {name: len(np.unique(getattr(table, name).round(12))) for name in ("speed", "pressure", "displacement")}
+    counts = ", ".join(f"{number} {name}{'s' * (number > 1)}" for name, number in many.items())
+    raise InputError(
+        f"{table.name}: {', '.join(tied)} of '{chosen.name}' cannot be told apart by a table of {counts}: bring rows "
+        f"at another {min(many, key=lambda name: many[name])}, or choose a model with fewer parameters"
     )
 
 

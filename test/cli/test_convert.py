@@ -32,3 +32,8 @@ def test_convert_keeps_every_digit(runs, tmp_path, capsys):
     assert main.run(["convert", "run", str(runs / "one.csv"), targets[-1]]) == 2
     assert "exists already" in capsys.readouterr().err
     assert main.run(["convert", "emps", str(runs / "one.csv"), str(tmp_path / "e.csv")]) == 2
+
+
+def test_a_measurement_that_is_not_there_is_said_so(tmp_path, capsys):
+    assert main.run(["convert", "emps", str(tmp_path / "none.mat"), str(tmp_path / "e.csv")]) == 2
+    assert capsys.readouterr().err == f"winch-friction: {tmp_path / 'none.mat'}: no such file\n"

@@ -47,10 +47,10 @@ def read_emps(path: Path | str, causal: bool = False) -> Run:
 def _variables(path: Path) -> dict[str, FloatArray]:
     from scipy.io import loadmat
 
+    if not path.is_file():  # scipy speaks of another thing
+        raise InputError(f"{path}: no such file")
     try:
         content: dict[str, Any] = loadmat(path)
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file") from error
     except Exception as error:  # scipy raises what its parser meets
         raise InputError(f"{path}: not a readable MATLAB file ({str(error)[:80]})") from error
     missing = [name for name in _NEEDED if name not in content]

@@ -62,3 +62,12 @@ def test_a_mistyped_demo_leaves_the_last_one_as_it_was(tmp_path, monkeypatch, ca
     assert run(["demo", "--scenario", "ahc_irregula", "--out", str(tmp_path)]) == 2
     assert "did you mean ahc_irregular" in capsys.readouterr().err
     assert {each.name for each in tmp_path.iterdir()} == {"plan.json", "demo.html"}
+
+
+def test_a_picture_of_no_kind_is_refused_before_the_work(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run([*WORDS["replay"], "--out", "x.csv", "--picture", "x.foo"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("winch-friction: --picture x.foo: a report is written as .html, a still picture as .png")
+    assert said.count("\n") == 1
+    assert not list(tmp_path.iterdir())

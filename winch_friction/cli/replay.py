@@ -14,6 +14,7 @@ from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalTexts, Overwrite
 
 SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
+PICTURES = (".html", ".png", ".svg", ".pdf", ".eps", ".jpg", ".jpeg", "")  # without a suffix: a png
 MOSTLY = 0.5  # share of active samples below which the reasons are told
 
 
@@ -58,6 +59,11 @@ def command(
 
     if recording.is_dir() and any(each.suffix in (".csv", ".parquet", ".pq") for each in recording.iterdir()):
         raise InputError(f"{recording}: a folder of runs; replay takes one recording: name one file of it, or a bag")
+    if picture is not None and picture.suffix.lower() not in PICTURES:
+        raise InputError(
+            f"--picture {picture}: a report is written as .html, a still picture as .png, .svg, .pdf or .jpg; give a "
+            "name that ends so"
+        )
     refuse_input_as_output(out, [recording, model, crane])
     refuse_input_as_output(picture, [recording, model, crane])
     refuse_existing(overwrite, out, picture)
@@ -168,7 +174,7 @@ def bag_options(remap: list[str], joint: str, pressure_reference: str, namespace
 
 
 def _draw(path: Path, result: Any, seed: Any, provenance: dict[str, Any]) -> None:
-    if path.suffix == ".html":
+    if path.suffix.lower() == ".html":
         from winch_friction.report.replay_page import write_replay_page
 
         write_replay_page(path, result, seed, provenance)

@@ -221,3 +221,25 @@ def test_a_log_too_slow_to_be_replayed_is_said_by_its_step(tmp_path, run, capsys
     said = capsys.readouterr().err.splitlines()[-1]
     assert "slow.csv: column 'time': a sample every 20 s is too slow for a replay, which takes one every 4 s" in said
     assert "max_age" not in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "compensater:\n  ros__parameters: {scale: 0.3}\n",
+        "winch: {compensator: {ros__parameters: {scale: 0.3}}}\n",
+        "schema: winch_friction.scenario/1\nname: x\n",
+    ],
+)
+def test_a_parameter_file_that_would_set_nothing_is_refused(tmp_path, text):
+    params = tmp_path / "params.yaml"
+    params.write_text(text)
+    with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
+        settings_from_file(params)
+
+
+@pytest.mark.parametrize("node", ["/**", "/winch_1/estimator", "compensator"])
+def test_a_parameter_file_of_one_node_will_do(tmp_path, node):
+    params = tmp_path / "params.yaml"
+    params.write_text(f"{node}:\n  ros__parameters: {{max_age: 0.3}}\n")
+    assert settings_from_file(params)

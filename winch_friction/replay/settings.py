@@ -8,13 +8,14 @@ from typing import Any
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation import EstimatorConfig
-from winch_friction.physics.errors import from_mapping, limits_of
+from winch_friction.physics.errors import InputError, from_mapping, limits_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import load_file
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import parameters_of
 from winch_friction.records.strict_yaml import read_yaml
 
+NODES = ("compensator", "estimator")
 OF_THE_COMPENSATOR = ("model_delay", "watchdog_timeout", "stamp_window")
 
 
@@ -91,6 +92,7 @@ def settings_from_file(path: Path) -> ReplaySettings:
     Terms of a `terms_file` are registered, so read the settings before the models.
     """
     content = read_yaml(path)
+    _refuse_without(NODES, content, path)
     compensator, estimator = (parameters_of(content, node, str(path)) for node in ("compensator", "estimator"))
     for each in (compensator, estimator):
         if terms_file := each.get("terms_file"):
@@ -102,6 +104,16 @@ def settings_from_file(path: Path) -> ReplaySettings:
     config = from_mapping(ReplayConfig, _of(ReplayConfig, compensator), f"{path}: compensator")
     phase = Phase(config=config, follow_models=bool(compensator.get("follow_model_topic", True)))
     return ReplaySettings((phase,), from_mapping(EstimatorConfig, _of(EstimatorConfig, estimator), str(path)), **own)
+
+
+def _refuse_without(nodes: tuple[str, ...], content: Any, path: Path) -> None:
+    """Raise `InputError` for a file none of whose sections is one of these nodes': it would set nothing."""
+    found = [str(name) for name in content] if isinstance(content, Mapping) else []
+    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *nodes}:
+        raise InputError(
+            f"{path}: no parameters of {' or '.join(nodes)}: expected one of these names (or /**) with "
+            f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"
+        )
 
 
 def _of(kind: type, parameters: Mapping[str, Any]) -> dict[str, Any]:

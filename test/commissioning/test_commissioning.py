@@ -214,6 +214,21 @@ def test_the_whole_check_says_what_the_runs_teach_and_what_is_missing(tmp):
     assert np.isfinite([each["score"] for each in content["balance"]]).all()
 
 
+def test_no_test_is_asked_for_beyond_what_the_crane_may_lift_and_turn(crane_150t, crane2_model):
+    """Nine tenths of what the motors hold are 190 t on a crane that is rated at 150."""
+    run = read_run(PRACTICE / "test_02.parquet")
+
+    def asked(crane):
+        words = [line.split() for line in check([run], crane, crane2_model).log_next if line.startswith("constant")]
+        return [(float(each[each.index("t") - 1]), float(each[1])) for each in words]
+
+    assert max(load for load, _ in asked(crane_150t)) <= 150.0
+    assert max(load for load, _ in asked(replace(crane_150t, rated_load=0.0))) > 150.0
+    slow = asked(replace(crane_150t, rated_speed=1500.0 * np.pi / 30.0))
+    assert slow
+    assert max(speed for _, speed in slow) <= 1500.0
+
+
 PAIRS = (
     ("kg under [t]", "speed sign"), ("kN under [t]", "ports"), ("psi under [bar]", "ports"),
     ("MPa under [bar]", "ports"),

@@ -56,7 +56,7 @@ def log_next(crane: Crane, views: Sequence[RunView], model: FrictionModel, infor
     """The tests that would teach most of what is still open, best first, in words; empty where little is open."""
     plain = _with_prior(model)
     best = []
-    for speed, load, displacement in _tests():
+    for speed, load, displacement in _tests(crane):
         rows = _test_rows(crane, plain, speed * RPM, load, displacement)
         sigma = FIT_NOISE * crane.motor_total(()) * crane.max_displacement * 300e5
         gained = information + rows.T @ rows * EFFECTIVE / 2.0 / sigma**2
@@ -87,8 +87,17 @@ def _rows(view: RunView, model: FrictionModel) -> FloatArray:
     return rows[view.moving & np.isfinite(rows).all(axis=1)]
 
 
-def _tests() -> Iterator[tuple[float, float, float]]:
-    return ((s, load, d) for s in SPEEDS for load in LOADS for d in DISPLACEMENTS if load <= d)
+def _tests(crane: Crane) -> Iterator[tuple[float, float, float]]:
+    """The tests of the grid that are within what the crane file says that this crane may lift and turn."""
+    fastest, heaviest = crane.rated_speed or np.inf, crane.rated_load or np.inf
+    loads = [load for load in LOADS if _mass(crane, load) <= heaviest]
+    return ((s, load, d) for s in SPEEDS if s * RPM <= fastest for load in loads for d in DISPLACEMENTS if load <= d)
+
+
+def _mass(crane: Crane, load: float) -> float:
+    """The mass, kg, on the outer layer that is this share of what the motors hold."""
+    held = max(crane.groups.values()) * crane.max_displacement * HOLDING_PRESSURE * load
+    return held * crane.gear_ratio / (9.81 * crane.drum.layer_radii[-1])
 
 
 def _test_rows(crane: Crane, model: FrictionModel, speed: float, load: float, displacement: float) -> FloatArray:
@@ -111,8 +120,7 @@ def _test_rows(crane: Crane, model: FrictionModel, speed: float, load: float, di
 
 
 def _said(crane: Crane, gain: float, speed: float, load: float, displacement: float) -> str:
-    held = max(crane.groups.values()) * crane.max_displacement * HOLDING_PRESSURE * load
-    mass = held * crane.gear_ratio / (9.81 * crane.drum.layer_radii[-1]) / 1e3
+    mass = _mass(crane, load) / 1e3
     setting = displacement * crane.max_displacement / CM3_PER_REV
     return f"constant {speed:.0f} rpm up and down with about {mass:.0f} t at {setting:.0f} cm³/rev per motor, 8 s each"
 

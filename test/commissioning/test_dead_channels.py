@@ -50,6 +50,16 @@ def test_a_hook_load_of_zero_while_the_motors_hold_tonnes_is_a_dead_cell(run, lo
     assert held == pytest.approx(run["hook_load"].mean() / 1e3, rel=0.1)
 
 
+def test_a_hook_load_of_the_wrong_sign_is_named_before_ports_that_would_mirror_the_balance(run):
+    turned = replace(run, columns={**run.columns, "hook_load": -run["hook_load"]})
+    found = first_contradiction(quick_check([turned], CRANE, MODEL))
+    assert found is not None
+    assert (found.cause, found.channel) == ("sign", "hook_load")
+    assert "no negative mass: turn its sign (import --set hook_load.sign=-1)" in found.sentence
+    slightly = with_constant(run, hook_load=-3e3)  # a tare that drifted, on the bare hook
+    assert not [each for each in quick_check([slightly], CRANE) if each.cause == "sign" and each.channel == "hook_load"]
+
+
 @pytest.mark.parametrize(("stands_at", "said"), [(0.0, 0), (50.0, 1)])
 def test_a_speed_that_stands_at_zero_is_a_rest_and_at_another_value_is_stuck(run, stands_at, said):
     speed = run["motor_speed"] + 1e-3 * np.random.default_rng(0).standard_normal(len(run))

@@ -67,7 +67,7 @@ WIRE_MOVED = 0.5  # m of wire that came or went while motor_speed stood: five st
 
 
 def dead_findings(runs: Sequence[Run], views: Sequence[RunView]) -> Iterator[Finding]:
-    """A speed that stands while the wire runs, a hook load of nothing while the motors hold tonnes.
+    """A speed that stands while the wire runs, a hook load of nothing while the motors hold tonnes, or below nothing.
 
     `views` are the runs' own, in their order; both of hydraulic winches. Data with either contradict the crane.
     """
@@ -102,6 +102,13 @@ def _load(run: Run, view: RunView) -> Iterator[Finding]:
             "t: is the load cell connected? (a known load: import --set 'hook_load.constant=... t')"
         )
         yield Finding("error", "cell", said, "hook_load", (run.name,), {"held": held})
+    usual = float(np.median(load)) if load.size else 0.0
+    if usual < -least:  # swapped ports would close the balance of a mass that is drawn upwards
+        said = (
+            f"{run.name}: hook_load is {usual / 1e3:.3g} t, and what hangs has no negative mass: turn its sign (import "
+            "--set hook_load.sign=-1)"
+        )
+        yield Finding("error", "sign", said, "hook_load", (run.name,), {"usual": usual})
 
 
 # -- the quick check

@@ -60,6 +60,20 @@ def test_a_hook_load_of_the_wrong_sign_is_named_before_ports_that_would_mirror_t
     assert not [each for each in quick_check([slightly], CRANE) if each.cause == "sign" and each.channel == "hook_load"]
 
 
+def test_a_run_of_zeros_is_answered_without_a_figure_that_is_none(run):
+    zeros = dict.fromkeys(set(run.columns) - {"time"}, 0.0)
+    found = first_contradiction(quick_check([with_constant(run, **zeros)], CRANE))
+    assert found is not None
+    assert "nan" not in found.sentence
+
+
+def test_a_dead_run_with_a_layer_says_that_it_does_not_move(run):
+    zeros = dict.fromkeys(set(run.columns) - {"time", "wire_layer"}, 0.0)
+    found = first_contradiction(quick_check([with_constant(run, **zeros)], CRANE))
+    assert found is not None
+    assert "does not move long enough for a torque balance" in found.sentence
+
+
 @pytest.mark.parametrize(("stands_at", "said"), [(0.0, 0), (50.0, 1)])
 def test_a_speed_that_stands_at_zero_is_a_rest_and_at_another_value_is_stuck(run, stands_at, said):
     speed = run["motor_speed"] + 1e-3 * np.random.default_rng(0).standard_normal(len(run))

@@ -225,6 +225,11 @@ def _unexplained(diagnosis: Diagnosis, crane: Crane) -> Finding:
         f"the torque balance of {closure.run} is off by {closure.before:.3g} N m RMS where the load's torque is "
         f"{closure.level:.3g} N m"
     )
+    if not np.isfinite(closure.before):
+        off = (
+            f"{closure.run} does not move long enough for a torque balance, and its values by themselves are beyond "
+            f"what the crane can do (misfit {diagnosis.scores[worst]:.3g}, limit {CONTRADICTS:.3g})"
+        )
     if not crane.drive.hydraulic:
         words = (
             f"{runs} leave the torque balance open and no single mistake closes it: {off}; of a drive of kind "

@@ -125,6 +125,20 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, text, said):
     assert "log.csv" in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        (TABLE.replace(",", ";").replace(";55;", ";55,5;"), "'55,5' is not a number; winch-friction import reads"),
+        ("time;motor_speed;motor_torque\n10:00:00;1;2\n10:00:01;1;2\n", "'10:00:00' is not a number; winch-friction"),
+        (changed(3, "20,-60", "20,fast"), "'fast' is not a number; leave the cell empty if unknown"),
+    ],
+)
+def test_numbers_that_are_written_in_another_way_are_for_import(tmp_path, text, advice):
+    with pytest.raises(InputError) as caught:
+        read_run(table(tmp_path, text))
+    assert advice in str(caught.value)
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mcap", ".db3", ".txt"])
 @pytest.mark.parametrize("content", [b"", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe garbage" * 50, b"a\0b,c\n1,2\n"])
 def test_binary_garbage_is_refused(tmp_path, suffix, content):

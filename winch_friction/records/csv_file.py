@@ -145,7 +145,9 @@ def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, pr
     bad = [row for row, number in enumerate(numbers) if number is None]
     if bad:
         at = [f"{path}: {place(row)}, column '{header.text}': '{values[row].strip()[:40]}'" for row in bad[:_SHOWN]]
-        said = [f"{each} is not a number; leave the cell empty if unknown" for each in at]
+        foreign = len(bad) == len(values) or _number(values[bad[0]].replace(",", ".")) is not None
+        advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
+        said = [f"{each} is not a number; {advice}" for each in at]
         with problems:
             raise InputError(*with_count(said, len(bad), "like it in this column"))
     return np.array([np.nan if number is None else number for number in numbers])

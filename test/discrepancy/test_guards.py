@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import standing as standing_module
+from winch_friction.discrepancy import workflow as workflow_module
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -792,6 +793,22 @@ def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatc
     result = standing_module.standing(None, None, None, search, np.random.default_rng(0))
     assert (result is both) is stand
     assert ("together leave" in result.search.verdict.refused) is not stand
+
+
+@pytest.mark.parametrize(("train", "locked", "asked"), [(0.0, 0.0, False), (1.2, 0.0, True), (0.0, 1.2, True)])
+def test_no_law_is_asked_where_a_curve_leaves_nothing_of_any_run(monkeypatch, train, locked, asked):
+    """Of hundreds of laws one always leaves less of the noise."""
+    cross = crossfit(3.0 * WAVE + noise())
+    own = replace(SLOTS[0], free=True)
+    final = replace(cross.explain(SLOTS[:1]), slots=(own,))
+    search = _Tried(cross, Selection(cross.explain(()), final, (Finding(own, (), 0.0, 0.5, 1.0),)), Verdict(MISSING))
+    sides = [side(3.0 * WAVE + noise(), kept * WAVE + noise(1)) for kept in (train, locked)]
+    trial, said = Trial(search, None, *sides), []
+    monkeypatch.setattr(workflow_module, "_closed", lambda *_: True)
+    monkeypatch.setattr(workflow_module, "_asked", lambda *_: said.append("asked") or [])
+    split = SimpleNamespace(train=())
+    assert workflow_module.not_one_law(split, None, None, trial, np.random.default_rng(0)) is trial
+    assert bool(said) is asked
 
 
 def leaving(rms):

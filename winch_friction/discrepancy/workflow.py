@@ -64,13 +64,15 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     """The trial without its names where one law that is none of theirs does by itself what they do.
 
     Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
-    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves.
+    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves, and
+    where it leaves nothing that is anybody's of any run none.
     """
     search = trial.search
     slots = [slot for slot in search.explanation.slots if not slot.plain]
     left = search.cross.excess(search.explanation)
     causes = {slot.name for slot in slots}
     asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
+    asked = asked and not (len(causes) == 1 and nobodys(trial.train) and nobodys(trial.holdout))
     closed = bool(asked) and len(causes) == 1 and _closed(trial, rng)
     near = partial(near_laws, search, split.train, rng)
     laws = _asked(near, search.cross, search.selection.final, closed) if asked else []

@@ -103,3 +103,23 @@ def test_one_missing_speed_is_no_dead_sensor(run):
     columns = {name: run[name].copy() for name in run.columns}
     columns["motor_speed"][-1] = np.nan
     assert first_contradiction(quick_check([replace(run, columns=columns)], CRANE)) is None
+
+
+@pytest.fixture(scope="module")
+def compensating():
+    return wf.simulate("ahc_irregular", CRANE, MODEL, duration=60.0).run
+
+
+def test_a_motor_group_that_nobody_logged_is_named_before_a_load_that_would_make_up_for_it(compensating):
+    def without(group):
+        columns = {name: each for name, each in compensating.columns.items() if not name.startswith(f"{group}.")}
+        return replace(compensating, columns=columns)
+
+    assert not [each for each in quick_check([compensating], CRANE, MODEL) if each.cause == "groups"]
+    found = first_contradiction(quick_check([without("passive")], CRANE, MODEL))
+    assert found is not None
+    assert (found.cause, found.channel) == ("groups", "passive.pressure_a")
+    assert "3 of 11 motors; no columns of passive: forgotten" in found.sentence
+    said = [each.sentence for each in quick_check([without("active")], CRANE, MODEL) if each.cause == "groups"]
+    assert len(said) == 1
+    assert "8 of 11 motors; no columns of active" in said[0]

@@ -254,6 +254,25 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
             yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
 
 
+def group_findings(runs: Sequence[Run], crane: Crane, contradicting: Sequence[str]) -> Iterator[Finding]:
+    """Runs of some of the motors alone, where the crane file says that others share the shaft with them: one group has
+    as many motors as all others together. What these hold nobody logged; in error where the run contradicts the crane.
+    """
+    sizes = dict(crane.groups)
+    wholes = [name for name, size in sizes.items() if len(sizes) > 2 and 2 * size == sum(sizes.values())]
+    for run in runs if wholes else ():
+        forgotten = [name for name in sizes if name not in (*run.groups, *wholes)]
+        if set(run.groups) & set(wholes) or not forgotten or not run.groups:
+            continue
+        there = sum(sizes.get(name, 0) for name in run.groups)
+        said = (
+            f"{run.name}: {there} of {sizes[wholes[0]]} motors; no columns of {', '.join(forgotten)}: "
+            "forgotten when the log was written or imported?"
+        )
+        severity = "error" if run.name in contradicting else "warning"
+        yield Finding(severity, "groups", said, f"{forgotten[0]}.pressure_a", (run.name,), {"motors": there})
+
+
 def _read(column: str, value: float, of_size: bool = False) -> str:
     """An SI value (`of_size`: a difference) in the unit in which people read the column."""
     unit = column_unit(column) or "SI"

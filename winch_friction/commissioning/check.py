@@ -15,6 +15,7 @@ from winch_friction.commissioning.channels import (
     clock_findings,
     first_contradiction,
     frozen_findings,
+    group_findings,
     run_words,
     told_slow_clock,
 )
@@ -145,6 +146,7 @@ def diagnosed(
         *slow,
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
+        *(group_findings(usable, crane, diagnosis.contradicting) if crane.drive.hydraulic else ()),
         *(() if slow else _trusted(_mistake(diagnosis, crane), crane)),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),

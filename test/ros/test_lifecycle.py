@@ -37,6 +37,21 @@ def test_transitions_gate_the_output(bench: Bench) -> None:
     assert bench.stop("compensator") == 0
 
 
+def test_what_was_switched_off_stays_so_over_a_new_configuration(bench: Bench) -> None:
+    bench.start("compensator")
+    node, torque = bench.remote("compensator"), bench.listen("compensator/friction_torque")
+    node.switch("enable", False)
+    node.change("deactivate", "cleanup", "configure", "activate")
+    bench.announce()
+    torque.clear()
+    bench.drive(0.8)
+    assert len(torque) > 10
+    assert all(message.effort[0] == 0.0 for message in torque)
+    node.switch("enable", True)
+    bench.drive(0.8)
+    assert abs(torque[-1].effort[0]) > 0.0
+
+
 def test_a_bad_model_leaves_the_node_unconfigured(bench: Bench) -> None:
     bench.start("compensator", autostart=False, model_file="no_such_model")
     node = bench.remote("compensator")

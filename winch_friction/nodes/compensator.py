@@ -48,6 +48,7 @@ class CompensatorNode(WinchNode):
         fixed = ("pressure_group", "min_displacement")  # they change the pressure at once, which no ramp bounds
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
+        self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("compensator", self._config, self._own, **node_arguments)
 
     def build(self, crane: Crane, model: FrictionModel) -> None:
@@ -57,6 +58,7 @@ class CompensatorNode(WinchNode):
         _check_pressure_group(config.pressure_group, topics.groups)
         model.compile(len(topics.groups))  # now, not while the first sample waits
         self.service = CompensatorService(crane, model, topics, config, self._service_options(), since=self.ros_now())
+        self.service.set_enabled(self._wanted)
         if past := self.service.law.status()["past_corrections"]:
             self.get_logger().warning(f"model '{model.name}': over, and not taken out: {past}")
         self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
@@ -131,6 +133,7 @@ class CompensatorNode(WinchNode):
 
     # -- services
     def _enable(self, wanted: bool) -> str:
+        self._wanted = wanted
         self.service.set_enabled(wanted)
         return f"feedforward {'enabled' if wanted else 'disabled'}"
 

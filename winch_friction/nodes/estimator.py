@@ -53,6 +53,7 @@ class EstimatorNode(WinchNode):
     def __init__(self, **node_arguments: Any) -> None:
         self._config = OptionParameters(EstimatorConfig, fixed=EstimatorConfig.__dataclass_fields__)
         self._own = OptionParameters(EstimatorNodeOptions, fixed=("checkpoint",))
+        self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("estimator", self._config, self._own, **node_arguments)
 
     def build(self, crane: Crane, model: FrictionModel) -> None:
@@ -65,6 +66,7 @@ class EstimatorNode(WinchNode):
         self.service = EstimatorService(crane, model, topics, self._config.read(self), options, **periods)
         self.law = self.service.law
         self._restore()
+        self.service.set_enabled(self._wanted)
         self.inputs = Inputs(self, self.service, self._answer)
         patience = self.options.watchdog_timeout
         self._input_health = InputHealth(self.service.inputs, self.inputs, self._needed, self.service_now, patience)
@@ -114,6 +116,7 @@ class EstimatorNode(WinchNode):
 
     # -- services
     def _enable(self, wanted: bool) -> str:
+        self._wanted = wanted
         self.service.set_enabled(wanted)
         return f"learning {'enabled' if wanted else 'disabled'}"
 

@@ -17,7 +17,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.model_file import load_model
+from winch_friction.records.model_file import load_model, save_model
 
 KILLS = 12
 FUZZ = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -147,3 +147,11 @@ def test_what_was_refused_is_set_aside_and_nothing_there_is_replaced(tmp_path, l
     assert kept[0].name == "c.json.refused"
     with pytest.raises(InputError, match="not a file"):
         set_aside(tmp_path)
+
+
+def test_a_model_given_as_the_checkpoint_stays_where_it_is(tmp_path, crane2_model):
+    path = save_model(crane2_model, tmp_path / "m.yaml")
+    before = path.read_text()
+    with pytest.raises(InputError, match=r"m.yaml: a file of schema 'winch_friction.model/\d', not a checkpoint"):
+        set_aside(path)
+    assert path.read_text() == before

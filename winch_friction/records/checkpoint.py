@@ -3,6 +3,7 @@
 import hashlib
 import itertools
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ from winch_friction.physics.errors import InputError
 from winch_friction.records.atomic import remove_stale, write_text
 
 SCHEMA = "winch_friction.checkpoint/1"
+OTHERS = re.compile(rb"schema\W+(winch_friction\.(?!checkpoint)\w+/\d+)")
+HEAD = 4096  # bytes of a file, within which it says its schema
 
 
 def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
@@ -40,11 +43,15 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
 def set_aside(path: Path | str) -> Path:
     """Give a file that was refused another name, so that the next checkpoint does not replace it; the name.
 
-    Raises `InputError` for what is no file, and could not be written either.
+    Raises `InputError` for what is no file, and could not be written either, and for another file of this package,
+    which somebody needs where it is.
     """
     path = Path(path)
     if not path.is_file():
         raise InputError(f"{path}: not a file: no checkpoint can be written there")
+    other = OTHERS.search(path.read_bytes()[:HEAD])
+    if other is not None:
+        raise InputError(f"{path}: a file of schema '{other[1].decode()}', not a checkpoint: give checkpoint another")
     names = (path.with_name(f"{path.name}.refused{number}") for number in itertools.chain(("",), itertools.count(2)))
     kept = next(each for each in names if not each.exists())
     path.rename(kept)

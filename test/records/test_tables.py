@@ -97,7 +97,7 @@ def changed(line, old, new):
     [
         ("", "empty"),
         ("\n\n", "empty"),
-        ("time,motor_speed,motor_torque\n", "0 rows are too few"),
+        ("time,motor_speed,motor_torque\n", "no rows under the header; a run needs at least two"),
         ("time,motor_speed,motor_torque\n0,1,2\n", "1 rows are too few"),
         (changed(1, "[rpm]", "[bar]"), "'motor_speed [bar]': unit 'bar' cannot be read as rad/s, e.g. 'rpm'"),
         (changed(1, "[rpm]", "[Hz]"), "unit 'Hz'"),
@@ -114,7 +114,8 @@ def changed(line, old, new):
         (changed(3, "20,-60", "20,fast"), "line 3, column 'motor_speed [rpm]': 'fast' is not a number"),
         (changed(3, "20,", ","), "line 3, column 'time': no time"),
         (changed(4, "2000,", "10,"), "line 4, column 'time': time goes back by 0.01 s, from 0.02 s to 0.01 s;"),
-        (NO_SPEED, "'motor_speed' (or 'drum_speed') is missing or empty"),
+        (NO_SPEED, "column 'motor_speed' is there but holds no number; it is required"),
+        (NO_SPEED.replace(",motor", ",drum"), "column 'drum_speed' is there but holds no number; it is required"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_said_in_one_line(tmp_path, text, said):
@@ -123,6 +124,42 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, text, said):
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
     assert "log.csv" in str(caught.value)
+
+
+HEADER_LACKS = "time,motor_speed,main.pressure_a,main.pressure_b\n0,1,,2e6\n1,1,,2e6\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "crane", "said"),
+    [
+        (HEADER, "crane_150t", ["log.csv: no rows under the header; a run needs at least two"]),
+        (
+            HEADER_LACKS,
+            "crane_150t",
+            [
+                "log.csv: column 'main.pressure_a' is there but holds no number; it is required: fill it in",
+                "log.csv: motor group 'main' lacks main.displacement",
+            ],
+        ),
+        (
+            "time,motor_speed,main.pressure_a,main.pressure_b,main.displacement\n0,1,,,\n1,1,,,\n",
+            "crane_150t",
+            [
+                f"log.csv: column 'main.{each}' is there but holds no number; it is required: fill it in"
+                for each in ("pressure_a", "pressure_b", "displacement")
+            ],
+        ),
+        (
+            "time,motor_speed,motor_torque\n0,1,\n1,1,\n",
+            "emps",
+            ["log.csv: column 'motor_torque' is there but holds no number; it is required: fill it in"],
+        ),
+    ],
+)
+def test_a_column_without_numbers_is_empty_and_not_missing(tmp_path, text, crane, said):
+    with pytest.raises(InputError) as caught:
+        read_run(table(tmp_path, text), load_crane(crane))
+    assert list(caught.value.problems) == said
 
 
 @pytest.mark.parametrize(

@@ -82,6 +82,7 @@ def checked_run(
     said, aside = [*warnings, *remarks_on_bare_columns(name, columns, bare)], dict(aside or {})
     if aside:
         said.append(f"{name}: unknown columns kept aside: {', '.join(aside)}")
+    _check_rows(name, columns, aside)
     problems = Problems()
     with problems:
         _check_time(name, columns, place)
@@ -104,10 +105,17 @@ def _check_columns(
 ) -> None:
     """Whether all that a run needs is there, with a value."""
     there = {column: values for column, values in columns.items() if np.isfinite(values).any() or column == "time"}
+    empty = [column for column in columns if column not in there]
     with problems:
-        there = _with_motor_speed(name, there, crane, aside)
+        there = _with_motor_speed(name, there, crane, aside, empty)
     with problems:
-        _check_required(name, there, crane)
+        _check_required(name, there, crane, empty)
+
+
+def _check_rows(name: str, columns: Columns, aside: Mapping[str, Any]) -> None:
+    lengths = [len(values) for values in (*columns.values(), *aside.values())]
+    if lengths and not any(lengths):
+        raise InputError(f"{name}: no rows under the header; a run needs at least two")
 
 
 def _check_time(name: str, columns: Columns, place: Place) -> None:
@@ -159,42 +167,73 @@ def _with_finite_values(name: str, columns: Columns, place: Place, said: list[st
 
 
 def _with_motor_speed(
-    name: str, columns: Columns, crane: Crane | None, aside: Mapping[str, Any] | None = None
+    name: str,
+    columns: Columns,
+    crane: Crane | None,
+    aside: Mapping[str, Any] | None = None,
+    empty: Sequence[str] = (),
 ) -> Columns:
     if "motor_speed" in columns:
         return columns
     if "drum_speed" not in columns:
+        _refuse_empty(name, [each for each in ("motor_speed", "drum_speed") if each in empty][:1])
         near = [said for said in aside or {} if meant("motor_speed", [said.partition("[")[0].strip()])]
         slip = f"'{near[0]}': did you mean motor_speed?" if near else f"found {', '.join(columns)}"
-        raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing or empty; {slip}")
+        raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing; {slip}")
     if crane is None:
         raise InputError(f"{name}: 'drum_speed' needs the crane's gear ratio to become 'motor_speed'; give the crane")
     rest = {column: values for column, values in columns.items() if column != "drum_speed"}
     return {"time": rest.pop("time"), "motor_speed": columns["drum_speed"] * crane.gear_ratio, **rest}
 
 
-def _check_required(name: str, columns: Columns, crane: Crane | None) -> None:
-    groups = dict.fromkeys(c.rpartition(".")[0] for c in columns if c.rpartition(".")[2] in GROUP_CHANNELS and "." in c)
-    problems = []
-    for group in groups:
-        lacking = [channel for channel in GROUP_CHANNELS if f"{group}.{channel}" not in columns]
-        if lacking:
-            problems.append(f"{name}: motor group '{group}' lacks {', '.join(f'{group}.{each}' for each in lacking)}")
-        if crane is not None and crane.drive.hydraulic and group not in crane.groups:
-            known = ", ".join(crane.groups)
-            problems.append(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
-    if problems:
-        raise InputError(*problems)
+def _refuse_empty(name: str, required: Iterable[str]) -> None:
+    """Raise `InputError` for columns that a run must have and that stand in it without a single number."""
+    said = [f"{name}: column '{each}' is there but holds no number; it is required: fill it in" for each in required]
+    if said:
+        raise InputError(*said)
+
+
+def _groups_of(columns: Iterable[str]) -> list[str]:
+    parts = (column.rpartition(".") for column in columns)
+    return list(dict.fromkeys(group for group, dot, channel in parts if dot and channel in GROUP_CHANNELS))
+
+
+def _check_required(name: str, columns: Columns, crane: Crane | None, empty: Sequence[str]) -> None:
+    groups = _groups_of(columns)
+    if groups:
+        _check_groups(name, groups, columns, crane, empty)
     drive = crane.drive if crane is not None else Drive(HYDRAULIC if groups else ELECTRIC)
+    pressures = not groups and (drive.hydraulic or crane is None)
+    _refuse_empty(name, [each for each in empty if each in drive.channels or (pressures and _groups_of([each]))])
     for channel in drive.channels:
         if channel not in columns:
             other = "" if crane is not None else " (or the pressures of a motor group)"
-            raise InputError(f"{name}: column '{channel}'{other} is missing or empty; the drive's torque comes from it")
+            raise InputError(f"{name}: column '{channel}'{other} is missing; the drive's torque comes from it")
     if drive.hydraulic and not groups:
         raise InputError(
             f"{name}: no motor group: <group>.pressure_a, .pressure_b and .displacement are required with crane "
             f"'{crane.name if crane else ''}'"
         )
+
+
+def _check_groups(
+    name: str, groups: Sequence[str], columns: Columns, crane: Crane | None, empty: Sequence[str]
+) -> None:
+    """Whether each motor group has all of its columns, and the crane each of the groups."""
+    problems = Problems()
+    for group in groups:
+        lacking = [each for each in (f"{group}.{channel}" for channel in GROUP_CHANNELS) if each not in columns]
+        missing = [each for each in lacking if each not in empty]
+        with problems:
+            _refuse_empty(name, [each for each in lacking if each in empty])
+        with problems:
+            if missing:
+                raise InputError(f"{name}: motor group '{group}' lacks {', '.join(missing)}")
+        with problems:
+            if crane is not None and crane.drive.hydraulic and group not in crane.groups:
+                known = ", ".join(crane.groups)
+                raise InputError(f"{name}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
+    problems.say()
 
 
 def _note_gaps(name: str, time: FloatArray, place: Place, said: list[str]) -> None:

@@ -134,6 +134,11 @@ def test_a_key_that_stands_in_a_merged_mapping_too_overrules_it():
         (lambda d: d["drum"].update(layer_radii=[1.0, 0.9]), "grow from layer to layer"),
         (lambda d: d["groups"].update(active=2.5), "whole number of motors"),
         (lambda d: d.update(max_displacement={"value": 215, "unit": "bar"}), "unit 'bar'"),
+        (lambda d: d.update(groups={}), "groups: none is there; a hydraulic crane needs one at least, e.g. main: 11"),
+        (lambda d: d["groups"].update({"": 2}), "groups: '' is no name of a motor group: write letters"),
+        (lambda d: d["groups"].update({"ma.in": 2}), "groups: 'ma.in' is no name of a motor group: write letters"),
+        (lambda d: d["groups"].update({2: 2}), "groups: '2' is no name of a motor group: write letters"),
+        (lambda d: d["groups"].update({"a/b": 2, "a b": 2}), r"'a/b' is no name.* \| .*'a b' is no name"),
     ],
 )
 def test_a_wrong_crane_is_one_clear_line(change, message):

@@ -1,6 +1,7 @@
 """Crane files: the winch as the friction functions see it, from YAML; and what a number in one can be at all."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,7 +39,7 @@ def crane_from_content(content: Any, where: str) -> Crane:
         drive=drive,
         gear_ratio=_positive(top, "gear_ratio", "1"),
         drum=_drum(top),
-        groups=_groups(top),
+        groups=_groups(top, drive),
         inertia=_positive(top, "inertia", "kg*m^2"),
         max_displacement=_positive(top, "max_displacement", "m^3/rad") if drive.hydraulic else 0.0,
         wire_mass=top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
@@ -88,15 +89,30 @@ def _drum(top: Section) -> Drum:
     return Drum(values)
 
 
-def _groups(top: Section) -> dict[str, int]:
-    section = top.section("groups")
+_GROUP_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)  # the front of a column, and a part of a topic
+
+
+def _groups(top: Section, drive: Drive) -> dict[str, int]:
+    section, problems = top.section("groups"), Problems()
+    if drive.hydraulic and not section.content:
+        raise InputError(f"{section.where}: none is there; a hydraulic crane needs one at least, e.g. main: 11")
     groups = {}
     for name in section.content:
-        count = section.get(name)
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise InputError(f"{section.where}: {name} must be a whole number of motors, found {count!r}")
-        groups[str(name)] = count
+        with problems:
+            groups[str(name)] = _motors(section, name)
+    problems.say()
     return groups
+
+
+def _motors(section: Section, name: Any) -> int:
+    count = section.get(name)
+    if not _GROUP_NAME.fullmatch(str(name)):
+        raise InputError(
+            f"{section.where}: '{name}' is no name of a motor group: write letters, digits and _, a letter first"
+        )
+    if isinstance(count, bool) or not isinstance(count, int) or count < 1:
+        raise InputError(f"{section.where}: {name} must be a whole number of motors, found {count!r}")
+    return count
 
 
 # -- what a number can be at all: ranges that hold bench rigs and the largest offshore cranes alike

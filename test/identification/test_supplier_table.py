@@ -52,6 +52,7 @@ BAD = {
                            r"row 3: column 'efficiency' = 102 is above 1"),
     "NaN": ([HEADER, "1000,nan,215,94"], r"row 2: column 'pressure' holds 'nan', not a finite number"),
     "text": ([HEADER, "1000,200,215,n/a"], r"row 2: column 'efficiency' holds 'n/a'"),
+    "underscore": ([HEADER, "1_000,200,215,94"], r"row 2: column 'speed' holds '1_000', not a finite number"),
     "empty cell": ([HEADER, "1000,,215,94"], r"row 2: column 'pressure' holds nothing"),
     "cells": ([HEADER, "1000,200,215"], r"row 2: 3 cells, the header has 4 columns"),
     "negative": ([HEADER, "-1000,200,215,94"], r"row 2: column 'speed' = -1000 must be above 0"),

@@ -48,6 +48,11 @@ def test_not_a_number_and_unknown_columns_come_back_and_are_said(tmp_path, suffi
     assert ("line 5" if suffix == ".csv" else "row 4") in said
 
 
+def test_an_unknown_column_with_underscores_stays_text(tmp_path):
+    run = read_run(table(tmp_path, "time,motor_speed,motor_torque,batch\n0,1,2,1_000\n1,1,2,1_001\n"))
+    assert list(run.aside["batch"]) == ["1_000", "1_001"]
+
+
 def test_metadata_travels_in_parquet(tmp_path):
     run = Run("x", make_run().columns, metadata={"seed": 7, "scenario": "splash"})
     assert read_run(write_run(run, tmp_path / "x.parquet")).metadata == {"seed": 7, "scenario": "splash"}
@@ -168,6 +173,7 @@ def test_a_column_without_numbers_is_empty_and_not_missing(tmp_path, text, crane
         (TABLE.replace(",", ";").replace(";55;", ";55,5;"), "'55,5' is not a number; winch-friction import reads"),
         ("time;motor_speed;motor_torque\n10:00:00;1;2\n10:00:01;1;2\n", "'10:00:00' is not a number; winch-friction"),
         (changed(3, "20,-60", "20,fast"), "'fast' is not a number; leave the cell empty if unknown"),
+        (changed(4, "2000,", "2_000,"), "line 4, column 'time [ms]': '2_000' is not a number; write it without '_'"),
     ],
 )
 def test_numbers_that_are_written_in_another_way_are_for_import(tmp_path, text, advice):

@@ -139,7 +139,7 @@ def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]
 def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, problems: Problems) -> FloatArray:
     """A column's numbers; a cell that is none is gathered, and NaN."""
     try:
-        return np.array(values, dtype=float)
+        return as_floats(values)
     except ValueError:  # a cell that is empty, or no number
         numbers = [_number(text) for text in values]
     bad = [row for row, number in enumerate(numbers) if number is None]
@@ -147,10 +147,19 @@ def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, pr
         at = [f"{path}: {place(row)}, column '{header.text}': '{values[row].strip()[:40]}'" for row in bad[:_SHOWN]]
         foreign = len(bad) == len(values) or _number(values[bad[0]].replace(",", ".")) is not None
         advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
+        if _number(values[bad[0]].replace("_", "")) is not None:
+            advice = "write it without '_'"
         said = [f"{each} is not a number; {advice}" for each in at]
         with problems:
             raise InputError(*with_count(said, len(bad), "like it in this column"))
     return np.array([np.nan if number is None else number for number in numbers])
+
+
+def as_floats(values: Sequence[str]) -> FloatArray:
+    """Texts as numbers, `1_000` being none: it is a number in Python alone. Raises `ValueError`."""
+    if "_" in "".join(values):
+        raise ValueError("no number has an underscore")
+    return np.array(values, dtype=float)
 
 
 def _number(text: str) -> float | None:
@@ -158,14 +167,14 @@ def _number(text: str) -> float | None:
     if text.strip().lower() in _MISSING:
         return float("nan")
     try:
-        return float(text)
+        return None if "_" in text else float(text)
     except ValueError:
         return None
 
 
 def _numbers_or_text(values: Sequence[str]) -> Any:
     try:
-        return np.array([text or "nan" for text in values], dtype=float)
+        return as_floats([text or "nan" for text in values])
     except ValueError:
         return np.array(values, dtype=object)
 

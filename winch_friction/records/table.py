@@ -12,6 +12,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
+from winch_friction.records.csv_file import as_floats
 from winch_friction.records.headers import conversion_to_si, parse_header
 
 _SHOWN = 3  # places named of one kind of problem
@@ -53,7 +54,7 @@ class Table:
 
     def _number(self, text: str, column: str, row: int) -> float:
         try:
-            value = float(text)
+            value = float(as_floats([text])[0])
         except ValueError:
             value = math.nan
         if not math.isfinite(value):

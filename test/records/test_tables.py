@@ -53,6 +53,27 @@ def test_an_unknown_column_with_underscores_stays_text(tmp_path):
     assert list(run.aside["batch"]) == ["1_000", "1_001"]
 
 
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+@pytest.mark.parametrize("header", ["", " [bar]"])
+def test_a_column_without_a_name_is_named_by_its_place(tmp_path, suffix, header):
+    run = make_run()
+    path = write_run(
+        Run("x", run.columns, aside={"odd": np.arange(60), header: np.arange(60)}), tmp_path / f"x{suffix}"
+    )
+    place = len(run.columns) + 2
+    assert [each for each in read_run(path).warnings if "aside" in each] == [
+        f"x{suffix}: column {place} has no name and is kept aside",
+        f"x{suffix}: unknown columns kept aside: odd",
+    ]
+
+
+def test_columns_without_a_name_are_named_by_their_places(tmp_path):
+    path = table(tmp_path, "time,,motor_speed,motor_torque,\n0,1,2,3,\n1,1,2,3,\n")
+    with pytest.raises(InputError) as caught:
+        read_run(path)
+    assert str(caught.value) == f"{path}: columns 2 and 5 have no name; name them in the header, or take them out"
+
+
 def test_metadata_travels_in_parquet(tmp_path):
     run = Run("x", make_run().columns, metadata={"seed": 7, "scenario": "splash"})
     assert read_run(write_run(run, tmp_path / "x.parquet")).metadata == {"seed": 7, "scenario": "splash"}

@@ -57,17 +57,25 @@ def from_frame(data: Any, name: str = "frame", crane: Crane | None = None) -> Ru
     >>> run.to_frame()["motor_speed"].round(2).tolist(), run.to_frame().attrs["units"]["motor_speed"]
     ([0.0, 62.83], 'rad/s')
     """
-    from winch_friction.records.headers import parse_header
+    from winch_friction.records.headers import parse_header, said_of_nameless
     from winch_friction.records.run_checks import checked_run
 
-    columns, aside = {}, {}
+    columns, aside, headers = {}, {}, []
     for text, (values, unit) in _columns(data, name).items():
         header = parse_header(text if "[" in text or unit in ("", "1") else f"{text} [{unit}]", name)
+        headers.append(header)
         if header.known:
             columns[header.name] = header.to_si(_numbers(values, text, name), name)
         else:
             aside[header.text] = np.asarray(values)
-    return checked_run(name, columns, place=lambda row: f"row {row}", crane=crane, complete=True, aside=aside)
+    return checked_run(
+        name,
+        columns,
+        place=lambda row: f"row {row}",
+        crane=crane,
+        aside=aside,
+        warnings=said_of_nameless(headers, name),
+    )
 
 
 def _columns(data: Any, name: str) -> dict[str, tuple[Any, str]]:

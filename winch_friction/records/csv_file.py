@@ -12,7 +12,7 @@ from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
-from winch_friction.records.headers import Header, header_text, parse_header
+from winch_friction.records.headers import Header, header_text, parse_header, said_of_nameless
 from winch_friction.records.run_checks import Place, checked_run
 
 _SHOWN = 3  # places named of one kind of problem
@@ -42,7 +42,10 @@ def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) 
         else:
             aside[header.text] = _numbers_or_text(values)
     with problems:
-        run = checked_run(path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare)
+        run = checked_run(
+            path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare,
+            warnings=said_of_nameless(headers, path.name),
+        )  # fmt: skip
     problems.say()
     return run
 
@@ -60,6 +63,10 @@ def write_csv_run(run: Run, path: Path) -> Path:
 
 def unique_headers(headers: list[Header], path: Path) -> list[Header]:
     """The headers, when no two name the same column; else `InputError`."""
+    nameless = [str(place) for place, header in enumerate(headers, 1) if not header.text]
+    if len(nameless) > 1:
+        at = f"{', '.join(nameless[:-1])} and {nameless[-1]}"
+        raise InputError(f"{path}: columns {at} have no name; name them in the header, or take them out")
     seen: dict[str, Header] = {}
     for header in headers:
         name = header.name if header.known else header.text

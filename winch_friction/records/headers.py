@@ -9,6 +9,7 @@ by the SI unit that its column has, since `C`, `1/min` or `t` mean nothing by th
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -209,6 +210,12 @@ def parse_header(text: str, where: str = "") -> Header:
             f"{where}: header '{text}' opens a bracket that does not close; write e.g. 'motor_speed [rpm]'"
         )
     return Header(text.strip(), name.strip(), rest.strip().removesuffix("]").strip())
+
+
+def said_of_nameless(headers: Iterable[Header], name: str) -> list[str]:
+    """What is said of columns without a name, by their places from 1: nothing else tells them."""
+    places = (place for place, header in enumerate(headers, 1) if not header.name)
+    return [f"{name}: column {place} has no name and is kept aside" for place in places]
 
 
 def header_text(column: str) -> str:

@@ -11,7 +11,7 @@ from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.csv_file import read_headers
-from winch_friction.records.headers import Header, header_text
+from winch_friction.records.headers import Header, header_text, said_of_nameless
 from winch_friction.records.run_checks import Place, checked_run
 
 _METADATA = b"winch_friction"
@@ -35,8 +35,9 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
     metadata = json.loads((table.schema.metadata or {}).get(_METADATA, b"{}"))
     with problems:
         run = checked_run(
-            path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare
-        )
+            path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare,
+            warnings=said_of_nameless(headers, path.name),
+        )  # fmt: skip
     problems.say()
     return run
 

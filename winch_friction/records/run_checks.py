@@ -80,8 +80,9 @@ def checked_run(
     `bare` names the columns whose header had no unit.
     """
     said, aside = [*warnings, *remarks_on_bare_columns(name, columns, bare)], dict(aside or {})
-    if aside:
-        said.append(f"{name}: unknown columns kept aside: {', '.join(aside)}")
+    named = [column for column in aside if column.partition("[")[0].strip()]  # the others: by their places
+    if named:
+        said.append(f"{name}: unknown columns kept aside: {', '.join(named)}")
     _check_rows(name, columns, aside)
     problems = Problems()
     with problems:

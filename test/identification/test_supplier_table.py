@@ -35,6 +35,13 @@ def test_other_units_and_torque(write):
     assert read_supplier_table(path).torque_loss == pytest.approx([40.0])
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_other_separators_as_in_run_files(write, separator):
+    lines = ("# speed, pressure, displacement; then the loss", HEADER, "1000,200,215,94.0", "2000,100,107.5,90")
+    table = read_supplier_table(write(lines[0], *(line.replace(",", separator) for line in lines[1:])))
+    np.testing.assert_allclose(table.pressure, [200 * BAR, 100 * BAR])
+
+
 def test_loss_in_si_without_brackets_and_weights(write):
     table = read_supplier_table(write("speed,pressure,displacement,torque_loss,weight", "100,2e7,3e-5,17,2.5"))
     assert table.torque_loss == pytest.approx([17.0])
@@ -53,6 +60,8 @@ BAD = {
     "NaN": ([HEADER, "1000,nan,215,94"], r"row 2: column 'pressure' holds 'nan', not a finite number"),
     "text": ([HEADER, "1000,200,215,n/a"], r"row 2: column 'efficiency' holds 'n/a'"),
     "underscore": ([HEADER, "1_000,200,215,94"], r"row 2: column 'speed' holds '1_000', not a finite number"),
+    "decimal comma": ([HEADER.replace(",", ";"), "1000;200;215;94,5"],
+                      r"row 2: column 'efficiency' holds '94,5', not a finite number; write it with a point"),
     "empty cell": ([HEADER, "1000,,215,94"], r"row 2: column 'pressure' holds nothing"),
     "cells": ([HEADER, "1000,200,215"], r"row 2: 3 cells, the header has 4 columns"),
     "negative": ([HEADER, "-1000,200,215,94"], r"row 2: column 'speed' = -1000 must be above 0"),

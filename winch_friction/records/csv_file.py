@@ -96,12 +96,17 @@ def _text(path: Path) -> str:
     return text.rstrip("\r\n") + "\n"  # blank lines at the end are nobody's data
 
 
+def separator_of(header: str) -> str:
+    """What separates the cells of a file with this header line."""
+    return max(",;\t", key=header.count)
+
+
 def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
     """The number of each row's last line, and its cells."""
     header = text.partition("\n")[0]
     # a StringIO would hold four bytes a letter
     stream = io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8", newline="")
-    reader = csv.reader(stream, delimiter=max(",;\t", key=header.count))
+    reader = csv.reader(stream, delimiter=separator_of(header))
     lines, rows = [], []
     try:
         for row in reader:

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +13,11 @@ import numpy as np
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
-from winch_friction.records.csv_file import as_floats
+from winch_friction.records.csv_file import as_floats, separator_of
 from winch_friction.records.headers import conversion_to_si, parse_header
 
 _SHOWN = 3  # places named of one kind of problem
+_DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ class Table:
             value = math.nan
         if not math.isfinite(value):
             said = repr(text) if text else "nothing"
-            raise InputError(f"{self.path} row {row}: column '{column}' holds {said}, not a finite number")
+            advice = "; write it with a point" if _DECIMAL_COMMA.fullmatch(text) else ""
+            raise InputError(f"{self.path} row {row}: column '{column}' holds {said}, not a finite number{advice}")
         return value
 
     def refuse(self, column: str, bad: Any, reason: str) -> None:
@@ -70,7 +73,7 @@ class Table:
 
 
 def read_table(path: Path) -> Table:
-    """A CSV file as a table; lines starting with # are comments."""
+    """A CSV file (comma, semicolon or tab) as a table; lines starting with # are comments."""
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -78,7 +81,7 @@ def read_table(path: Path) -> Table:
     numbered = [(k + 1, line) for k, line in enumerate(lines) if line.strip() and not line.startswith("#")]
     if len(numbered) < 2:
         raise InputError(f"{path}: a header and at least one row are needed, found {len(numbered)} line(s)")
-    records = list(csv.reader(line for _, line in numbered))
+    records = list(csv.reader((line for _, line in numbered), delimiter=separator_of(numbered[0][1])))
     return _table(Path(path), records, [row for row, _ in numbered])
 
 

@@ -171,6 +171,26 @@ def test_motor_by_shipped_name(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
+    ("displacements", "said"),
+    [((280, 140), "held-out displacement"), ((280,), "BIC, with one displacement in the fit")],
+)
+def test_what_recommends_a_motor_model_is_said(tmp_path, capsys, displacements, said):
+    rows = [
+        f"{speed},{pressure},{displacement},{95 - speed / 1000 - 300 / pressure + (speed * pressure % 7) / 50:.2f}"
+        for displacement in displacements
+        for speed in (500, 1200, 2400)
+        for pressure in (60, 150, 340)
+    ]
+    table, out = tmp_path / "table.csv", tmp_path / "seed.yaml"
+    table.write_text("\n".join(["speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]", *rows]))
+    arguments = ["identify", "motor", str(table), "--out", str(out), "--overwrite", "--no-complex", "--use", "wilson"]
+    assert run(["--plain", *arguments]) == 0
+    assert f"recommended by {said}: wilson" in capsys.readouterr().out
+    assert run([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["recommended_by"] == said
+
+
+@pytest.mark.parametrize(
     ("options", "message"),
     [
         (["--speed", "2500-400"], r"--speed '2500-400': the first number must be below the second"),

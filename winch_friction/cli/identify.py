@@ -42,7 +42,7 @@ def motor(
     table: Annotated[Path, typer.Argument(help="Supplier's table: CSV with units in the headers.")],
     out: Annotated[Path, typer.Option(help="Model file to write.")],
     model: Annotated[OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
-    use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best' by held-out displacement.")] = "mj4",
+    use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best': the recommended one.")] = "mj4",
     max_displacement: Annotated[float, typer.Option(help="D_max in cm^3/rev; 0: the table's largest.")] = 0.0,
     speed: Annotated[str, typer.Option(help="Range in rpm.")] = "400-2500",
     pressure: Annotated[str, typer.Option(help="Range in bar.")] = "50-350",

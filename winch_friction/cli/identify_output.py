@@ -19,13 +19,14 @@ def show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
         keys = ("model", "parameters", "rms", "held_out", "bic", "cost", "cost_complex", "evaluations",
                 "evaluations_complex")  # fmt: skip
         scores = [dict(zip(keys, row, strict=True)) for row in rows]
-        return show_json({"scores": scores, "recommended": found.recommended, "seed": seed_json(fitted, out),
+        return show_json({"scores": scores, "recommended": found.recommended,
+                          "recommended_by": found.recommended_by, "seed": seed_json(fitted, out),
                           "condition": found.chosen.fitted.condition})  # fmt: skip
     columns = ("model", "parameters", "RMS N·m", "held-out RMS", "BIC", "cost LS", "cost complex", "evaluations LS",
                "evaluations complex")  # fmt: skip
     show_table(f"{found.table.name}: {len(found.table)} rows", columns, rows)
     show_parameters(fitted, f"{found.chosen.name}, condition {found.chosen.fitted.condition:.3g}")
-    stdout.print(f"recommended by held-out displacement: {found.recommended}; wrote {out}")
+    stdout.print(f"recommended by {found.recommended_by}: {found.recommended}; wrote {out}")
     return None
 
 

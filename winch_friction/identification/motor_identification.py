@@ -25,7 +25,7 @@ def silent(items: Any, description: str) -> Any:
 @dataclass(frozen=True)
 class MotorIdentification:
     """`table` inside the range; `scores` best first; `by_complex` the complex method's fits by model name, beside them;
-    `recommended` by held-out displacement; `chosen` is the fit that becomes the seed.
+    `recommended` by what `recommended_by` says; `chosen` is the fit that becomes the seed.
     """
 
     table: SupplierTable
@@ -34,6 +34,12 @@ class MotorIdentification:
     by_complex: dict[str, FitResult]
     recommended: str
     chosen: ModelScore
+
+    @property
+    def recommended_by(self) -> str:
+        """What the models were compared by: with one displacement, none can be held out."""
+        held_out = np.isfinite(self.chosen.held_out)
+        return "held-out displacement" if held_out else "BIC, with one displacement in the fit"
 
 
 def identify_motor(

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.signals import Run
-from winch_friction.report.run_page import channel_rows, run_plot
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import read_run
+from winch_friction.report.run_page import channel_rows, run_plot, write_run_page
 
 RUN = Run(
     "r",
@@ -29,3 +32,24 @@ def test_what_is_drawn_is_in_the_unit_of_its_label():
     columns = run_plot(RUN).frames[0].columns
     assert columns["main.pressure_a [bar]"][:3] == pytest.approx([100.0, 200.0, 300.0])
     assert columns["hook_load [t]"][2:] == pytest.approx([5.0, 7.0])
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("broken", ["1e300", "1.5e308", "-1e308"])
+def test_a_value_that_no_sensor_can_mean_is_drawn_without_a_warning_of_the_libraries(tmp_path, broken):
+    header = "time,motor_speed [rpm],main.pressure_a [bar],main.pressure_b,main.displacement [cm^3/rev],hook_load\n"
+    rows = (f"{0.1 * k},{60 + k},150,{broken if k in (2, 3) else 2e6},215,55e3\n" for k in range(30))
+    (tmp_path / "r.csv").write_text(header + "".join(rows))
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    run = read_run(tmp_path / "r.csv", crane)
+    mean = next(row["mean"] for row in channel_rows(run) if row["channel"] == "main.pressure_b")
+    assert mean == pytest.approx(float(broken) / 15 / 1e5)
+    assert write_run_page(tmp_path / "page.html", [run], crane, model).is_file()
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_value_that_its_unit_takes_beyond_all_numbers_is_missing(tmp_path):
+    (tmp_path / "r.csv").write_text("time,motor_speed,motor_torque [kN*m]\n0,1,1e308\n1,1,2\n2,1,3\n")
+    run = read_run(tmp_path / "r.csv")
+    assert np.isnan(run["motor_torque"]).tolist() == [True, False, False]
+    assert "1 of 3 values are not numbers, line 2" in run.warnings[0]

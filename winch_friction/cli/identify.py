@@ -43,7 +43,9 @@ def motor(
     out: Annotated[Path, typer.Option(help="Model file to write.")],
     model: Annotated[OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
     use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best': the recommended one.")] = "mj4",
-    max_displacement: Annotated[float, typer.Option(help="D_max in cm^3/rev; 0: the table's largest.")] = 0.0,
+    max_displacement: Annotated[
+        float, typer.Option(min=0.0, max=6283.0, help="D_max in cm^3/rev; 0: the table's largest.")
+    ] = 0.0,
     speed: Annotated[str, typer.Option(help="Range in rpm.")] = "400-2500",
     pressure: Annotated[str, typer.Option(help="Range in bar.")] = "50-350",
     displacement: Annotated[str, typer.Option(help="Range in cm^3/rev.")] = "50-10000",

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from winch_friction.identification.supplier_table import SupplierTable
+from winch_friction.physics.channels import OF_GROUP, WINCH, factor_to_si
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.table import Table, read_table
@@ -13,6 +14,10 @@ _AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
 LEAST_BEST_EFFICIENCY = 0.1  # any piston motor reaches several times that somewhere in its table
 _UNITS = {"efficiency": "1", "torque": "N*m", "torque_loss": "N*m"}
 _LOSSES = tuple(_UNITS)
+_CHANNELS = {"speed": "motor_speed", "pressure": "pressure_a", "displacement": "displacement",
+             "torque": "motor_torque", "torque_loss": "motor_torque"}  # fmt: skip
+_NEXT_TO_NONE = 1e-9  # of the largest value that a channel can mean
+_WEIGHTS = (1e-9, 1e9)
 
 
 def read_supplier_table(path: str | Path, max_displacement: float | None = None) -> SupplierTable:
@@ -47,7 +52,7 @@ def _torque_loss(table: Table, nominal: FloatArray) -> FloatArray:
         found = " and ".join(given) or "none"
         raise InputError(f"{table.path}: exactly one of the columns {', '.join(_LOSSES)} is needed, found {found}")
     if given == ["torque_loss"]:
-        return table.column("torque_loss", "N*m")
+        return _plausible(table, "torque_loss", table.column("torque_loss", "N*m"))
     if given == ["torque"]:
         return nominal - _torque(table, nominal)
     return (1.0 - _efficiency(table)) * nominal
@@ -68,10 +73,30 @@ def _efficiency(table: Table) -> FloatArray:
 def _torque(table: Table, nominal: FloatArray) -> FloatArray:
     values = table.column("torque", "N*m")
     table.refuse("torque", values > nominal * (1 + 1e-9), "is above D dp: the efficiency would exceed 1")
-    return values
+    return _plausible(table, "torque", values)
 
 
 def _positive(table: Table, column: str, unit: str) -> FloatArray:
     values = table.column(column, unit)
     table.refuse(column, values <= 0.0, "must be above 0")
+    if column == "weight":
+        lower, upper = _WEIGHTS
+        table.refuse(column, (values < lower) | (values > upper), f"must be {lower:g} ... {upper:g}")
+        return values
+    return _plausible(table, column, values)
+
+
+def _plausible(table: Table, column: str, values: FloatArray) -> FloatArray:
+    """The values; raises `InputError` for those that no motor has: their squares would leave the range of numbers."""
+    channel = OF_GROUP.get(_CHANNELS[column]) or WINCH[_CHANNELS[column]]
+    lower, upper = channel.limits
+    if column in _AXES:
+        lower = _NEXT_TO_NONE * upper
+    factor = factor_to_si(channel.display, channel.unit)
+    table.refuse(
+        column,
+        (values < lower) | (values > upper),
+        f"is no motor's: {lower / factor:.4g} ... {upper / factor:.4g} {channel.display}; correct the number or the "
+        "unit in the header",
+    )
     return values

@@ -199,7 +199,8 @@ class Header:
         if self.unit in ("", expected):
             return values
         scale, offset = conversion_to_si(self.unit, expected, f"{where}: column '{self.text}'")
-        return values * scale + offset if offset else values * scale
+        with np.errstate(over="ignore"):  # infinite is told with its row, as what is not finite in the file
+            return values * scale + offset if offset else values * scale
 
 
 def parse_header(text: str, where: str = "") -> Header:

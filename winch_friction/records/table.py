@@ -52,7 +52,9 @@ class Table:
             more = f" (and {len(problems.found) - _SHOWN} more like it in this column)"
             problems.found[_SHOWN - 1 :] = [problems.found[_SHOWN - 1] + more]
         problems.say()
-        return values * _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
+        factor = _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
+        with np.errstate(over="ignore"):  # infinite is beyond any range too
+            return values * factor
 
     def _number(self, text: str, column: str, row: int) -> float:
         try:

@@ -17,6 +17,8 @@ from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.tables import for_people, table_html, value_for_people
 
 
+# a broken sensor's 1e300 is shown as it stands; what is made of it may leave the range of numbers, in silence
+@np.errstate(over="ignore", invalid="ignore")
 def write_run_page(path: Path, runs: Sequence[Run], crane: Crane | None, model: FrictionModel | None) -> Path:
     """Write the page; with crane and model also the model's friction, where the load is known."""
     rows = [list(row.values()) for run in runs for row in channel_rows(run)]
@@ -33,7 +35,7 @@ def channel_rows(run: Run) -> list[dict[str, Any]]:
     rows = []
     for name, values in run.columns.items():
         good = np.asarray(values, float)
-        good = good[np.isfinite(good)]
+        good = good[np.isfinite(good)].astype(np.longdouble)  # whose sum has room
         unit = run.units[name]
         least, most, mean = (
             value_for_people(float(f(good)), unit) if good.size else float("nan") for f in (np.min, np.max, np.mean)

@@ -95,6 +95,14 @@ def test_bad_input_is_one_line_with_the_file(write, case):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "latin-1"])
+def test_a_table_in_another_encoding_is_to_be_saved_as_utf_8(write, encoding):
+    path = write("")
+    path.write_bytes(f"# größte\n{HEADER}\n1000,200,215,94\n".encode(encoding))
+    with pytest.raises(InputError, match=r"table.csv: not UTF-8 text \(.*\); save it as UTF-8$"):
+        read_supplier_table(path)
+
+
 def test_range_is_inclusive_and_refuses_to_leave_nothing(write):
     table = read_supplier_table(write(HEADER, "400,50,50,70", "2500,350,215,90", "2501,200,215,90", "300,200,215,90"))
     assert len(FitRange().select(table)) == 2

@@ -9,7 +9,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
-from winch_friction.records.strict_yaml import parse_yaml
+from winch_friction.records.strict_yaml import parse_yaml, read_yaml
 
 MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
 
@@ -106,6 +106,16 @@ def test_a_wrong_model_is_one_clear_line(change, message):
 def test_not_yaml_or_not_a_model(text):
     with pytest.raises(InputError, match="here"):
         model_from_text(text, "here")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "latin-1"])
+def test_a_file_in_another_encoding_is_to_be_saved_as_utf_8(tmp_path, encoding):
+    path = tmp_path / "crane.yaml"
+    path.write_bytes("name: Größe\n".encode(encoding))
+    with pytest.raises(InputError) as caught:
+        read_yaml(path)
+    assert str(caught.value).startswith(f"{path}: not UTF-8 text (")
+    assert str(caught.value).endswith("); save it as UTF-8")
 
 
 def test_a_key_that_stands_twice_is_refused_and_none_is_taken(tmp_path):

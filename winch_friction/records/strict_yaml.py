@@ -99,13 +99,20 @@ def as_quantity(content: Any, si_unit: str, where: str) -> float:
 
 def read_yaml(path: Path) -> Any:
     """The content of a YAML file; syntax errors and missing files as one line."""
+    return parse_yaml(utf_8_text(path), str(path))
+
+
+def utf_8_text(path: Path) -> str:
+    """What a text file says; raises `InputError` for one that is not there, or in another encoding."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.__class__.__name__}: {getattr(error, 'strerror', None) or error})"
-        ) from error
-    return parse_yaml(text, str(path))
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.__class__.__name__}: {error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not UTF-8 text (byte {error.start + 1}); save it as UTF-8") from error
+    if "\0" in text:
+        raise InputError(f"{path}: not UTF-8 text (byte {text.index(chr(0)) + 1} is zero); save it as UTF-8")
+    return text
 
 
 class _Loader(yaml.SafeLoader):

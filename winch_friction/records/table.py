@@ -15,6 +15,7 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
 from winch_friction.records.csv_file import as_floats, separator_of
 from winch_friction.records.headers import conversion_to_si, parse_header
+from winch_friction.records.strict_yaml import utf_8_text
 
 _SHOWN = 3  # places named of one kind of problem
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
@@ -76,10 +77,7 @@ class Table:
 
 def read_table(path: Path) -> Table:
     """A CSV file (comma, semicolon or tab) as a table; lines starting with # are comments."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+    lines = utf_8_text(path).splitlines()
     numbered = [(k + 1, line) for k, line in enumerate(lines) if line.strip() and not line.startswith("#")]
     if len(numbered) < 2:
         raise InputError(f"{path}: a header and at least one row are needed, found {len(numbered)} line(s)")

@@ -1,6 +1,7 @@
 """`winch-friction init`: a stranger's 50 t crane, from nothing to a checked simulation, without an editor."""
 
 import json
+from pathlib import Path
 
 import pytest
 import yaml
@@ -119,6 +120,20 @@ def test_published_schemas_are_the_readers(tmp_path):
             f"run: winch-friction init schemas --out {published}"
         )
     assert {path.name for path in published.iterdir()} == {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize(
+    "arguments", [["schemas", "--out", "taken"], ["crane", *CRANE, "--out", "taken/deep/crane.yaml"]]
+)
+def test_a_file_where_a_folder_is_needed_is_said(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("taken").write_text("kept")
+    assert run(["init", *arguments, "--force"]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert said[0].startswith("winch-friction: --out taken/")
+    assert said[0].endswith(f": {tmp_path / 'taken'} is a file, no folder; give another place")
+    assert Path("taken").read_text() == "kept"
 
 
 def test_what_a_schema_allows_the_reader_asks_for():

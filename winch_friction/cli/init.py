@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_json
+from winch_friction.cli.console import refuse_unwritable, show_json
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
 from winch_friction.physics.errors import InputError
@@ -180,6 +180,7 @@ def _write_all(texts: dict[Path, str], force: bool, as_json: bool) -> None:
     there = [str(path) for path in texts if path.exists()]
     if there and not force:
         raise InputError(f"{', '.join(there)}: exists already; give another --out, or --force to overwrite it")
+    refuse_unwritable(*texts)
     written = [str(write_text(path, text)) for path, text in texts.items()]
     if as_json:
         show_json({"written": written})

@@ -248,7 +248,7 @@ def _swash(
     noise = rng.normal(0, 0.15, size) * CM3_PER_REV * world.motor_size
     x = true / world.max_displacement
     bow = 4.0 * hidden.swivel_mid * x * (1.0 - x)
-    bow += hidden.swivel_s * np.sin(2.0 * np.pi * x)
+    bow += hidden.swivel_s * np.sin(2.0 * np.pi * x) - hidden.swivel_stop * (np.maximum(x - 0.6, 0.0) / 0.4) ** 2
     return true * (1.0 + hidden.swivel_gain) + hidden.swivel + bow + play + noise
 
 

@@ -102,6 +102,7 @@ class Hidden(NamedTuple):
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative
     swivel_mid: float = 0.0  # m^3/rad at half stroke, nothing at its ends
+    swivel_stop: float = 0.0  # m^3/rad lacking at full stroke, growing with the square from 0.6 of it on
     swivel_s: float = 0.0  # m^3/rad at a quarter of the stroke, the opposite at three quarters, nothing at its ends
     swivel_warm: float = 0.0  # m^3/rad per 15 K above 40 degC
     swivel_play: float = 0.0  # m^3/rad, to the side on which the run's adjustment ended

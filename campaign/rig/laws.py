@@ -190,7 +190,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV)),
         Law("warm_electronics", _set(swivel_warm=1.5 * CM3_PER_REV)),
         Law("mid_stroke", _set(swivel_mid=2.5 * CM3_PER_REV)),
-        Law("s_shaped", _set(swivel_s=2.5 * CM3_PER_REV), held_out=True),
+        Law("s_shaped", _set(swivel_s=2.5 * CM3_PER_REV)),
+        Law("stops_short", _set(swivel_stop=5.0 * CM3_PER_REV), held_out=True),
     ),
     "entrained_air": (
         Law("more", _set(air=0.02)), Law("little", _set(air=0.005), held_out=True),

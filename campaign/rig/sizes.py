@@ -11,7 +11,7 @@ from campaign.rig.world import World
 
 PER_MOTOR = (
     "low_displacement", "notch", "churning", "mixed", "case", "case_b", "case_rest", "brake", "motor_amount", "swivel",
-    "swivel_play", "swivel_warm", "swivel_mid", "swivel_s",
+    "swivel_play", "swivel_warm", "swivel_mid", "swivel_s", "swivel_stop",
 )  # fmt: skip
 PER_WINCH = (
     "winch_amount", "leakage", "line_flow", "ripple_still", "wire_drag", "seal_grip", "sector", "run_drift",

@@ -8,7 +8,14 @@ import pytest
 
 from winch_friction.discrepancy.candidates.candidate import machine_sizes
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.candidates.feedback import _swivel, bends_over, bent_pressure_columns, curve_columns
+from winch_friction.discrepancy.candidates.feedback import (
+    _swivel,
+    bends_over,
+    bent_pressure_columns,
+    curve_columns,
+    feedback_candidates,
+    s_shaped_columns,
+)
 from winch_friction.discrepancy.candidates.signals import (
     ALL,
     _offset,
@@ -21,7 +28,7 @@ from winch_friction.discrepancy.candidates.signals import (
 )
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import CM3_PER_REV, RPM
-from winch_friction.physics.corrections import straight, unbent
+from winch_friction.physics.corrections import straight, unbent, unswung
 from winch_friction.physics.friction.correction import Correction
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
@@ -135,6 +142,29 @@ def test_the_column_of_a_bend_is_the_torque_that_its_correction_takes_out(error)
     column = bent_pressure_columns(run(), {"groups": ALL, "beyond": at})
     np.testing.assert_allclose(error * column[:, 1], MOTORS * SWASH * ((logged[0] - logged[1]) - (A - B)), rtol=1e-9)
     np.testing.assert_allclose(column[:, 0], MOTORS * SWASH * (A - B))
+
+
+@pytest.mark.parametrize("share", [0.15, 0.5, 0.8])
+def test_the_column_of_an_s_is_the_torque_that_its_correction_takes_out(share):
+    error, stroke = 1.2e-7, SWASH / share  # of a motor that is driven at this share of its stroke
+    own = run()
+    own.constants = (("max_displacement", stroke),)
+    swung = Correction("displacement_s_shape", error, beyond=stroke)
+    column = s_shaped_columns(own, {"groups": ALL})[:, 2]
+    shown = SWASH + error * column / (MOTORS * (A - B))
+    np.testing.assert_allclose(unswung(shown, swung), SWASH, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("strokes", "said"), [(3, True), (4, False)])
+def test_an_s_needs_a_displacement_more_than_it_has_numbers(strokes, said):
+    runs = []
+    for share in np.linspace(0.2, 0.9, strokes):
+        own = run()
+        own.used, own.constants, own.present = np.ones(3, bool), (("max_displacement", SWASH),), frozenset()
+        own.groups = [replace(own.groups[0], displacement=np.full(3, share * SWASH))]
+        runs.append(own)
+    s = next(each for each in feedback_candidates() if each.law_name == "bends twice over the stroke")
+    assert (s.untestable(runs) is not None) is said
 
 
 def test_the_columns_of_a_feedbacks_curve_are_its_zero_and_its_bends():

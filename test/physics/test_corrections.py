@@ -56,6 +56,7 @@ def ties(name):
     more = {"groups": ("active",)} if own.by_group else {}
     more |= {"during": ((-20.0, 30.0),)} if own.grows else {}
     more |= {"beyond": BENDS_AT[own.bends_in]} if own.bends_in else {}
+    more |= {"beyond": 215.0 * CM3_PER_REV} if own.action is Action.S_SHAPE else {}
     return more | ({"time_constant": 60.0} if own.has_time_constant else {})
 
 
@@ -87,6 +88,9 @@ def spoiled(run, correction):
                 columns[name] = true * (1.0 + e * true)
             elif action is Action.BEND:
                 columns[name] = np.where(true > correction.beyond, true + e * (true - correction.beyond), true)
+            elif action is Action.S_SHAPE:
+                x = true / correction.beyond
+                columns[name] = true + e * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
             elif action is Action.DELAY:
                 columns[name] = np.interp(time - e, time, true)
             elif action is Action.MASS:

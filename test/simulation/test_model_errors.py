@@ -11,7 +11,7 @@ from winch_friction.physics.corrections import DECLARED, Action, Correction, cor
 from winch_friction.physics.errors import InputError
 from winch_friction.simulation import Simulator, simulate
 
-OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.DELAY)
+OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY)
 SIGNALS = [n for n, d in DECLARED.items() if d.action in OF_SENSORS]
 BENDS_AT = {"Pa": 60.0 * BAR, "m^3/rad": 50.0 * CM3_PER_REV}
 OF_THE_PLANT = [n for n, d in DECLARED.items() if d.action in (Action.WARMTH, Action.HEAT, Action.SLIP)]
@@ -33,6 +33,7 @@ def test_a_signal_is_wrong_in_the_log_and_right_again(name, sign, scenario, cran
     plain = simulate(scenario, crane, model).run
     more = {"during": ((-2.0, -1.0),)} if DECLARED[name].grows else {}  # grown long ago
     more |= {"beyond": BENDS_AT[DECLARED[name].bends_in]} if DECLARED[name].bends_in else {}
+    more |= {"beyond": 300.0 * CM3_PER_REV} if DECLARED[name].action is Action.S_SHAPE else {}
     erring = wrong(model, name, sign, groups=("active",) if DECLARED[name].by_group else (), **more)
     log = simulate(scenario, crane, erring).run
     right, same = corrected(log, crane, erring)
@@ -50,6 +51,17 @@ def test_a_signal_is_wrong_in_the_log_and_right_again(name, sign, scenario, cran
     assert np.corrcoef(right["motor_speed"][60:-60], speed[60:-60])[0, 1] > 0.99999
     changed = [c for c in plain.columns if np.abs(log[c] - plain[c]).max() > 1e-3 * np.abs(plain[c]).max()]
     assert changed
+
+
+def test_an_s_goes_on_straight_beyond_its_stroke(scenario, crane, model):
+    """As what takes it out has it: a feedback that shows more than the stroke is not bent back."""
+    plain = simulate(scenario, crane, model).run
+    stroke = 0.8 * float(plain["active.displacement"].max())
+    erring = wrong(model, "displacement_s_shape", groups=("active",), beyond=stroke)
+    log = simulate(scenario, crane, erring).run
+    assert np.abs(log["active.displacement"] - plain["active.displacement"]).max() > 0.5 * CM3_PER_REV
+    right, _ = corrected(log, crane, erring)
+    np.testing.assert_allclose(right["active.displacement"], plain["active.displacement"], rtol=1e-6)
 
 
 def test_a_thermal_error_needs_one_temperature(ahc, crane, model):

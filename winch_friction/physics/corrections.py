@@ -21,6 +21,7 @@ from winch_friction.physics.fluid import (
 )
 from winch_friction.physics.friction.correction import (
     DECLARED,
+    S_HEIGHT,
     Action,
     Correction,
     DeclaredCorrection,
@@ -38,9 +39,10 @@ __all__ = [
 
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
-    Action.OFFSET, Action.BEND, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT, Action.WARMTH,
-    Action.SLIP, Action.AIR,
+    Action.OFFSET, Action.BEND, Action.S_SHAPE, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT,
+    Action.WARMTH, Action.SLIP, Action.AIR,
 )  # fmt: skip
+NEWTON_STEPS = 6  # an S of a tenth of what would fold it is exact to rounding after three
 
 
 def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]:
@@ -108,17 +110,21 @@ def _missing(correction: Correction, run: Run) -> list[str]:
 
 
 # -- whole runs
-def _offset(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
+def _shown(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     error = c.error(columns["time"], columns.get("oil_temperature"))
-    return columns | {name: columns[name] - error for name in affected(c, run.groups) if name in columns}
+    return columns | {name: _true(columns[name], c, error) for name in affected(c, run.groups) if name in columns}
 
 
-def _scale(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    return columns | {name: columns[name] / (1.0 + c.value) for name in affected(c, run.groups) if name in columns}
-
-
-def _bend(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    return columns | {name: unbent(columns[name], c) for name in affected(c, run.groups) if name in columns}
+def _true(logged: Any, c: Correction, error: Any) -> Any:
+    """The true value of what a channel shows; `error` is the correction's at that time."""
+    action = c.declared.action
+    if action is Action.OFFSET:
+        return logged - error
+    if action is Action.BEND:
+        return unbent(logged, c)
+    if action is Action.S_SHAPE:
+        return unswung(logged, c)
+    return straight(logged, error) if action is Action.CURVATURE else logged / (1.0 + error)
 
 
 def unbent(logged: Any, c: Correction) -> Any:
@@ -127,13 +133,22 @@ def unbent(logged: Any, c: Correction) -> Any:
     return logged - c.value / (1.0 + c.value) * np.maximum(logged - c.beyond, 0.0)
 
 
+def unswung(logged: Any, c: Correction) -> Any:
+    """The true x of logged = x + e s(x / beyond), by Newton's steps from the logged value; outside its ends the S goes
+    on straight, and where it would fold the shown value back the step is what a slope of a tenth gives."""
+    assert c.beyond is not None
+    x = logged / c.beyond
+    for _ in range(NEWTON_STEPS):
+        inside = np.clip(x, 0.0, 1.0)
+        slope = 1.0 + c.value / c.beyond * S_HEIGHT * (1.0 - 6.0 * inside * (1.0 - inside))
+        shown = x + c.value / c.beyond * S_HEIGHT * (inside * (1.0 - inside) * (1.0 - 2.0 * inside) + x - inside)
+        x = x - (shown - logged / c.beyond) / np.maximum(slope, 0.1)
+    return x * c.beyond
+
+
 def _in_turn(corrections: Iterable[Correction]) -> list[Correction]:
     """Corrections in their order; of several bends the furthest first, for each was put on what is nearer to zero."""
     return sorted(corrections, key=lambda c: -(c.beyond or 0.0))
-
-
-def _curvature(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    return columns | {name: straight(columns[name], c.value) for name in affected(c, run.groups) if name in columns}
 
 
 def straight(logged: Any, per_unit: float) -> Any:
@@ -199,10 +214,7 @@ def _air(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 
 _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {
-    Action.OFFSET: _offset,
-    Action.SCALE: _scale,
-    Action.CURVATURE: _curvature,
-    Action.BEND: _bend,
+    **dict.fromkeys((Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE), _shown),
     Action.DELAY: _delay,
     Action.MASS: _mass,
     Action.WARMTH: _warmth,
@@ -279,11 +291,4 @@ def _correct(sample: Sample, c: Correction) -> bool:
 
 def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
     for channel in c.declared.channels:
-        value: Any = getattr(member, channel)
-        if c.declared.action is Action.OFFSET:
-            right = value - error
-        elif c.declared.action is Action.BEND:
-            right = unbent(value, c)
-        else:
-            right = straight(value, error) if c.declared.action is Action.CURVATURE else value / (1.0 + error)
-        setattr(member, channel, float(right))
+        setattr(member, channel, float(_true(getattr(member, channel), c, error)))

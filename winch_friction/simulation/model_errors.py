@@ -34,7 +34,7 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
                 f"of the model and use --hide {_OF_THE_PLANT[action]}"
             )
-        if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.DELAY):
+        if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY):
             _put_signal(each, scenario, channels)
         elif action is Action.MASS:
             _put_mass(each, scenario, plant[0])
@@ -58,6 +58,11 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
             row["curvature"] += correction.value
         elif correction.declared.action is Action.BEND:
             _put_bend(correction, row)
+        elif correction.declared.action is Action.S_SHAPE:
+            if row["swing"] != 0.0 and row["stroke"] != correction.beyond:
+                raise InputError(f"correction {correction.name}: a simulated sensor has one stroke (beyond)")
+            row["swing"] += correction.value
+            row["stroke"] = correction.beyond
         else:
             row["delay"] += correction.value
 

@@ -28,11 +28,12 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import CM3_PER_REV
-from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.correction import S_HEIGHT, Correction
 from winch_friction.physics.friction.term import Parameter
 
 LARGEST = "max_displacement"  # m^3/rad, of one motor
-FEWEST_STROKES = 3  # displacements a tenth of the largest apart: a zero and a bow, and one that could contradict
+# displacements a tenth of the largest apart: a zero and a bow, or an S as well, and one that could contradict
+FEWEST_STROKES, FEWEST_OF_AN_S = 3, 4
 
 D_0 = Parameter(
     "D_0", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV, doc="displacement feedback offset"
@@ -44,6 +45,10 @@ D_T = Parameter(
 D_b = Parameter(
     "D_b", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV,
     doc="bow of the displacement feedback at half stroke, between ends at which it is right",
+)  # fmt: skip
+D_s = Parameter(
+    "D_s", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV,
+    doc="S of the displacement feedback: its error at a fifth of the stroke, the opposite at four fifths",
 )  # fmt: skip
 
 
@@ -67,12 +72,23 @@ def warm_bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
     return np.column_stack([bowed_columns(run, values), warm_columns(_swivel, run, values)[:, 1]])
 
 
-def _few_strokes(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+def s_shaped_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero error of the feedback, its bow and its S, N m, shape (samples, 3): the third order of a linkage's error."""
+    largest = dict(run.constants)[LARGEST]
+
+    def swing(g: GroupSignals) -> FloatArray:
+        stroke = g.displacement / largest
+        return S_HEIGHT * stroke * (1.0 - stroke) * (1.0 - 2.0 * stroke) * _swivel(g)
+
+    return np.hstack([bowed_columns(run, values), group_columns(swing, run, values)])
+
+
+def _few_strokes(runs: Sequence[PreparedRun], fewest: int = FEWEST_STROKES) -> tuple[str, str] | None:
     largest = max((dict(run.constants).get(LARGEST, 0.0) for run in runs), default=0.0)
     driven = [float(np.median(g.displacement)) for run in runs for g in run.groups if g.balances]
-    if largest > 0.0 and len({round(each / largest, 1) for each in driven}) >= FEWEST_STROKES:
+    if largest > 0.0 and len({round(each / largest, 1) for each in driven}) >= fewest:
         return None
-    return "more displacements", "a bow shows between three displacements that lie apart"
+    return "more displacements", f"a bow or an S shows between {fewest} displacements that lie apart"
 
 
 def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
@@ -85,13 +101,15 @@ def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
         correction("displacement_scale", found[D_b.name], gain, groups=groups),
         correction("displacement_curvature", found[D_b.name], curvature, groups=groups),
     ]
+    if D_s.name in found:
+        corrections.append(correction("displacement_s_shape", found[D_s.name], groups=groups, beyond=largest))
     if D_T.name in found:
         corrections.append(correction("displacement_thermal_zero", found[D_T.name], groups=groups))
     return corrections
 
 
 def feedback_candidates() -> list[Candidate]:
-    """A zero error, one that shifts with the oil, and a bow between ends at which the feedback is right."""
+    """A zero error, one that shifts with the oil, and a bow or an S between ends at which the feedback is right."""
     swivel = r"\sum_g n_g\,\Delta p_g\,"
     found = [
         in_groups("swivel_offset", "D_0" + swivel, (D_0,), partial(group_columns, _swivel), group_shapes,
@@ -101,6 +119,9 @@ def feedback_candidates() -> list[Candidate]:
                   law_name="thermal zero shift of the feedback", needs=OIL),
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x))", (D_0, D_b), bowed_columns, group_shapes, _to_bow,
                   law_name="bows over the stroke", blind=_few_strokes),
+        in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + 6\sqrt{3} D_s\,x(1-x)(1-2x))", (D_0, D_b, D_s),
+                  s_shaped_columns, group_shapes, _to_bow, law_name="bends twice over the stroke",
+                  blind=partial(_few_strokes, fewest=FEWEST_OF_AN_S)),
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
                   blind=_few_strokes),

@@ -16,6 +16,7 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import Parameter
 
+S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
 THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the seed models
 
 
@@ -26,6 +27,7 @@ class Action(Enum):
     SCALE = "scale"  # measured = true (1 + e)
     CURVATURE = "curvature"  # measured = true (1 + e true)
     BEND = "bend"  # measured = true + e (true - beyond) from `beyond` on, true below
+    S_SHAPE = "s_shape"  # measured = true + e s(x), s = 6 sqrt(3) x (1 - x) (1 - 2 x), x = true / beyond: at most e
     DELAY = "delay"  # measured(t) = true(t - e)
     MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
     RADIUS = "radius"  # rope radius = crane file's + e
@@ -103,9 +105,7 @@ _DECLARED = (
             "zero error of the transducers at port A per degree of the oil above 40 degC", "pressure_a", reads=_OIL),
     _signal("pressure_thermal_bow", Action.OFFSET, "Pa/K^2", 5e-3 * BAR, 0.2 * BAR,
             "the same per square degree", "pressure_a", reads=_OIL, by_warmth=2),
-    _signal(
-        "pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES
-    ),
+    _signal("pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES),
     _signal("pressure_scale_a", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducer at port A", "pressure_a"),
     _signal(
         "pressure_curvature", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR),
@@ -130,9 +130,8 @@ _DECLARED = (
         "zero error of the transducers at port A that has come within the given time, and stays", "pressure_a",
         grows=True,
     ),
-    _signal(
-        "displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback", "displacement"
-    ),
+    _signal("displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback",
+            "displacement"),
     _signal(
         "displacement_curvature", Action.CURVATURE, "rad/m^3", 100.0, 1e4,
         "gain error of the displacement feedback per displacement", "displacement",
@@ -141,6 +140,9 @@ _DECLARED = (
         "displacement_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the feedback beyond a displacement",
         "displacement", bends_in="m^3/rad",
     ),
+    _signal("displacement_s_shape", Action.S_SHAPE, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
+            "error of the feedback at a fifth of a stroke, the opposite at four fifths, none at half and at its ends",
+            "displacement", bends_in="m^3/rad"),
     _signal("signal_delay", Action.DELAY, "s", 0.05, 0.5, "how late the speed is logged", *_SPEED, live=False),
     _signal(
         "pressure_delay", Action.DELAY, "s", 0.05, 0.5, "how late the pressures (or the motor torque) are logged",
@@ -197,7 +199,7 @@ class Correction:
 
     `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade; `during` the windows of
     absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in which it
-    grew; `beyond` where a bend begins, in its channel's SI unit. Bounds that are not given are the declared ones.
+    grew; `beyond` where a bend begins, or an S ends, in its channel's SI unit. Bounds not given are the declared ones.
     Raises `InputError` for a value, bounds or ties that the declaration does not allow.
     """
 

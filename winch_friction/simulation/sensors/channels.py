@@ -17,7 +17,10 @@ OPTIONAL = ("wire_layer",)  # besides the plant's own columns
 MOST_BENDS = 8  # of one sensor
 CHANNEL = np.dtype(
     [("source", np.int64)]
-    + [(name, np.float64) for name in ("delay", "noise", "relative_noise", "step", "scale", "curvature", "offset")]
+    + [
+        (name, np.float64)
+        for name in ("delay", "noise", "relative_noise", "step", "scale", "curvature", "offset", "swing", "stroke")
+    ]
     + [(name, np.float64, (MOST_BENDS,)) for name in ("bend", "beyond")]
 )
 
@@ -34,7 +37,7 @@ def channels(scenario: Scenario) -> Channels:
     """The channels that a scenario's run has; raises `InputError` for a sensor setting of a channel that it lacks."""
     sources = _sources(scenario)
     settings = np.zeros(len(sources), CHANNEL)
-    settings["scale"] = 1.0
+    settings["scale"] = settings["stroke"] = 1.0
     for row, (name, column) in zip(settings, sources.items(), strict=True):
         row["source"] = COLUMNS.index(column)
         _set_sensor(row, name, scenario.sensors)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from winch_friction.physics.friction.correction import S_HEIGHT
 from winch_friction.physics.signals import FloatArray
 from winch_friction.simulation.compiling import compiled
 from winch_friction.simulation.scenario import Scenario
@@ -69,6 +70,10 @@ def scan(history, period, settings, ends, normals, j, row):
             continue
         value = at_time(history, s.source, period, middle - s.delay)
         value *= s.scale * (1.0 + s.curvature * s.scale * value)
+        if s.swing != 0.0:
+            x = value / s.stroke
+            inside = min(max(x, 0.0), 1.0)
+            value += s.swing * S_HEIGHT * (inside * (1.0 - inside) * (1.0 - 2.0 * inside) + x - inside)
         for k in range(len(s.bend)):
             if s.bend[k] == 0.0:
                 break

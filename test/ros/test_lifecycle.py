@@ -152,12 +152,23 @@ def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(b
 
 
 def test_a_file_that_is_no_checkpoint_is_not_written_over(bench: Bench, tmp_path: Path) -> None:
-    given = tmp_path / "my_model.yaml"
-    given.write_text("schema: winch_friction.model/1\n")
+    given = tmp_path / "notes.yaml"
+    given.write_text("crane: north\n")
     bench.start("estimator", checkpoint=given)
     assert bench.remote("estimator").state() == "active"
     assert bench.stop("estimator") == 0
-    kept = tmp_path / "my_model.yaml.refused"
-    assert kept.read_text() == "schema: winch_friction.model/1\n"
+    kept = tmp_path / "notes.yaml.refused"
+    assert kept.read_text() == "crane: north\n"
     assert f"starts from the seed: {given}: not a checkpoint" in bench.log("estimator")
     assert f"the file is kept as {kept}" in bench.log("estimator")
+
+
+def test_a_model_given_as_the_checkpoint_is_refused(tmp_path: Path) -> None:
+    given = tmp_path / "my_model.yaml"
+    given.write_text("schema: winch_friction.model/1\n")
+    command = [sys.executable, "-m", "winch_friction.nodes.estimator", "--ros-args", "-p", f"checkpoint:={given}"]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0)
+    assert ended.returncode == 2
+    (line,) = [line for line in ended.stderr.splitlines() if "error" in line.lower()]
+    assert f"{given}: a file of schema 'winch_friction.model/1', not a checkpoint" in line
+    assert given.read_text() == "schema: winch_friction.model/1\n"

@@ -14,9 +14,10 @@ from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 
 FRESH = 0.55  # of a campaign's length: the same plant and the same plan in another sea, with other noise
-# a correction, a term and a state, each of which goes its own way into the file; signals and the oil are among MORE
-CASES = [("tare_load", "quiet"), ("churning", "paper"), ("presliding", "quiet")]
+# a correction and a term, each of which goes its own way into the file; signals, states and the oil are among MORE
+CASES = [("tare_load", "quiet"), ("churning", "paper")]
 MORE = [
+    ("presliding", "quiet"),
     ("pressure_offset", "rough"),
     ("stribeck", "si_files"), ("inertia_error", "elastic_still"), ("swivel_offset", "quiet"),
     ("slip_leakage", "slow_log"), ("accumulator_thermal", "si_files"), ("torque_ripple", "rough"),
@@ -25,7 +26,7 @@ MORE = [
 # a known miss: its file leaves 0.187 bar of fresh runs whose floor is 0.121
 MISSED = pytest.mark.xfail(reason="leaves 1.55 times the floor on fresh runs, where 1.5 is the bar", strict=True)
 # the workflow once more over the same runs: in the others the written file is measured on them
-SAME_AGAIN = tuple(effect for effect, _ in MORE[:-1])
+SAME_AGAIN = tuple(effect for effect, _ in MORE[1:-1])
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def with_waves(run, crane, **orders):
 
 
 @pytest.mark.parametrize(("orders", "law", "size"), [
-    ({"k3": SHARE}, ONE, ("a_d", "k_d", 3.0)),
+    pytest.param({"k3": SHARE}, ONE, ("a_d", "k_d", 3.0), marks=pytest.mark.long),
     pytest.param(
         {"k1": SHARE, "k2": 0.5 * SHARE, "k3": 0.3 * SHARE}, HARMONICS, ("a_d1", "k_dh", 1.0), marks=pytest.mark.long
     ),

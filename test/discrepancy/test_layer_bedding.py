@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
@@ -25,6 +26,7 @@ def yielding(run, crane):
     return replace(run, columns={**run.columns, **more})
 
 
+@pytest.mark.long
 def test_layers_that_yield_under_the_load_are_a_radius(crane_150t, crane2_model):
     runs = [yielding(run, crane_150t) for run in runs_with(4411, "quiet", length=0.3)]
     assert len({float(layer) for run in runs for layer in run["wire_layer"]}) > 2

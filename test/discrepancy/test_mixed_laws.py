@@ -105,7 +105,8 @@ def test_an_estimate_is_read_from_the_one_correction_that_says_it():
     assert agreed(places, both)["D_0"] is None  # one of the two knew another beginning
 
 
-@pytest.mark.parametrize("seed", [915, pytest.param(916, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [915, 916])
 def test_a_loss_with_one_ports_pressure_is_named_where_either_may_be_the_higher(seed, crane_150t, crane2_model):
     runs = runs_with(seed, "bare", ("case_pressure:port_b", 1.0), length=0.3)
     found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
@@ -24,6 +25,7 @@ def dragging(run, crane):
     return replace(run, columns={**run.columns, **more})
 
 
+@pytest.mark.long
 def test_a_loss_that_saturates_with_the_load_is_the_loads(crane_150t, crane2_model):
     runs = [dragging(run, crane_150t) for run in runs_with(4412, "quiet", length=0.3)]
     result = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))

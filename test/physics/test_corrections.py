@@ -14,6 +14,7 @@ from winch_friction.physics.corrections import (
     SampleCorrector,
     corrected,
     corrected_crane,
+    unswung,
 )
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
@@ -397,3 +398,12 @@ def test_several_bends_are_taken_out_in_turn(truth, crane_150t, crane2_model):
 def test_a_bend_says_where_it_begins(name, beyond, says):
     with pytest.raises(InputError, match=says):
         Correction(name, 0.01, beyond=beyond)
+
+
+@pytest.mark.parametrize("error", [8.0, -8.0])
+def test_an_s_of_eight_cubic_centimetres_is_taken_out_to_rounding(error):
+    stroke, true = 215.0 * CM3_PER_REV, np.linspace(5.0, 215.0, 43) * CM3_PER_REV
+    x = true / stroke
+    logged = true + error * CM3_PER_REV * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
+    right = unswung(logged, Correction("displacement_s_shape", error * CM3_PER_REV, beyond=stroke))
+    np.testing.assert_allclose(right, true, rtol=1e-7)

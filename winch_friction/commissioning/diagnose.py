@@ -13,6 +13,7 @@ from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, st
 from winch_friction.commissioning.kinematics import agreements, excesses, range_score
 from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 
@@ -232,7 +233,7 @@ def _free(views: Sequence[RunView]) -> list[Mistake]:
             for name, group in view.groups.items() if len(view.groups) > 1 else ():
                 own = group.torque[good]
                 parts.setdefault(name, []).append(_ratio(own, (load + rest - drive)[good] + own))
-            lacking = (drive - rest - load)[good].mean() / (9.81 * np.median(view.lever))
+            lacking = (drive - rest - load)[good].mean() / (GRAVITY * np.median(view.lever))
             tares.append(float(lacking))
     factors = {name: float(np.median(values)) for name, values in parts.items()}
     return list(free_mistakes(views, factors, float(np.median(tares)) if tares else 0.0))

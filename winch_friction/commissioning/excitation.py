@@ -7,7 +7,7 @@ import numpy as np
 
 from winch_friction.commissioning.balance import EFFECTIVE, friction_point, without_memory
 from winch_friction.commissioning.view import RunView
-from winch_friction.physics.channels import CM3_PER_REV, RPM
+from winch_friction.physics.channels import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.signals import FloatArray
@@ -97,7 +97,7 @@ def _tests(crane: Crane) -> Iterator[tuple[float, float, float]]:
 def _mass(crane: Crane, load: float) -> float:
     """The mass, kg, on the outer layer that is this share of what the motors hold."""
     held = max(crane.groups.values()) * crane.max_displacement * HOLDING_PRESSURE * load
-    return held * crane.gear_ratio / (9.81 * crane.drum.layer_radii[-1])
+    return held * crane.gear_ratio / (GRAVITY * crane.drum.layer_radii[-1])
 
 
 def _test_rows(crane: Crane, model: FrictionModel, speed: float, load: float, displacement: float) -> FloatArray:

@@ -21,7 +21,6 @@ from winch_friction.physics.fluid import (
 )
 from winch_friction.physics.friction.correction import (
     DECLARED,
-    S_HEIGHT,
     Action,
     Correction,
     DeclaredCorrection,
@@ -42,6 +41,7 @@ SIGNAL_ORDER = (
     Action.OFFSET, Action.BEND, Action.S_SHAPE, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT,
     Action.WARMTH, Action.SLIP, Action.AIR,
 )  # fmt: skip
+S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
 NEWTON_STEPS = 6  # an S of a tenth of what would fold it is exact to rounding after three
 
 
@@ -133,16 +133,22 @@ def unbent(logged: Any, c: Correction) -> Any:
     return logged - c.value / (1.0 + c.value) * np.maximum(logged - c.beyond, 0.0)
 
 
+def s_shape(x: Any) -> Any:
+    """An S of height 1 that is nothing at 0, 0.5 and 1, and goes on straight outside; compiled into the simulated
+    sensors as well."""
+    inside = np.minimum(np.maximum(x, 0.0), 1.0)
+    return S_HEIGHT * (inside * (1.0 - inside) * (1.0 - 2.0 * inside) + x - inside)
+
+
 def unswung(logged: Any, c: Correction) -> Any:
-    """The true x of logged = x + e s(x / beyond), by Newton's steps from the logged value; outside its ends the S goes
-    on straight, and where it would fold the shown value back the step is what a slope of a tenth gives."""
+    """The true x of logged = x + e s(x / beyond), by Newton's steps from the logged value; where the S would fold the
+    shown value back the step is what a slope of a tenth gives."""
     assert c.beyond is not None
     x = logged / c.beyond
     for _ in range(NEWTON_STEPS):
         inside = np.clip(x, 0.0, 1.0)
         slope = 1.0 + c.value / c.beyond * S_HEIGHT * (1.0 - 6.0 * inside * (1.0 - inside))
-        shown = x + c.value / c.beyond * S_HEIGHT * (inside * (1.0 - inside) * (1.0 - 2.0 * inside) + x - inside)
-        x = x - (shown - logged / c.beyond) / np.maximum(slope, 0.1)
+        x = x - (x + c.value / c.beyond * s_shape(x) - logged / c.beyond) / np.maximum(slope, 0.1)
     return x * c.beyond
 
 

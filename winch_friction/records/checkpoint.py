@@ -51,7 +51,7 @@ def set_aside(path: Path | str) -> Path:
         raise InputError(f"{path}: not a file: no checkpoint can be written there")
     other = OTHERS.search(path.read_bytes()[:HEAD])
     if other is not None:
-        raise InputError(f"{path}: a file of schema '{other[1].decode()}', not a checkpoint: give checkpoint another")
+        raise InputError(f"{path}: a file of schema '{other[1].decode()}', not a checkpoint: name another")
     names = (path.with_name(f"{path.name}.refused{number}") for number in itertools.chain(("",), itertools.count(2)))
     kept = next(each for each in names if not each.exists())
     path.rename(kept)

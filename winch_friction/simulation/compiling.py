@@ -10,6 +10,7 @@ import numba
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 import winch_friction.physics.channels as channels
+import winch_friction.physics.corrections as corrections
 import winch_friction.physics.friction.symbols as symbols
 from winch_friction.physics.friction.sources import cache_root, compiled_in, source_digest
 
@@ -44,4 +45,5 @@ def in_order(function: Any, *given: str, **named: Any) -> tuple[Any, ...]:
 @lru_cache(maxsize=1)
 def _directory() -> str:
     own = sorted(Path(__file__).parent.rglob("*.py"))
-    return str(cache_root() / source_digest([*own, Path(str(symbols.__file__)), Path(str(channels.__file__))]))
+    used = [Path(str(each.__file__)) for each in (symbols, channels, corrections)]
+    return str(cache_root() / source_digest([*own, *used]))

@@ -28,7 +28,8 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import CM3_PER_REV
-from winch_friction.physics.friction.correction import S_HEIGHT, Correction
+from winch_friction.physics.corrections import s_shape
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 
 LARGEST = "max_displacement"  # m^3/rad, of one motor
@@ -77,8 +78,7 @@ def s_shaped_columns(run: PreparedRun, values: Values) -> FloatArray:
     largest = dict(run.constants)[LARGEST]
 
     def swing(g: GroupSignals) -> FloatArray:
-        stroke = g.displacement / largest
-        return S_HEIGHT * stroke * (1.0 - stroke) * (1.0 - 2.0 * stroke) * _swivel(g)
+        return s_shape(g.displacement / largest) * _swivel(g)
 
     return np.hstack([bowed_columns(run, values), group_columns(swing, run, values)])
 

@@ -16,7 +16,6 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import Parameter
 
-S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
 THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the seed models
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.physics.friction.correction import S_HEIGHT
+from winch_friction.physics.corrections import s_shape
 from winch_friction.physics.signals import FloatArray
-from winch_friction.simulation.compiling import compiled
+from winch_friction.simulation.compiling import compiled, inlined
 from winch_friction.simulation.scenario import Scenario
 from winch_friction.simulation.sensors.channels import Channels
 
@@ -54,6 +54,9 @@ def quantise(value, step):
     return np.floor(value / step + 0.5) * step if step > 0.0 else value
 
 
+swung = inlined(s_shape)
+
+
 @compiled
 def scan(history, period, settings, ends, normals, j, row):
     """Scan number j into `row` (time, then the channels)."""
@@ -71,9 +74,7 @@ def scan(history, period, settings, ends, normals, j, row):
         value = at_time(history, s.source, period, middle - s.delay)
         value *= s.scale * (1.0 + s.curvature * s.scale * value)
         if s.swing != 0.0:
-            x = value / s.stroke
-            inside = min(max(x, 0.0), 1.0)
-            value += s.swing * S_HEIGHT * (inside * (1.0 - inside) * (1.0 - 2.0 * inside) + x - inside)
+            value += s.swing * swung(value / s.stroke)
         for k in range(len(s.bend)):
             if s.bend[k] == 0.0:
                 break

@@ -277,3 +277,12 @@ def test_a_parquet_run_is_read_without_pandas(tmp_path):
         f"read_run(Path({str(path)!r})); assert 'pandas' not in sys.modules"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_a_word_beside_a_number_with_an_underscore_gets_no_advice_of_the_other(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time [s],motor_speed [rpm]\n0,1_00\n0.1,abc\n0.2,10\n")
+    with pytest.raises(InputError) as refused:
+        read_run(path)
+    assert "'abc' is not a number" in str(refused.value)
+    assert "without '_'" not in str(refused.value)

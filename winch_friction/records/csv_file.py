@@ -159,7 +159,7 @@ def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, pr
         at = [f"{path}: {place(row)}, column '{header.text}': '{values[row].strip()[:40]}'" for row in bad[:_SHOWN]]
         foreign = len(bad) == len(values) or _number(values[bad[0]].replace(",", ".")) is not None
         advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
-        if _number(values[bad[0]].replace("_", "")) is not None:
+        if all(_number(values[row].replace("_", "")) is not None for row in bad[:_SHOWN]):
             advice = "write it without '_'"
         said = [f"{each} is not a number; {advice}" for each in at]
         with problems:

@@ -65,6 +65,7 @@ EXTRAS = {
         "pytest>=7.4",
         "pytest-timeout>=2.2",
         "pytest-xdist>=3.4",
+        "pytest-rerunfailures>=12",
         "hypothesis>=6.98",
         "pytest-benchmark>=4",
         "moto[s3]>=5",

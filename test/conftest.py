@@ -11,10 +11,16 @@ from winch_friction.records.model_file import load_model
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 
+@pytest.hookimpl(trylast=True)  # the tests of `ros/` get their mark in a file of their own
 def pytest_collection_modifyitems(items):
-    """Long files first; within a file, and among the others, as they stand."""
+    """Long files first; within a file, and among the others, as they stand. Live nodes get a second try."""
     here = Path(__file__).parent
     items.sort(key=lambda item: -SECONDS.get(item.path.relative_to(here).as_posix(), 0))
+    for item in items:
+        if item.get_closest_marker("ros"):
+            # processes judged by the clock: a machine that stood still for a moment is no defect, and a defect fails
+            # twice. pytest says at the end which needed it
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 @pytest.fixture(scope="session")

@@ -2,13 +2,14 @@
 
     python -m campaign.mutants [--processes 2] [--only NAME ...] [--out docs/campaign_mutants.md]
 
-Each fault is put into a copy of the working tree, and the tests named beside it run there until the first failure. A
-fault is caught when a test fails; a time-out counts as caught. Tests that fail without any fault would catch
-everything, so all of them run once on an unchanged copy first.
+Each fault is put into a copy of the working tree, and the tests named beside it run there until the first failure: the
+one that noticed it last time, by the page, before the others. A fault is caught when a test fails; a time-out counts as
+caught. Tests that fail without any fault would catch everything, so all of them run once on an unchanged copy first.
 """
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -27,6 +28,7 @@ LONGEST = 420.0  # s for the tests of one fault; a fault that makes them hang is
 KEPT_OUT = shutil.ignore_patterns(".git", ".venv*", "out", "__pycache__", ".*_cache", ".hypothesis", "build", "install")
 OUT = Path("docs/campaign_mutants.md")
 BAR = 0.85
+ROW = re.compile(r"^\| (?P<name>.+?) \| `[^`]*` \| `(?P<test>[^`:]+::[^`\[]+)[^`]*` \|$", re.MULTILINE)
 LONGEST_OF_ALL = 3600.0  # s for all of the tests at once, without a fault
 
 
@@ -45,10 +47,17 @@ def copy_tree(into: Path) -> Path:
     return Path(shutil.copytree(ROOT, into / "tree", ignore=KEPT_OUT, symlinks=True))
 
 
-def run_tests(tree: Path, tests: Sequence[str], longest: float = LONGEST) -> tuple[bool, str]:
+def noticed_before(page: Path) -> dict[str, str]:
+    """The test that noticed each fault when this page was written; none for a page that is not there."""
+    if not page.is_file():
+        return {}
+    return {row["name"]: row["test"] for row in ROW.finditer(page.read_text())}
+
+
+def run_tests(tree: Path, tests: Sequence[str], *more: str, longest: float = LONGEST) -> tuple[bool, str]:
     """Whether these tests pass in that tree, and else the first that fails."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", "not browser", *tests]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", "not browser", *more, *tests]
     try:
         done = subprocess.run(
             command, cwd=tree, env=environment, capture_output=True, text=True, timeout=longest, check=False
@@ -59,34 +68,45 @@ def run_tests(tree: Path, tests: Sequence[str], longest: float = LONGEST) -> tup
     return done.returncode == 0, failed[0].split(" - ")[0] if failed else (done.stdout.strip().splitlines() or [""])[-1]
 
 
-def try_fault(tree: Path, fault: Fault) -> Outcome:
-    """Put one fault in, run its tests, take it out again."""
+def try_fault(tree: Path, fault: Fault, before: str = "") -> Outcome:
+    """Put one fault in, run its tests, the one that noticed it before first, take it out again."""
     path = tree / fault.file
     source = path.read_text()
     began = time.monotonic()
     path.write_text(fault.changed(source))
     try:
-        passed, by = run_tests(tree, fault.tests)
+        passed, by = run_tests(tree, [before]) if stands(tree, before) else (True, "")
+        if passed:
+            passed, by = run_tests(tree, fault.tests)
     finally:
         path.write_text(source)
     return Outcome(fault, not passed, "" if passed else by, time.monotonic() - began)
 
 
-def try_all(faults: Sequence[Fault], processes: int) -> list[Outcome]:
+def stands(tree: Path, test: str) -> bool:
+    """Whether a test that a page names is still there: what pytest cannot find would look like a failure."""
+    file, _, name = test.partition("::")
+    return bool(name) and (tree / file).is_file() and f"def {name}(" in (tree / file).read_text()
+
+
+def try_all(faults: Sequence[Fault], processes: int, before: dict[str, str]) -> list[Outcome]:
     """Every fault, several trees at a time; stops when tests fail without a fault."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         trees: Queue[Path] = Queue()
         for k in range(processes):
             trees.put(copy_tree(Path(folder) / str(k)))
         first = trees.queue[0]
-        passed, by = run_tests(first, sorted({test for fault in faults for test in fault.tests}), LONGEST_OF_ALL)
+        tests = sorted({test for fault in faults for test in fault.tests})
+        tests += sorted({before[fault.name] for fault in faults if stands(first, before.get(fault.name, ""))})
+        spread = ("-n", str(processes), "--dist", "loadfile")
+        passed, by = run_tests(first, tests, *spread, longest=LONGEST_OF_ALL)
         if not passed:
             raise SystemExit(f"without any fault a test fails: {by}")
 
         def one(fault: Fault) -> Outcome:
             tree = trees.get()
             try:
-                return try_fault(tree, fault)
+                return try_fault(tree, fault, before.get(fault.name, ""))
             finally:
                 trees.put(tree)
 
@@ -130,7 +150,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=OUT)
     options = parser.parse_args()
     faults = [fault for fault in all_faults() if not options.only or fault.name in options.only]
-    outcomes = try_all(faults, options.processes)
+    outcomes = try_all(faults, options.processes, noticed_before(options.out))
     caught = sum(each.caught for each in outcomes)
     print(f"{caught} of {len(outcomes)} caught")
     if not options.only:

@@ -4,6 +4,7 @@ import ast
 
 import pytest
 
+from campaign.mutants.__main__ import Outcome, noticed_before, page, stands
 from campaign.mutants.fault import ROOT, Fault, all_faults
 
 FAULTS = all_faults()
@@ -25,3 +26,20 @@ def test_every_fault_applies(fault):
 def test_a_text_that_stands_twice_is_refused():
     with pytest.raises(ValueError, match="stands 2 times"):
         Fault("twice", "any.py", "a", "b", ()).changed("a a")
+
+
+def test_what_noticed_a_fault_is_read_from_the_page(tmp_path):
+    fault = [Fault(name, "winch_friction/any.py", "a", "b", ("test/any.py",)) for name in ("first", "second", "third")]
+    by = "FAILED test/campaign_mutants/test_fault_list.py::test_there_are_enough_faults[1 of 2]"
+    outcomes = [Outcome(fault[0], True, by, 1.0), Outcome(fault[1], False, "", 1.0)]
+    file = tmp_path / "page.md"
+    assert noticed_before(file) == {}
+    file.write_text(page([*outcomes, Outcome(fault[2], True, "no answer in time", 1.0)], "1234567"))
+    noticed = {"first": "test/campaign_mutants/test_fault_list.py::test_there_are_enough_faults"}
+    assert noticed_before(file) == noticed
+    assert stands(ROOT, noticed["first"])
+
+
+@pytest.mark.parametrize("test", ["", "test/conftest.py", "test/conftest.py::test_gone", "test/gone.py::test_gone"])
+def test_a_test_that_is_gone_notices_nothing(test):
+    assert not stands(ROOT, test)

@@ -51,8 +51,18 @@ def tmp(tmp_path_factory):
     return tmp_path_factory.mktemp("worlds")
 
 
-@pytest.mark.parametrize(("seed", "flavour"), WORLDS)
-@pytest.mark.parametrize("effect", ["", "tare_load", "stribeck"])
+# some effects in each world; the others are `make test-long`'s
+IN_WORLD = {("", 0), ("tare_load", 0), ("tare_load", 1), ("stribeck", 1), ("", 2)}
+
+
+@pytest.mark.parametrize(
+    ("effect", "seed", "flavour"),
+    [
+        pytest.param(effect, *world, marks=[] if (effect, k) in IN_WORLD else pytest.mark.long)
+        for effect in ("", "tare_load", "stribeck")
+        for k, world in enumerate(WORLDS)
+    ],
+)
 def test_friction_and_hidden_effects_are_no_mistakes(seed, flavour, effect, tmp):
     crane, model = world(seed, flavour, tmp)
     runs = runs_of(columns_of(seed, flavour, *([(effect, 2.0)] if effect else [])))
@@ -92,7 +102,9 @@ def test_a_load_that_swings_on_a_soft_wire_is_no_contradiction(tmp):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "flavour"), [*WORLDS[:2], pytest.param(*WORLDS[2], marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    ("seed", "flavour"), [WORLDS[0], *(pytest.param(*each, marks=pytest.mark.long) for each in WORLDS[1:])]
+)
 def test_the_first_cause_is_the_true_one(seed, flavour, tmp):
     crane, model = world(seed, flavour, tmp)
     plain = [columns_of(seed, flavour)[k] for k in SOME]

@@ -762,17 +762,20 @@ class _Tried(_Whole):
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
-@pytest.mark.parametrize(("left_as_given", "kind"), [(0.0, NOTHING), (3.0, UNEXPLAINED)])
-def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatch, left_as_given, kind):
+@pytest.mark.parametrize(
+    ("left_as_given", "of_others", "kind"),
+    [(0.0, 0.0, NOTHING), (3.0, 0.0, UNEXPLAINED), (0.0, 3.0, UNEXPLAINED), (0.0, 0.5, NOTHING)],
+)
+def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatch, left_as_given, of_others, kind):
     """A refit to little data may leave the locked runs three times what the model that was given leaves."""
     cross = crossfit(noise())
     none = cross.explain(())
     search = _Whole(cross, Selection(none, none, ()), Verdict(NOTHING))
     astray = side(noise(), 3.0 * WAVE + noise(1))
-    given = side(noise(), left_as_given * WAVE + noise(1))
+    train, given = (side(noise(), left * WAVE + noise(1)) for left in (of_others, left_as_given))
     monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
     monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, astray))
-    monkeypatch.setattr(standing_module, "as_given", lambda _, __, own, rng: Trial(own, None, None, given))
+    monkeypatch.setattr(standing_module, "as_given", lambda _, __, own, rng: Trial(own, None, train, given))
     assert standing_module.standing(None, None, None, search, np.random.default_rng(0)).search.verdict.kind == kind
 
 

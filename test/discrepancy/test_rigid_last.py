@@ -110,7 +110,7 @@ def surrounded(monkeypatch, met, told=True):
     check = SimpleNamespace(met=told)
     adequacy = SimpleNamespace(
         long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
-        of_swing=lambda left: check,
+        of_swing=lambda crane, left: check,
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))

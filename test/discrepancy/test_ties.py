@@ -75,6 +75,7 @@ def test_a_gain_error_of_the_displacement_is_no_single_name(seed):
     assert any("displacement_scale" in note for note in result.notes)
 
 
+@pytest.mark.long
 def test_what_is_one_with_the_finding_on_any_runs_takes_only_the_room_that_is_left():
     """Radius and load show as a product alone; a third cause that does as well says more than the load beside it."""
     said = diagnose(Case("law", (("gear_asymmetry:catalogue", 1.0),), DRAWN, 26000133, (0.0, 1.5)))

@@ -28,6 +28,7 @@ def lint(module, *arguments):
     return done.stdout
 
 
+@pytest.mark.long  # ruff's same rules run in every `make lint`
 def test_ament_flake8(tmp_path):
     module = pytest.importorskip("ament_flake8", reason="needs the extra 'test'")
     rules = configparser.ConfigParser()

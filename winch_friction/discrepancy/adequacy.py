@@ -9,13 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
+from winch_friction.discrepancy.preparation.wire_mode import settling_time
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
 
-SWING = "longest heave compensation, of a load whose swing is not told"
+SWING = "longest record, of a load whose swing on its wire is not told"
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
@@ -100,21 +103,30 @@ def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> l
     ]
 
 
-def of_swing(left: Sequence[tuple[PreparedRun, FloatArray]]) -> Check:
-    """Whether heave compensation lasts long enough to tell how the load swings on its wire, where what nothing explains
-    lies in such runs alone; met where it does not, or where the wire gives and that is known. `left` holds each run
-    with what its blocks keep, in floors.
+def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Check:
+    """Whether records last long enough to tell how the load swings on its wire, where what nothing explains lies in
+    such runs alone; met where it does not, or where the wire gives and that is known. `left` holds each run with what
+    its blocks keep, in floors.
     """
-    longest = max((float(run.time[-1]) for run, _ in left if _untold(run)), default=LIMITS.swing_told)
-    elsewhere = np.concatenate([np.empty(0), *(own for run, own in left if not _untold(run))])
+    untold = [_untold(run, crane) for run, _ in left]
+    lengths = [float(run.time[-1]) for (run, _), own in zip(left, untold, strict=True) if own]
+    longest = max(lengths, default=LIMITS.swing_told)
+    elsewhere = np.concatenate([np.empty(0), *(kept for (_, kept), own in zip(left, untold, strict=True) if not own)])
     if len(elsewhere) and float(np.sqrt(np.mean(elsewhere**2))) > LIMITS.far_off_the_floor:
         longest = max(longest, LIMITS.swing_told)
     return _at_least(SWING, longest, LIMITS.swing_told, "s")
 
 
-def _untold(run: PreparedRun) -> bool:
+def _untold(run: PreparedRun, crane: Crane) -> bool:
+    """Whether a run may hold a swing that it does not tell: none was found in heave compensation, what a found one
+    began with has not died when its samples begin to count, or they were too few to look for one on a wire that gives.
+    """
     frequency, damping = run.wire_mode[:2]
-    return len(run.groups) > 1 and frequency > 0.0 >= damping
+    if frequency <= 0.0:
+        return bool(np.isfinite(crane.wire_stiffness) and run.used.sum() < FEWEST_MOVING)
+    if damping > 0.0:
+        return len(run.groups) > 1 and settling_time(frequency, damping) > MOST_SETTLING * run.time[-1]
+    return len(run.groups) > 1
 
 
 def _joined(runs: Sequence[PreparedRun], values) -> FloatArray:  # type: ignore[no-untyped-def]

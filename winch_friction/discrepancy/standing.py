@@ -57,7 +57,7 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
         # little data may lead a refit astray where the model that was given leaves nothing
         given = as_given(split, options, nameless(search), rng)
-        if at_the_floor(given.holdout):
+        if at_the_floor(given.holdout) and not far_off(given.train):
             return replace(given, search=replace(given.search, verdict=Verdict(NOTHING)))
     # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
     harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)

@@ -213,7 +213,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
         notes=(*notes, *result.notes),
     )  # fmt: skip
-    swing = adequacy.of_swing([*result.train.left_by_run, *result.holdout.left_by_run])
+    swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
     # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
     if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
         return insufficient([*checks, swing], notes, crane, model, (given, split))

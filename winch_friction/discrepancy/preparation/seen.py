@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.ndimage import binary_opening
 
 from winch_friction.discrepancy.preparation.grid import (
     Grid,
@@ -69,8 +70,16 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
         still = _near_zero(speed, guard)
         still |= _near_zero(smooth(raw, samples_of(TOUCH_TIME, grid.dt, 3), 1), guard)  # a short touch hides in `speed`
         used = ~dilated(still, window // 2 + max(round(GUARD_TIME / grid.dt), 1))
+    used &= _measured_around(grid.valid, window // 2 + 1)
     # the acceleration is that of the smoothed speed: the same kernel as the pressures'
     return Motion(window, speed, np.gradient(speed, grid.dt), angle, direction, state_speed, used)
+
+
+def _measured_around(valid: np.ndarray, half: int) -> np.ndarray:
+    """Samples with `half` a window of measured ones on both sides: beside a hole that is longer, and at the ends of a
+    record that was cut out of a motion, a speed's slope is guessed, and the inertia makes tens of bar of it."""
+    holes = binary_opening(np.pad(~valid, half, constant_values=True), np.ones(half, bool))
+    return np.asarray(~dilated(holes, half)[half:-half])
 
 
 def at_one_speed(raw: FloatArray) -> bool:

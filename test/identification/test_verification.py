@@ -94,6 +94,16 @@ def test_the_load_swings_on_its_wire(crane):
     assert gains[1] == pytest.approx(4 / 3, rel=0.05)
 
 
+@pytest.mark.parametrize("begin", [3.0, 8.0, 20.0])
+def test_a_record_that_is_cut_out_of_the_motion_begins_without_a_swing(truth, crane, begin):
+    """The load moves with its wire when the record begins: it does not start from rest."""
+    run = ahc_run(truth, crane)
+    kept = run.time >= begin
+    cut = {name: values[kept] for name, values in run.columns.items()}
+    cut["wire_out"] = np.full(kept.sum(), 400.0)
+    assert pressure_check(Run("cut", cut), crane, truth).moving_rms < 0.8 * BAR
+
+
 def test_a_winch_that_never_turns(truth, crane):
     run = ahc_run(truth, crane)
     still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})

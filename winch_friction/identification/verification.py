@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.signal import bilinear, lfilter, savgol_filter
+from scipy.signal import bilinear, lfilter, lfilter_zi, savgol_filter
 
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data
@@ -181,7 +181,9 @@ def _load_acceleration(run: Run, crane: Crane, wire_speed: FloatArray) -> FloatA
     mass = float(np.mean(run["hook_load"]))
     rest = [_WIRE_DAMPING / mass, crane.wire_stiffness / length / mass]
     numerator, denominator = bilinear([*rest, 0.0], [1.0, *rest], fs=1.0 / _step(run))
-    return np.asarray(lfilter(numerator, denominator, wire_speed))
+    # the load moves with its wire when the record begins, which may be in the midst of a motion
+    state = wire_speed[0] * lfilter_zi(numerator, denominator)
+    return np.asarray(lfilter(numerator, denominator, wire_speed, zi=state)[0])
 
 
 def _step(run: Run) -> float:

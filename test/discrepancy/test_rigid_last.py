@@ -52,6 +52,7 @@ class Result:
     seed_refuted: tuple = ()
     adequacy: tuple = ()
     notes: tuple = ()
+    proposals: tuple = ()
 
 
 def trial(found, file=CLOSED):
@@ -63,7 +64,7 @@ def answers(monkeypatch):
     """What the next search and the judgement of its names answer; `asked` tells the balances searched."""
     own = SimpleNamespace(search=[], judged=[], asked=[])
 
-    def search_runs(split, given, options, rng, surfaces=False):
+    def search_runs(split, given, options, rng, also=None):
         own.asked.append(given)
         return own.search.pop(0)
 

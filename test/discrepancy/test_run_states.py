@@ -13,7 +13,7 @@ from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.run_states import levels_of, told_by_a_signal, two_levels
+from winch_friction.discrepancy.run_states import EACH_RUN, follows_a_signal, levels_of, told_by_a_signal, two_levels
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
 from winch_friction.records.crane_file import load_crane
@@ -62,6 +62,17 @@ def test_a_brake_that_hangs_in_some_runs_is_named():
     assert said["right"]
     assert said["detected"]
     assert not said["wrong_single"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [31_000_998, 31_000_999])
+def test_a_brake_that_drags_by_another_amount_in_every_run_is_named_where_nothing_else_explains(seed):
+    """The amounts of the locked runs are those that their first halves tell; the file closes their second as well."""
+    said = diagnose(Case("held_out", (("brake_drag:differs_by_run", 1.0),), DRAWN, seed, (0.0, 1.5)))
+    (effect,) = said["answer"]["effects"]
+    assert (effect["name"], effect["law"]) == ("brake_drag", EACH_RUN)
+    held = said["answer"]["gap"]["holdout"]
+    assert held["after"] < 1.2 * held["noise_floor"] < 0.2 * held["before"]
 
 
 # -- levels
@@ -142,6 +153,47 @@ def test_what_a_logged_signal_tells_is_no_state():
     assert not told_by_a_signal(layers, there)
     same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
     assert told_by_a_signal(same, there)
+
+
+def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake():
+    def run(k, load, mode=("main",)):
+        group = SimpleNamespace(balances=True, displacement=np.full(5, 2e-5), pressure=np.zeros(5))
+        channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
+        return SimpleNamespace(
+            channels=channels, used=np.ones(5, bool), mode=mode, groups=[group], start=1e9 + 600.0 * k
+        )
+
+    seeming = []
+    for seed in range(80):
+        rng = np.random.default_rng(seed)
+        load, modes = rng.uniform(1e4, 1.5e5, FULL), [("main",)] * 8 + [("active", "passive")] * 4
+        runs = [run(k, *each) for k, each in enumerate(zip(load, modes, strict=True))]
+        drawn = rng.uniform(0.0, 6.0, FULL)
+        seeming.append(follows_a_signal(runs, drawn))
+        noise = 0.3 * rng.standard_normal(FULL)
+        heavier, bent = 4e-5 * load + noise, 6.0 * ((load - 8e4) / 7e4) ** 2 + noise
+        later = 0.5 * np.arange(FULL) + noise
+        of_mode, step = np.where(np.arange(FULL) < 8, 0.0, 6.0), 3.0 * (load > np.sort(load)[4]) + noise
+        assert all(follows_a_signal(runs, levels) for levels in (heavier, bent, later, heavier + of_mode, step)), seed
+    assert np.mean(seeming) < 0.15
+    few = [run(k, load) for k, load in enumerate((1e4, 5e4, 7e4, 9e4, 1.2e5))]
+    assert follows_a_signal(few, np.array([1.0, 5.0, 2.0, 4.0, 3.0]))  # five runs never tell that it does not
+
+
+def test_of_a_whole_run_all_samples_say_its_level():
+    rng = np.random.default_rng(5)
+    count, runs = 200, 4
+    run, position = np.repeat(np.arange(runs), count), np.tile(np.arange(count), runs)
+    wave = np.sign(np.sin(position / 7.0))
+    base = Base(("K",), 1, np.ones(1), np.zeros(1), -np.ones(1), np.ones(1))
+    slot = Slot("brake", "", (1,))
+    y = 3.0 * wave * (position > count // 2) + rng.standard_normal(len(run))
+    blocks = Blocks(
+        y, np.column_stack([0.0 * wave, wave]), run, run, np.ones(len(run)), {}, np.sign(wave), position
+    )  # fmt: skip
+    problem = Problem(Layout(base, (slot,), np.ones(2), -np.ones(2), np.ones(2)), blocks, grams(blocks), {})
+    levels, _ = levels_of(problem, slot, runs, [True, True, False, False])
+    assert levels == pytest.approx([1.5, 1.5, 0.0, 0.0], abs=0.4)
 
 
 def test_the_second_half_of_a_run_has_no_say_in_its_state():

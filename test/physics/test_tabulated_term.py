@@ -199,13 +199,35 @@ def test_windows_are_one_level_there_and_nothing_elsewhere():
         Table("hangs", (("time", (10.0, 20.0, 40.0)),), shape="windows")
 
 
+def test_windows_may_have_so_many_times_the_level_each():
+    windows = ("time", (10.0, 20.0, 40.0, 50.0, 60.0, 70.0))
+    drags = Table("drags", (windows,), scope=Scope.SYSTEM, shape="windows", weights=(0.25, 1.0, 0.0))
+    model = _model(drags, values=[0.0, 4.0])
+    again = model_from_text(model_to_text(model), "m")
+    assert again.terms[-1].table == drags
+    at = layout(1).index(next(each for each in layout(1) if each.name == "t"))
+    for functions in (model.compile(1), again.compile(1)):
+        for time, expected in ((9.0, 0.0), (10.5, 1.0), (20.5, 0.0), (45.0, 4.0), (65.0, 0.0)):
+            point = tuple(time if k == at else value for k, value in enumerate(_point()))
+            assert functions.scalar_torque(point, (0.0, 4.0), ()) == pytest.approx(11.0 * expected), time
+    for weights, shape, said in (
+        ((1.0,), "windows", "one for each of the windows"),
+        ((1.0, -0.5, 0.0), "windows", "0 or more"),
+        ((1.0, float("nan"), 0.0), "windows", "0 or more"),
+        ((1.0, 1.0, 1.0), "free", "one for each of the windows"),
+    ):
+        with pytest.raises(InputError, match=said):
+            Table("drags", (windows,), shape=shape, weights=weights)
+
+
 HINGES = Table(
     "hinges", (("speed_magnitude", (5.0, 40.0, 90.0)),), scope=Scope.SYSTEM, shape="convex_rising", anchor="low"
 )
 WINDOW = Table("window", (("wire_out", (20.0, 55.0)),), shape="windows")
+WEIGHED = replace(WINDOW, name="weighed", knots=(("wire_out", (20.0, 55.0, 60.0, 90.0)),), weights=(0.3, 1.0))
 
 
-@pytest.mark.parametrize("table", [WARM, SURFACE, HINGES, WINDOW], ids=lambda table: table.name)
+@pytest.mark.parametrize("table", [WARM, SURFACE, HINGES, WINDOW, WEIGHED], ids=lambda table: table.name)
 def test_one_outline_serves_every_table_of_its_form(table):
     constants = (("gear_ratio", 250.0), ("max_displacement", 3.4e-5))
     moved = replace(table, knots=tuple((name, tuple(1.07 * k for k in at)) for name, at in table.knots), typical=2.0)

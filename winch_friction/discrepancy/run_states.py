@@ -5,7 +5,7 @@ runs everything that their names are proven on, is judged by one size for all ru
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -26,12 +26,13 @@ from winch_friction.physics.friction import FrictionModel, Scope
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.table import Table, tabulated
 
-BRAKE, SOME_RUNS, SINCE = "brake_drag", "in some runs", "since a date"
+BRAKE, SOME_RUNS, SINCE, EACH_RUN = "brake_drag", "in some runs", "since a date", "by another amount in each run"
 SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
 NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
 NUMBERED = ("wire_layer",)  # whose values are names: the middle one may be wrong
 THEN = "_then"  # behind the name of a parameter that is there for a time
 FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
+FEWEST_FREE = 3  # runs beyond what a parabola uses up, to tell that levels do not follow it
 MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
 
 Windows = tuple[tuple[float, float], ...]
@@ -78,31 +79,82 @@ def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candid
 def _candidates(slot: Slot, state: State) -> list[Candidate]:
     candidate, shape = slot.origin
     if candidate.name == BRAKE:
-        return [_brake(state.windows)] if state.law == SOME_RUNS else []  # since a date it is a sudden wear
+        return [_brake(state.windows, SOME_RUNS)] if state.law == SOME_RUNS else []  # since a date it is a sudden wear
     own = replace(shape, label=f"{shape.label}, {state.label}")
     linear = candidate.linear + tuple(replace(p, name=p.name + THEN) for p in candidate.linear if state.both)
     return [
         replace(
             candidate, law_name=state.law, linear=linear, columns=partial(_within, candidate, state),
-            shapes=partial(_only, own), corrects=partial(_then, candidate, state), continuous=(),
+            shapes=lambda _: [own], corrects=partial(_then, candidate, state), continuous=(),
         )
     ]  # fmt: skip
 
 
-def _brake(windows: Windows) -> Candidate:
+def _brake(windows: Windows, law: str, weights: tuple[float, ...] = ()) -> Candidate:
     knots = tuple(itertools.chain.from_iterable(windows))
     table = Table(
-        f"{BRAKE}_in_some_runs", (("time", knots),), scope=Scope.SYSTEM, shape="windows", typical=3.0,
-        source="a brake that hangs in some runs",
+        f"{BRAKE}_{law.replace(' ', '_')}", (("time", knots),), scope=Scope.SYSTEM, shape="windows", typical=3.0,
+        source=f"a brake that hangs {law}", weights=weights,
     )  # fmt: skip
     term = tabulated(table)
     return Candidate(
-        BRAKE, "", term.parameters, partial(term_columns, term), term=term, presumes=COULOMB, law_name=SOME_RUNS,
+        BRAKE, "", term.parameters, partial(term_columns, term), term=term, presumes=COULOMB, law_name=law,
     )  # fmt: skip
 
 
-def _only(shape: Shape, _: Sequence[PreparedRun]) -> list[Shape]:
-    return [shape]
+def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """A brake that drags by another amount in every run, that of a locked one told by its first half; none where a
+    logged signal tells the amounts. Twelve amounts imitate much: it is for what nothing else explains.
+    """
+    brake = next(each for each in shipped_friction() if each.name == BRAKE and not each.law_name)
+    if len(runs) < LIMITS.fewest_levels or not set(brake.presumes) & set(model.term_names):
+        return []
+    problem = build_problem(runs, layout_of(base_of(model, model), [brake], runs, model))
+    levels, _ = levels_of(problem, problem.slots[0], len(runs), [run.name in train for run in runs])
+    if not np.isfinite(levels).all() or levels.max() <= 0.0 or follows_a_signal(runs, levels):
+        return []
+    order, begins, ends = _by_date(runs)
+    windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
+    weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
+    return [_brake(windows, EACH_RUN, weights)]
+
+
+def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
+    """Whether a parabola or a step over the medians of something that was logged, or over the date, says most of what
+    the runs' levels differ by, beside what hoisting and heave compensation differ by."""
+    modes = sorted({run.mode for run in runs})
+    beside = np.array([[float(run.mode == mode) for mode in modes] for run in runs])
+    if len(runs) - len(modes) - 2 < FEWEST_FREE:
+        return True
+    most = LIMITS.told_by_signal * _left_by(beside, levels)
+    for values in (np.array([run.start for run in runs]), *_medians(runs).values()):
+        if not np.isfinite(values).all() or np.ptp(values) <= 1e-9 * np.abs(values).max():
+            continue
+        x = (values - values.mean()) / np.ptp(values)
+        steps = (np.column_stack([beside, x > at]) for at in np.unique(x)[:-1])
+        if min(_left_by(own, levels) for own in (np.column_stack([beside, x, x**2]), *steps)) < most:
+            return True
+    return False
+
+
+def _medians(runs: Sequence[PreparedRun]) -> dict[str, FloatArray]:
+    """What every signal that all runs have was in the middle of each one's samples; nan where a run has none."""
+    known = []
+    for run in runs:  # what the driving group does, whatever its name: it is another one in heave compensation
+        drives = [{"displacement": g.displacement, "pressure": g.pressure} for g in run.groups if g.balances]
+        known.append({**run.channels, **(drives or [{}])[0]})
+    return {
+        name: np.array(
+            [np.median(x[name][r.used]) if r.used.any() else np.nan for r, x in zip(runs, known, strict=True)]
+        )
+        for name in sorted(set.intersection(*map(set, known)) - set(NO_SIGNAL))
+    }
+
+
+def _left_by(columns: FloatArray, values: FloatArray) -> float:
+    """Sum of squares that a fit leaves, per value that it does not use up."""
+    left = values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]
+    return float(left @ left) / max(len(values) - columns.shape[1], 1)
 
 
 def _within(candidate: Candidate, state: State, run: PreparedRun, values: Values) -> FloatArray:
@@ -128,9 +180,8 @@ def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State |
         return None
     other = float(np.nanmean(levels[~there]))
     both = abs(other) > LIMITS.other_level * abs(float(np.nanmean(levels[there])) - other)
-    order = sorted(range(len(runs)), key=lambda k: runs[k].start)
+    order, begins, ends = _by_date(runs)
     inside = [bool(there[k]) for k in order]
-    begins, ends = [runs[k].start for k in order], [runs[k].start + float(runs[k].time[-1]) for k in order]
     switches = sum(a != b for a, b in itertools.pairwise(inside))
     if switches == 1 and inside[-1]:
         at = inside.index(True)
@@ -138,6 +189,11 @@ def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State |
     else:
         windows = tuple(_window(begins, ends, list(group)) for on, group in _spells(inside) if on)
     return State(windows, sum(inside), len(inside), both)
+
+
+def _by_date(runs: Sequence[PreparedRun]) -> tuple[list[int], list[float], list[float]]:
+    order = sorted(range(len(runs)), key=lambda k: runs[k].start)
+    return order, [runs[k].start for k in order], [runs[k].start + float(runs[k].time[-1]) for k in order]
 
 
 def _spells(inside: Sequence[bool]) -> list[tuple[bool, list[int]]]:
@@ -151,14 +207,17 @@ def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]
     return begins[first] - min(before, MARGIN), ends[last] + min(after, MARGIN)
 
 
-def levels_of(problem: Problem, slot: Slot, runs: int) -> tuple[FloatArray, FloatArray]:
-    """Size of a candidate in the first half of each run and its deviation from the others', in its units, the base
-    fitted to all of them; NaN where a run has none of it."""
+def levels_of(
+    problem: Problem, slot: Slot, runs: int, whole: Sequence[bool] | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Size of a candidate in the first half of each run, or in all of it where it is `whole`, and its deviation from
+    the others', in its units, the base fitted to all of them; NaN where a run has none of it."""
     blocks, base = problem.blocks, list(problem.base_columns)
     half = np.array(
         [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
     )
     first = blocks.position <= half[blocks.run]
+    first |= np.asarray(whole if whole is not None else [False] * runs)[blocks.run]
     weight, run = blocks.weight[first], blocks.run[first]
     own = blocks.x[first, slot.columns[0]] * weight
     columns = np.column_stack(
@@ -226,23 +285,12 @@ def _two_lines(
     return float(weight @ (off - slope * own) ** 2), slope
 
 
-def _of_the_drive(run: PreparedRun) -> dict[str, FloatArray]:
-    """What the driving group does, whatever its name: it is another one in heave compensation."""
-    driving = [group for group in run.groups if group.balances]
-    return {"displacement": driving[0].displacement, "pressure": driving[0].pressure} if driving else {}
-
-
 def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
     """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
     may hang on it."""
-    known = [{**run.channels, **_of_the_drive(run)} for run in runs]
-    names = set.intersection(*map(set, known)) - set(NO_SIGNAL)
     if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
         return len({run.mode for run in runs}) > 1
-    for name in names:
-        medians = np.array(
-            [np.median(own[name][run.used]) if run.used.any() else np.nan for run, own in zip(runs, known, strict=True)]
-        )
+    for name, medians in _medians(runs).items():
         yes, no = medians[there], medians[~there]
         if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
             return True

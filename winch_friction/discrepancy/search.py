@@ -5,7 +5,7 @@ a quarter of a delay of a tenth of a second, since the acceleration, the load's 
 Taken out of the signals themselves, all of it goes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,7 +15,6 @@ from winch_friction.discrepancy.adequacy import Split
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Shape, Untestable, Values
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
-from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.candidates.signals import DELAY, PRESSURES, tau
 from winch_friction.discrepancy.detectors import flow_balance, reversals, soft_oil
 from winch_friction.discrepancy.detectors import ripple as angle
@@ -33,8 +32,10 @@ from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
+LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
 
 # -- a delay taken out
@@ -128,12 +129,12 @@ class Search:
 
 
 def search_runs(
-    split: Split, given: Given, options: GapOptions, rng: np.random.Generator, surfaces: bool = False
+    split: Split, given: Given, options: GapOptions, rng: np.random.Generator, also: LastResort | None = None
 ) -> Search:
     """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs.
 
-    With `surfaces` a cause may have a law that only the data know, over two signals at once; then it is one cause
-    alone, for a surface with company imitates anything.
+    `also` makes candidates of last resort of all runs and the model, such as laws that only the data know, over two
+    signals at once: then it is one cause alone, for one of these with company imitates anything.
     """
     model, prepared = given.model, given.prepared
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
@@ -142,8 +143,8 @@ def search_runs(
     known = options.candidates or [
         *candidates_for(prepared, model, options.effects_file), *run_states(prepared, model)
     ]  # fmt: skip
-    if surfaces:
-        known = [*known, *free_members(prepared, model, SURFACES)]
+    if also is not None:
+        known = [*known, *also(prepared, model)]
     usable, blind = testable(known, prepared, model)
     candidates = [each for each in usable if each.regime == MOVING]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
@@ -158,7 +159,7 @@ def search_runs(
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)
         cross = expansion.cross(split.train, selection.final.slots)
-        selection = select(cross, rng, 1 if surfaces else LIMITS.most_effects)
+        selection = select(cross, rng, LIMITS.most_effects if also is None else 1)
         if not any(slot.origin[0].continuous for slot in selection.final.slots):
             break
     left = dependences(cross, cross.remainder(selection.final), rng)

@@ -19,6 +19,7 @@ class Thresholds:
     # s of one run of heave compensation in which no swing could be told: what it began with has died by then, three
     # decay times of a rope's lightest damping (ratio 0.02) at the slowest mode (2.5 rad/s)
     swing_told: float = 60.0
+    told_by_signal: float = 0.35  # of the variance of the runs' levels: a signal that leaves less tells them
     least_share_moving: float = 0.0  # said, not asked for: a long idle log may hold enough
     # -- blocks and segments
     block_time: float = 0.2  # s: the fast noise averages out, friction does not

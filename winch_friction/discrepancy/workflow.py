@@ -15,7 +15,7 @@ from winch_friction.discrepancy.adequacy import Split, lock_holdout
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.candidates.families import shapes_over
+from winch_friction.discrepancy.candidates.families import SURFACES, free_members, shapes_over
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
@@ -24,8 +24,9 @@ from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.prepared_run import against_simulations
-from winch_friction.discrepancy.proof import adds, at_the_floor, nobodys
-from winch_friction.discrepancy.proposals import near_laws, propose
+from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
+from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
+from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -49,7 +50,7 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     left = given.cross.excess(given.explanation)
     if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
         return trial
-    search = search_runs(split, given.given, options, rng, surfaces=True)
+    search = search_runs(split, given.given, options, rng, partial(free_members, rows=SURFACES))
     if not search.selection.found:
         return trial
     if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
@@ -58,6 +59,19 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
         return trial
     return other if not named or adds(trial.holdout, other.holdout, rng) else trial
+
+
+def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
+    """What no name explains and no equation brings to the floor, once more with a brake that drags by another amount in
+    every run; the trial as it is unless that alone brings the locked runs to their floor, and the others near theirs.
+    """
+    by_run = partial(another_in_each_run, split.train)
+    search = search_runs(split, trial.search.given, options, rng, by_run)
+    if [each.slot.law for each in search.selection.found] != [EACH_RUN]:
+        return trial
+    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
+    return other if named and at_the_floor(other.holdout) and not far_off(other.train) else trial
 
 
 def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
@@ -208,17 +222,6 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         options.told("searching without a swing of the load")
         trial = _without_swing(split, crane, given, options, trial, rng)
     options.told("planning")
-    result = assemble(split, options, trial)
-    result = replace(
-        result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
-        notes=(*notes, *result.notes),
-    )  # fmt: skip
-    swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
-    # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
-    if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
-        return insufficient([*checks, swing], notes, crane, model, (given, split))
-    if not options.proposals:
-        return result
 
     def expand(own: Search, candidate: Candidate) -> Expansion:
         return expand_around(own.given, own.expansion, own.cross.explain(()), [candidate])
@@ -226,7 +229,22 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     def evaluate(own: Search) -> Trial:
         return tried(split, crane, options, own, rng)
 
-    return replace(result, proposals=propose(trial, split.train, expand, evaluate, rng))
+    proposals: tuple[Proposal, ...] = ()
+    if trial.search.verdict.kind == UNEXPLAINED and options.proposals:
+        proposals = propose(trial, split.train, expand, evaluate, rng)
+        if not options.candidates and all(each.after > LIMITS.at_the_floor * each.noise_floor for each in proposals):
+            trial = by_runs(split, crane, options, trial, rng)
+            proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
+    result = assemble(split, options, trial)
+    result = replace(
+        result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
+        notes=(*notes, *result.notes), proposals=proposals,
+    )  # fmt: skip
+    swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
+    # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
+    if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
+        return insufficient([*checks, swing], notes, crane, model, (given, split))
+    return result
 
 
 def _without_swing(

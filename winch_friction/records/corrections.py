@@ -150,6 +150,7 @@ def _read(section: Section, name: str) -> Term:
         section.text("place", "gear and drum"),
         section.text("source", "tabulated"),
         section.text("side", "both"),
+        tuple(finite(each, f"{section.where}: weights") for each in section.get("weights") or ()),
     )
     knots.close()
     section.close()
@@ -185,4 +186,6 @@ def _content(table: Table) -> dict[str, Any]:
         "knots": {signal: list(at) for signal, at in table.knots}, "unit": table.unit, "times": list(table.times),
         "scope": table.scope.value, "opposing": table.opposing, "shape": table.shape, "anchor": table.anchor,
         "typical": table.typical, "place": table.place, "source": table.source,
-    } | ({"side": table.side} if table.side != "both" else {})  # fmt: skip
+    } | ({"side": table.side} if table.side != "both" else {}) | (
+        {"weights": list(table.weights)} if table.weights else {}
+    )  # fmt: skip

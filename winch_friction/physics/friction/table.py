@@ -44,7 +44,8 @@ class Table:
     `anchor`: where it is zero ('low' the first knot, 'high' the last), 'none': its level there is a parameter of its
     own. `unit` of the curve's values; times `times` they must be N m. Over two signals `shape` and `anchor` may be two
     words, one per signal; a surface of monotone shapes is never negative. `side`: whether it counts one way alone.
-    `windows`: one level from each odd knot to the next, nothing elsewhere.
+    `windows`: one level from each odd knot to the next, nothing elsewhere; with `weights`, one per window and none
+    below 0, so many times that level.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Table:
     place: str = "gear and drum"
     source: str = "tabulated"
     side: str = "both"
+    weights: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if problems := self._problems():
@@ -79,6 +81,10 @@ class Table:
                 found.append(f"{kind} '{text}' must be one word, or one for each of {', '.join(self.signals)}")
         if "windows" in self.shape.split() and (len(self.knots) != 1 or len(self.knots[0][1]) % 2):
             found.append("windows are over one signal, and have a knot at either end")
+        if self.weights and (self.shape != "windows" or len(self.weights) != len(self.knots[0][1]) // 2):
+            found.append("weights are one for each of the windows")
+        if any(not 0.0 <= weight < float("inf") for weight in self.weights):
+            found.append("weights must be 0 or more")
         found += [f"side '{self.side}' is none of {', '.join(SIDES)}"] if self.side not in SIDES else []
         return found
 
@@ -194,7 +200,8 @@ def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     name, knots = axis.signal, axis.knots
     signal = FACTORS[name][0]
     steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
-    inside = sp.Add(*(step if k % 2 == 0 else -step for k, step in enumerate(steps)))
+    weights = table.weights or (1.0,) * (len(knots) // 2)
+    inside = sp.Add(*(weights[k // 2] * (step if k % 2 == 0 else -step) for k, step in enumerate(steps)))
     level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
     return _term(table, level.symbol * inside, [level, *shapes], f"in {len(knots) // 2} windows of {name}")
 

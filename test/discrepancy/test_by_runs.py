@@ -1,0 +1,115 @@
+"""A brake that drags by another amount in every run: asked last of all, and only what it closes alone is taken."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy import workflow
+from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.run_states import EACH_RUN
+from winch_friction.physics.signals import Run
+
+FLOOR, FAR = 0.2, 1.0  # bar
+
+
+def side(left):
+    size = SimpleNamespace(value=left, interval=(0.9 * left, 1.1 * left))
+    return SimpleNamespace(size_after=size, floor=FLOOR, excused=FLOOR, left_by_run=())
+
+
+def trial(kind, locked=FAR, train=FAR, law=EACH_RUN):
+    slot = SimpleNamespace(name="brake_drag", law=law)
+    search = SimpleNamespace(
+        verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)])
+    )
+    return SimpleNamespace(search=search, holdout=side(locked), train=side(train))
+
+
+@pytest.mark.parametrize(
+    ("other", "taken"),
+    [
+        (trial(MISSING, FLOOR, FLOOR), True),
+        (trial(MISSING, 1.9 * FLOOR, FLOOR), False),  # the locked runs keep something
+        (trial(MISSING, FLOOR, 2.5 * FLOOR), False),  # the runs to learn from do
+        (trial(UNEXPLAINED, FLOOR, FLOOR), False),
+        (trial(MISSING, FLOOR, FLOOR, law="in some runs"), False),
+    ],
+)
+def test_only_what_it_closes_alone_is_taken(monkeypatch, other, taken):
+    monkeypatch.setattr(workflow, "search_runs", lambda split, given, options, rng, also: other.search)
+    monkeypatch.setattr(workflow, "standing", lambda *_: other)
+    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    before = trial(UNEXPLAINED)
+    after = workflow.by_runs(SimpleNamespace(train=()), None, GapOptions(), before, np.random.default_rng(0))
+    assert (after is other) is taken
+    assert (after is before) is not taken
+
+
+@pytest.mark.parametrize(
+    ("first", "left_by_laws", "asked"),
+    [
+        (UNEXPLAINED, [], True),
+        (UNEXPLAINED, [FAR, 2.0 * FAR], True),  # laws that close something of it
+        (UNEXPLAINED, [FAR, FLOOR], False),  # one that closes all of it
+        (MISSING, [], False),
+        (NOTHING, [], False),
+    ],
+)
+def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_laws, asked):
+    laws = tuple(SimpleNamespace(after=left, noise_floor=FLOOR) for left in left_by_laws)
+    named, seen = trial(MISSING, FLOOR, FLOOR), []
+    runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
+    adequacy = SimpleNamespace(
+        long_enough=lambda runs: (runs, ()), of_records=lambda *_: [], of_prepared=lambda *_: [],
+        of_swing=lambda *_: SimpleNamespace(met=True),
+    )  # fmt: skip
+    monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
+    monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
+    monkeypatch.setattr(workflow, "meet", lambda *_: None)
+    monkeypatch.setattr(workflow, "search_runs", lambda *_: None)
+    monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
+    monkeypatch.setattr(workflow, "standing", lambda *_: None)
+    monkeypatch.setattr(workflow, "not_one_law", lambda *_: trial(first))
+    monkeypatch.setattr(workflow, "by_surfaces", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(workflow, "swings", lambda given: False)
+    monkeypatch.setattr(workflow, "propose", lambda *_: laws)
+    monkeypatch.setattr(workflow, "by_runs", lambda *_: seen.append(True) or named)
+    monkeypatch.setattr(workflow, "replace", lambda result, **more: SimpleNamespace(**{**vars(result), **more}))
+    monkeypatch.setattr(
+        workflow, "assemble",
+        lambda split, options, own: SimpleNamespace(
+            verdict=own.search.verdict.kind, notes=(), train=own.train, holdout=own.holdout
+        ),
+    )  # fmt: skip
+    found = workflow.find_gap(runs, None, None, GapOptions())
+    assert bool(seen) is asked
+    assert found.verdict == (MISSING if asked else first)
+    assert tuple(found.proposals) == (() if asked or first != UNEXPLAINED else laws)  # none beside a name
+
+
+def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch):
+    from winch_friction.discrepancy import run_states
+
+    asked = []
+    monkeypatch.setattr(run_states, "build_problem", lambda *_: SimpleNamespace(slots=[None]))
+    monkeypatch.setattr(run_states, "layout_of", lambda *_: None)
+    monkeypatch.setattr(run_states, "base_of", lambda *_: None)
+    monkeypatch.setattr(run_states, "follows_a_signal", lambda *_: False)
+
+    def levels_of(problem, slot, runs, whole):
+        asked.append(whole)
+        return np.array([0.5, -1.0, 4.0, 2.0, 1.0, 3.0, 2.0, 1.0]), None
+
+    monkeypatch.setattr(run_states, "levels_of", levels_of)
+    runs = [SimpleNamespace(name=f"run_{k}", start=1e9 - 600.0 * k, time=np.array([0.0, 60.0])) for k in range(8)]
+    brake = next(each for each in run_states.shipped_friction() if each.name == "brake_drag" and not each.law_name)
+    model = SimpleNamespace(term_names=tuple(brake.presumes))
+    (found,) = run_states.another_in_each_run({"run_0", "run_3"}, runs, model)
+    assert asked == [[name in ("run_0", "run_3") for name in (run.name for run in runs)]]
+    # by date, which here runs backwards, and none that drives
+    assert found.term.table.weights == (0.25, 0.5, 0.75, 0.25, 0.5, 1.0, 0.0, 0.125)
+    windows = found.term.table.knots[0][1]
+    assert all(windows[2 * k] < runs[7 - k].start < runs[7 - k].start + 60.0 < windows[2 * k + 1] for k in range(8))
+    assert run_states.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []

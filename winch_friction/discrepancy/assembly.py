@@ -37,6 +37,7 @@ from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.ties import Company, company, known_combination
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.table import in_windows
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.atomic import shipped
@@ -96,7 +97,7 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
         notes=(
-            *_notes(split.runs, given.loads), *repaired.cut,
+            *_notes(split.runs, given.loads), *_amounts(repaired.model, split.runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
             *filter(None, (own.note(name) for name, own in tied.items())), *([drift] if drift else []), *left,
         ),
@@ -220,6 +221,19 @@ def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     if bare:
         notes.append(f"no wire_layer in {len(bare)} runs: the outer layer is assumed")
     return tuple(notes)
+
+
+def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:
+    """Which runs have what a table of windows over time says, and how much of it."""
+    found = []
+    for term in model.terms:
+        if term.table is None or term.table.shape != "windows" or term.table.signals != ("time",):
+            continue
+        level = model.value(term.parameters[0].name)
+        own = [(run.name, in_windows(term.table, level, float(run.time[len(run) // 2]))) for run in runs]
+        said = ", ".join(f"{name} {amount:.3g}" for name, amount in own if amount)
+        found.append(f"{term.name}, N·m at each motor: {said}; to any other run the file gives none")
+    return found
 
 
 # -- when something changed

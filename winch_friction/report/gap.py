@@ -12,7 +12,7 @@ from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
-from winch_friction.physics.friction.table import FACTORS, at_knots, tabulated
+from winch_friction.physics.friction.table import FACTORS, at_knots, in_windows, tabulated
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.equations import latex_html, term_html
@@ -37,7 +37,7 @@ def gap_sections(result: GapResult, provenance: Mapping[str, Any] | None = None)
     sections = [
         TextSection("Decision", decision),
         TextSection(
-            "What is missing", "".join(_effect(effect, result.model) for effect in result.effects) + _proposals(result)
+            "What is missing", "".join(_effect(effect, result) for effect in result.effects) + _proposals(result)
         ),
         TextSection("Whether these runs can answer", _adequacy(result)),
         TextSection("What the data say of the seed", _seed(result)),
@@ -64,10 +64,12 @@ def _steps(result: GapResult) -> str:
     return "<h3>What to do next</h3>" + list_html(steps, ordered=len(steps) > 1) if steps else ""
 
 
-def _effect(effect: Effect, model: FrictionModel) -> str:
+def _effect(effect: Effect, result: GapResult) -> str:
+    model = result.model
     text = effect_text(effect.name)
     rivals = paragraph(f"These runs cannot tell it from {' or '.join(effect.rivals)}.") if effect.rivals else ""
     drawn, curve = _curve(effect, model)
+    drawn, curve = (drawn, curve) if drawn else _by_run(effect, result)
     rows = [
         (name, value_for_people(e.value, e.unit), value_for_people(e.std, e.unit), for_people(e.unit))
         for name, e in effect.parameters.items()
@@ -118,9 +120,30 @@ def _curve(effect: Effect, model: FrictionModel) -> tuple[set[str], str]:
     rows = [(value_for_people(k, unit), h, s) for k, h, s in zip(knots, *shown, strict=True)]
     head = (f"{_words(signal)} [{for_people(unit)}]", f"value [{for_people(table.unit)}]", "σ")
     times = f", times {' and '.join(map(_words, table.times))}" if table.times else ""
-    where = {Scope.MOTOR: "of each motor", Scope.SYSTEM: "of all motors", Scope.SHAFT: "at the shaft"}[table.scope]
-    said = f"A curve over {_words(signal)} that the data drew{times}, {where}, linear between its places:"
+    said = f"A curve over {_words(signal)} that the data drew{times}, {_WHERE[table.scope]}, linear between its places:"
     return set(names), paragraph(said) + table_html(head, rows, "What was found", 4)
+
+
+def _by_run(effect: Effect, result: GapResult) -> tuple[set[str], str]:
+    """The parameter of a table of windows over time that an effect's law is, and what it says of every run."""
+    tables = [(term.table, term.parameters[0].name) for term in result.model.terms if term.table is not None]
+    own = [
+        (t, name) for t, name in tables if t.shape == "windows" and t.signals == ("time",) and name in effect.parameters
+    ]
+    if len(own) != 1:
+        return set(), ""
+    table, name = own[0]
+    level = value_for_people(effect.parameters[name].value, table.unit)
+    runs = sorted([*result.train.runs, *result.holdout.runs], key=lambda run: run.start)
+    rows = [(run.name, in_windows(table, level, run.start + 0.5 * float(run.time[-1]))) for run in runs]
+    where = "at each motor's shaft" if table.scope is Scope.SYSTEM else _WHERE[table.scope]
+    said = f"{effect.law_name.capitalize()}, {where}; the runs by their dates:"
+    return {name}, paragraph(said) + table_html(
+        ("run", f"torque [{for_people(table.unit)}]"), rows, "What was found", 3
+    )
+
+
+_WHERE = {Scope.MOTOR: "of each motor", Scope.SYSTEM: "of all motors", Scope.SHAFT: "at the shaft"}
 
 
 def _words(name: str) -> str:

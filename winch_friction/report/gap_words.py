@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.report.tables import number
@@ -107,7 +108,12 @@ def next_steps(result: "GapResult") -> list[str]:
             f"likeness on the crane; it parts them by {plan['expected_z']:.1f} sigma."
         )
     steps += [f"{e.name}: {effect_text(e.name).look}" for e in result.effects]
-    if result.effects:
+    if past := [e.name for e in result.effects if e.law_name in (SOME_RUNS, EACH_RUN)]:
+        steps.append(
+            f"See what was done between these runs: of {', '.join(past)} model.yaml says what it was in each of them, and "
+            "nothing of the next one."
+        )
+    elif result.effects:
         steps.append(
             "Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the running "
             "compensator load it (`winch-friction load model.yaml`); it takes over without a bump."

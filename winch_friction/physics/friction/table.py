@@ -200,10 +200,22 @@ def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     name, knots = axis.signal, axis.knots
     signal = FACTORS[name][0]
     steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
-    weights = table.weights or (1.0,) * (len(knots) // 2)
+    weights = _weights(table)
     inside = sp.Add(*(weights[k // 2] * (step if k % 2 == 0 else -step) for k, step in enumerate(steps)))
     level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
     return _term(table, level.symbol * inside, [level, *shapes], f"in {len(knots) // 2} windows of {name}")
+
+
+def _weights(table: Table) -> tuple[float, ...]:
+    return table.weights or (1.0,) * (len(table.knots[0][1]) // 2)
+
+
+def in_windows(table: Table, level: float, at: float) -> float:
+    """What a table of windows is at one value of its signal, in the unit of its `level`: 0 outside of them."""
+    knots = table.knots[0][1]
+    weights = _weights(table)
+    own = (w for w, a, b in zip(weights, knots[::2], knots[1::2], strict=True) if a < at <= b)
+    return level * next(own, 0.0)
 
 
 def at_knots(table: Table) -> FloatArray:

@@ -1,6 +1,6 @@
 """The mutation campaign (`make mutants`): how many of a list of small semantic faults the tests notice.
 
-    python -m campaign.mutants [--processes 2] [--only NAME ...] [--out docs/campaign_mutants.md]
+    python -m campaign.mutants [--processes 2] [--draw N --seed S] [--only NAME ...] [--out docs/campaign_mutants.md]
 
 Each fault is put into a copy of the working tree, and the tests named beside it run there until the first failure: the
 one that noticed it last time, by the page, before the others. A fault is caught when a test fails; a time-out counts as
@@ -9,13 +9,14 @@ caught. Tests that fail without any fault would catch everything, so all of them
 
 import argparse
 import os
+import random
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,7 +29,7 @@ LONGEST = 420.0  # s for the tests of one fault; a fault that makes them hang is
 KEPT_OUT = shutil.ignore_patterns(".git", ".venv*", "out", "__pycache__", ".*_cache", ".hypothesis", "build", "install")
 OUT = Path("docs/campaign_mutants.md")
 BAR = 0.85
-ROW = re.compile(r"^\| (?P<name>.+?) \| `[^`]*` \| `(?P<test>[^`:]+::[^`\[]+)[^`]*` \|$", re.MULTILINE)
+ROW = re.compile(r"^\| (?P<name>.+?) \| (`[^`]*` )?\| `(?P<test>[^`:]+::[^`\[]+)[^`]*` \|$", re.MULTILINE)
 LONGEST_OF_ALL = 3600.0  # s for all of the tests at once, without a fault
 
 
@@ -119,14 +120,22 @@ def try_all(faults: Sequence[Fault], processes: int, before: dict[str, str]) -> 
             return [each.result() for each in waiting]
 
 
-def page(outcomes: Sequence[Outcome], measured: str) -> str:
-    """The campaign's page."""
+def page(outcomes: Sequence[Outcome], measured: str, listed: int = 0, before: Mapping[str, str] | None = None) -> str:
+    """The campaign's page: a draw of those that are `listed`, and by which test the others were noticed `before`."""
     caught = sum(each.caught for each in outcomes)
     rows = "\n".join(
         f"| {each.fault.name} | `{each.fault.file.removeprefix('winch_friction/')}` | "
         f"{'`' + each.by.removeprefix('FAILED ') + '`' if each.caught else '**survived**'} |"
         for each in outcomes
     )
+    run = {each.fault.name for each in outcomes}
+    others = "\n".join(f"| {name} | | `{test}` |" for name, test in (before or {}).items() if name not in run)
+    rest = (
+        f"\n## Noticed before, not drawn this time\n\n| fault | | noticed by |\n|---|---|---|\n{others}\n"
+        if others
+        else ""
+    )
+    drawn = f", drawn of {listed} that are listed" if listed > len(outcomes) else ""
     return f"""# Do the tests hold the guards: the mutation campaign
 
 Small faults of meaning, one at a time, in a copy of the package; the tests named beside each fault in
@@ -134,12 +143,12 @@ Small faults of meaning, one at a time, in a copy of the package; the tests name
 
 * Command: `make mutants` (`python -m campaign.mutants`)
 * Commit: {measured}
-* Caught: {caught} of {len(outcomes)} ({100.0 * caught / len(outcomes):.0f} %; bar {100 * BAR:.0f} %)
+* Caught: {caught} of {len(outcomes)} ({100.0 * caught / len(outcomes):.0f} %; bar {100 * BAR:.0f} %){drawn}
 
 | fault | file | noticed by |
 |---|---|---|
 {rows}
-"""
+{rest}"""
 
 
 def main() -> int:
@@ -148,13 +157,18 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--only", nargs="*", default=[], help="names of faults, for a closer look; writes no page")
     parser.add_argument("--out", type=Path, default=OUT)
+    parser.add_argument("--draw", type=int, default=0, help="so many faults, drawn anew by --seed; 0: all")
+    parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
-    faults = [fault for fault in all_faults() if not options.only or fault.name in options.only]
-    outcomes = try_all(faults, options.processes, noticed_before(options.out))
+    listed, before = all_faults(), noticed_before(options.out)
+    faults = [fault for fault in listed if not options.only or fault.name in options.only]
+    if 0 < options.draw < len(faults):
+        faults = random.Random(options.seed).sample(faults, options.draw)
+    outcomes = try_all(faults, options.processes, before)
     caught = sum(each.caught for each in outcomes)
     print(f"{caught} of {len(outcomes)} caught")
     if not options.only:
-        options.out.write_text(page(outcomes, commit()))
+        options.out.write_text(page(outcomes, commit(), len(listed), before))
     return 0 if caught >= BAR * len(outcomes) else 1
 
 

@@ -38,6 +38,10 @@ def test_what_noticed_a_fault_is_read_from_the_page(tmp_path):
     noticed = {"first": "test/campaign_mutants/test_fault_list.py::test_there_are_enough_faults"}
     assert noticed_before(file) == noticed
     assert stands(ROOT, noticed["first"])
+    # those that are not drawn the next time keep theirs
+    file.write_text(page(outcomes[1:], "7654321", 3, {"fourth": noticed["first"], "second": noticed["first"]}))
+    assert noticed_before(file) == {"fourth": noticed["first"]}
+    assert "0 of 1 (0 %; bar 85 %), drawn of 3 that are listed" in file.read_text()
 
 
 @pytest.mark.parametrize("test", ["", "test/conftest.py", "test/conftest.py::test_gone", "test/gone.py::test_gone"])

@@ -110,8 +110,8 @@ def next_steps(result: "GapResult") -> list[str]:
     steps += [f"{e.name}: {effect_text(e.name).look}" for e in result.effects]
     if past := [e.name for e in result.effects if e.law_name in (SOME_RUNS, EACH_RUN)]:
         steps.append(
-            f"See what was done between these runs: of {', '.join(past)} model.yaml says what it was in each of them, and "
-            "nothing of the next one."
+            f"See what was done between these runs: of {', '.join(past)} model.yaml says what it was in each of them, "
+            "and nothing of the next one."
         )
     elif result.effects:
         steps.append(

@@ -1,8 +1,11 @@
 """A model as a curve: the winch in balance, its pressure carries load and friction, its sigma is one of the torque."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.winch import group_point, operating_point
 from winch_friction.physics.winch.model_curve import model_curve
 from winch_friction.records.model_file import load_model
@@ -31,3 +34,18 @@ def test_its_sigma_is_that_of_a_torque(curve, crane_150t):
     draws = np.random.default_rng(0).multivariate_normal(MODEL.values, 1e-4 * MODEL.covariance, 400, method="svd")
     torques = [MODEL.with_values(each.tolist()).torque(at) for each in draws]
     assert curve.std == pytest.approx(100.0 * np.std(torques, axis=0), rel=0.15)
+
+
+@pytest.mark.parametrize("speed", [SPEED, np.array([0.0])])
+def test_bristles_have_turned_over_in_a_winch_that_turns_steadily(crane_150t, speed):
+    """Presliding is what the sign of the speed has too much just after a reversal, and nothing from then on."""
+    term = term_named("presliding")
+    values = (*MODEL.values, *(parameter.typical for parameter in term.parameters))
+    remembering = replace(MODEL, terms=(*MODEL.terms, term), values=values, covariance=np.diag(np.square(values)))
+    found = model_curve(remembering, crane_150t, load=55e3, speed=speed)
+    without = model_curve(
+        replace(MODEL, covariance=np.diag(np.square(MODEL.values))), crane_150t, load=55e3, speed=speed
+    )
+    assert found.parts["presliding"] == pytest.approx(0.0, abs=1e-9)
+    assert found.torque == pytest.approx(without.torque)
+    assert found.std == pytest.approx(without.std)

@@ -9,6 +9,7 @@ from winch_friction.physics.channels import RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import group_point, operating_point
@@ -75,16 +76,27 @@ def model_curve(
         for _ in range(_BALANCE_STEPS):
             drop = (drum / crane.gear_ratio + _torque(model, points(drop))) / (count * setting)
     at = points(drop)
-    parts = {name: np.array(part, float) for name, part in model.contributions(at).items()}
+    parts = {name: np.array(part, float) for name, part in model.contributions(at, _settled(model, at)).items()}
     return ModelCurve(model.name, load, setting, omega, _torque(model, at), _std(model, at), parts, drop)
 
 
 def _torque(model: FrictionModel, at: tuple[FloatArray, ...]) -> FloatArray:
-    return np.array(np.broadcast_to(model.torque(at), at[0].shape), float)
+    return np.array(np.broadcast_to(model.torque(at, _settled(model, at)), at[0].shape), float)
 
 
 def _std(model: FrictionModel, at: tuple[FloatArray, ...]) -> FloatArray:
     if model.covariance is None:
         return np.full(at[0].shape, np.nan)
-    jacobian = model.jacobian(at)
+    jacobian = model.jacobian(at, _settled(model, at))
     return np.sqrt(np.einsum("ni,ij,nj->n", jacobian, model.covariance, jacobian))
+
+
+def _settled(model: FrictionModel, at: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:
+    """What terms with memory remember once the winch has turned like this for long: dz/dt = gain - decay z is zero."""
+    functions = model.compile((len(at) - len(WINCH_SIGNALS)) // len(GROUP_SIGNALS))
+    initial = functions.initial_states
+    if not initial:
+        return ()
+    rates = [np.broadcast_to(rate, at[0].shape) for rate in functions.vector_state_rates(at, model.values, initial)]
+    lasting = zip(initial, rates[::2], rates[1::2], strict=True)
+    return tuple(np.where(decay > 0.0, gain / np.where(decay > 0.0, decay, 1.0), z) for z, gain, decay in lasting)

@@ -56,3 +56,24 @@ def test_port_a_is_the_higher_where_nobody_says():
     for group in (four[:3], (*four, 1.0, 1.0)):
         with pytest.raises(TypeError, match=f"not {len(group)} values"):
             operating_point(**common, groups=[group])
+
+
+POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power")
+
+
+@pytest.mark.parametrize("name", POWERS)
+@pytest.mark.parametrize("displacement", [0.0, -2e-7])  # the feedback's zero error: 0.6 % of the stroke
+def test_a_motor_that_is_swung_out_loses_a_number_by_a_power_of_its_displacement(name, displacement, crane_150t):
+    term = term_named(name)
+    model = FrictionModel("power", (term,), tuple(each.typical + 0.3 * each.shape for each in term.parameters),
+                          constants={"max_displacement": crane_150t.max_displacement})  # fmt: skip
+    sample = Sample(time=0.0, motor_speed=SPEED, groups={"passive": GroupSample(120e5, 25e5, displacement)})
+    point = sample_operating_point(sample, crane_150t, drum_torque=0.0, speed=SPEED)
+    found = model.compile(1).scalar_torque_and_gradient(point, model.values, ())
+    assert all(isinstance(each, float) and np.isfinite(each) for each in found)
+    assert found[0] == pytest.approx(0.0, abs=1e-2)
+    columns = {"passive.pressure_a": A, "passive.pressure_b": B, "passive.displacement": np.full(len(A), displacement)}
+    run = Run("swung", {"time": np.arange(len(A)) * 0.1, "motor_speed": np.full(len(A), SPEED), **columns})
+    x = run_operating_points(run, crane_150t, drum_torque=np.zeros(len(A)))
+    assert model.torque(x) == pytest.approx(0.0, abs=1e-2)
+    assert np.isfinite(model.jacobian(x)).all()

@@ -96,6 +96,8 @@ _ORDER = tuple(signal.name for signal in WINCH_SIGNALS)
 _DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
 # of a motor group's last signals, for whoever does not give them
 _GROUP_DEFAULTS = tuple(signal.default for signal in GROUP_SIGNALS)
+# m^3/rad; the feedback of a motor that is swung out reads about zero, of which a power law has no logarithm, and below
+LEAST_DISPLACEMENT = 1e-12
 # what of them is a channel of its own: taken from a sample or run as it is, where it is there
 CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
 # places for the one point of a sample, which a node needs at every step
@@ -167,7 +169,7 @@ def sample_operating_point(
     for name, g in sample.groups.items():
         a, b, count = g.pressure_a, g.pressure_b, crane.motor_count(name)
         total += count
-        x += count, abs(a - b), a + b, g.displacement, -1.0 if a < b else 1.0
+        x += count, abs(a - b), a + b, max(g.displacement, LEAST_DISPLACEMENT), -1.0 if a < b else 1.0
     x[_MOTOR_TOTAL] = total if sample.groups else crane.motor_total(())
     return tuple(x)
 
@@ -192,7 +194,8 @@ def run_operating_points(
 def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
     """`group_point` of one group along a run."""
     a, b = run[f"{group}.pressure_a"], run[f"{group}.pressure_b"]
-    return group_point(np.full(len(run), crane.motor_count(group)), a - b, run[f"{group}.displacement"], a + b)
+    displacement = np.maximum(run[f"{group}.displacement"], LEAST_DISPLACEMENT)
+    return group_point(np.full(len(run), crane.motor_count(group)), a - b, displacement, a + b)
 
 
 # -- what this crane can show

@@ -130,3 +130,19 @@ def test_the_shift_of_a_linear_problem_is_chi_square():
     assert counts == {4}
     assert np.mean(np.array(probabilities) < 0.1) == pytest.approx(0.1, abs=0.025)
     assert np.mean(np.array(probabilities) < 0.01) == pytest.approx(0.01, abs=0.008)
+
+
+@pytest.mark.parametrize("tied", [-1.0, -1.0000005])  # as six digits of a file may have it
+def test_a_seed_whose_parameters_are_tied_is_judged_like_any_other(crane, seed, tied):
+    """A fit that cannot tell K1 from C5 may say of their sum that it is certain: no variance in one direction."""
+    correlation = np.eye(len(seed.values))
+    one, other = (seed.parameter_names.index(name) for name in ("K1", "C5"))
+    correlation[one, other] = correlation[other, one] = tied
+    rigid = seed.with_covariance(correlation * np.outer(seed.std, seed.std))
+    raised = seed.with_values({name: 1.3 * seed.value(name) for name in ("C1", "C6", "K4")})
+    each = learned(crane, rigid, raised, 90, height=1.5, duration=30.0)
+    assert each.status()["seed"] == "refuted"
+    model = each.model()
+    assert np.linalg.eigvalsh(model.covariance / np.outer(model.std, model.std)).min() > -1e-6
+    kept = model.value("K1") / seed.std[one] + model.value("C5") / seed.std[other]
+    assert kept == pytest.approx(seed.value("K1") / seed.std[one] + seed.value("C5") / seed.std[other], rel=1e-3)

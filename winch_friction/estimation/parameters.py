@@ -11,6 +11,9 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.seed_range import seed_range
 from winch_friction.physics.signals import FloatArray
 
+# of a direction, in squared sigmas of the seed: where a fit saw nothing, or a file's digits end, it is zero or below
+LEAST_VARIANCE = 1e-9
+
 
 class ScaledParameters:
     """theta = seed + sigma * phi; the filter carries phi of the parameters whose seed has a sigma.
@@ -47,7 +50,11 @@ class ScaledParameters:
         if seed.covariance is None:
             return np.eye(self.size)
         scaled = seed.covariance[np.ix_(self.free, self.free)] / np.outer(self.scale, self.scale)
-        return 0.5 * (scaled + scaled.T)
+        scaled = 0.5 * (scaled + scaled.T)
+        values, directions = np.linalg.eigh(scaled)
+        if values.min(initial=LEAST_VARIANCE) >= LEAST_VARIANCE:
+            return scaled
+        return np.asarray((directions * np.maximum(values, LEAST_VARIANCE)) @ directions.T)
 
     def widen(self, reached: Iterable[int]) -> None:
         """Take the seed's sigma back for these (by their place in phi), besides those taken back before.

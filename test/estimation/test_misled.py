@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -118,3 +119,18 @@ def test_the_covariance_stays_positive_definite_over_many_steps(crane, seed):
             correlation = each._filter.P[np.ix_(kept, kept)] / np.outer(scale[kept], scale[kept])
             assert np.linalg.eigvalsh(correlation).min() > 0.0
     assert each.counts["accepted"] > 28_000
+
+
+@pytest.mark.parametrize("shown", [False, True], ids=["no load cell", "a load cell that has died since"])
+def test_another_load_that_nobody_shows_does_not_lock_the_gate(crane, seed, shown):
+    """What hangs there is changed while the winch is off; the first sample after that is of another balance."""
+    each = FrictionEstimator(crane, seed, CONFIG)
+    for start, load in ((0.0, 55e3), (100.0, 20e3), (200.0, 80e3)):
+        rejected = each.counts["rejected"]
+        for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=3, speed_noise=0.1, load=load):
+            sample.time += start
+            if start or not shown:
+                sample.hook_load = math.nan
+            each.step(sample)
+        assert each.counts["rejected"] - rejected < 50  # of a thousand
+        assert each.drum_torque == pytest.approx(crane.drum_torque(load), rel=0.02)

@@ -334,6 +334,14 @@ def test_what_is_taken_anew_owes_nothing_to_sensor_errors_of_before(kind, seed):
     assert each.P[SPEED, SPEED] == 0.5
 
 
+def test_another_load_owes_nothing_to_the_one_before(kind, seed):
+    each, _ = some_filter(seed, kind=kind)
+    each.begin_load(100.0, 7.0)
+    assert each.load_torque == 7.0
+    assert each.P[LOAD, LOAD] == 100.0
+    assert not np.delete(each.P[LOAD], LOAD).any()
+
+
 def test_a_parameter_that_steps_away_from_its_edge_for_a_moment_stays_invalid():
     each = ParameterStatus(EstimatorConfig(settle_time=1.0))
     for _ in range(20):

@@ -185,19 +185,27 @@ class FrictionEstimator:
         """Take the load from the first sample: from the hook load, else from the balance with the seed's friction."""
         self._begun = True
         self._load.mass = self._load.following(sample, 0.0)
-        drive, speed = sample_drive_torque(sample, self.crane), sample.motor_speed
-        measured = self._load.shaft_torque(sample.wire_layer)
         if self._load.measured:
-            self._filter.begin_load((self.config.load_std * measured) ** 2)
+            self._filter.begin_load((self.config.load_std * self._load.shaft_torque(sample.wire_layer)) ** 2)
         elif not self._load_is_known:
-            point = self._intervals.point(sample, speed, speed, measured, self._filter.load_torque)
-            friction = point, self._parameters.theta(self._filter.phi), len(sample.groups)
-            torque, magnitude = self._friction.at(*friction)[0], self._friction.magnitude(*friction)
-            self._filter.begin_load((self.config.load_std * drive) ** 2 + magnitude**2, drive - torque)
+            self._begin_load(sample)
         return self._restart(sample)
 
+    def _begin_load(self, sample: Sample) -> None:
+        """Take the load, beyond a measured one, from the balance of one sample, inertia apart."""
+        drive, speed = sample_drive_torque(sample, self.crane), sample.motor_speed
+        measured = self._load.shaft_torque(sample.wire_layer)
+        point = self._intervals.point(sample, speed, speed, measured, self._filter.load_torque)
+        friction = point, self._parameters.theta(self._filter.phi), len(sample.groups)
+        torque, magnitude = self._friction.at(*friction)[0], self._friction.magnitude(*friction)
+        variance = (self.config.load_std * drive) ** 2 + magnitude**2
+        self._filter.begin_load(variance, drive - torque - measured)
+
     def _restart(self, sample: Sample) -> Estimate:
-        """Take the speed as measured and keep everything else, after a gap, a jump of time or a run of rejections."""
+        """Take the speed as measured and keep everything else, after a gap, a jump of time or a run of rejections; but
+        where that did not help and nobody shows the load, another one hangs there."""
+        if self._gate.exhausted_again and math.isnan(self._load.shown(sample)) and not self._load_is_known:
+            self._begin_load(sample)
         self._filter.take_anew(fresh_motion(sample, self.crane, self.config, self._filter.speed_variance))
         self._friction.memory = None
         self._gate.restarted(sample.time)
@@ -217,16 +225,9 @@ class FrictionEstimator:
     ) -> Estimate:
         nis = innovation * innovation / variance if variance > 0.0 else NAN
         return Estimate(
-            sample.time,
-            accepted,
-            self._state,
-            innovation,
-            variance,
-            nis,
-            self._filter.speed,
-            self.drum_torque,
+            sample.time, accepted, self._state, innovation, variance, nis, self._filter.speed, self.drum_torque,
             friction,
-        )
+        )  # fmt: skip
 
     # -- what is known
     @property

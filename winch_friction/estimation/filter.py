@@ -219,9 +219,8 @@ class StateFilter:
 
     # -- beginning anew
     def begin_load(self, variance: float, torque: float = 0.0) -> None:
-        """The load torque beyond the measured load's at the start, N m, and its variance."""
-        self._flat[LOAD] = torque
-        self.P[LOAD, LOAD] = variance
+        """Another load: its torque beyond the measured load's, N m, and its variance."""
+        self.take_anew([(LOAD, torque, variance)])
 
     def take_anew(self, fresh: Sequence[FreshState]) -> None:
         """Take these states as given, correlated with nothing; the rest is kept."""

@@ -115,9 +115,14 @@ class HangingLoad:
         self._time_constant = time_constant
         self.mass = math.nan  # kg; NaN: not measured
 
+    @staticmethod
+    def shown(sample: Sample) -> float:
+        """Hook load, or the mass that the rope force carries, kg; NaN where a sample has neither."""
+        return sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
+
     def following(self, sample: Sample, dt: float) -> float:
         """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
-        measured = sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
+        measured = self.shown(sample)
         if not math.isfinite(measured) or measured < 0.0:
             return self.mass
         if not abs(measured - self.mass) <= PICKED_UP * self.mass:

@@ -18,13 +18,18 @@ class InnovationGate:
 
     def __init__(self, config: EstimatorConfig) -> None:
         self._config = config
-        self._rejected_in_a_row = 0
+        self._rejected_in_a_row = self._accepted_in_a_row = self._shut_out = 0
         self._wide_until = -math.inf
 
     @property
     def exhausted(self) -> bool:
         """Whether so many were rejected in a row that the speed must be taken as measured."""
         return self._rejected_in_a_row >= RESTART_AFTER
+
+    @property
+    def exhausted_again(self) -> bool:
+        """Whether the wide gate after that admitted no run of samples either: it is not the speed that was wrong."""
+        return self.exhausted and self._shut_out > 0
 
     def admits(self, time: float, innovation: float, variance: float) -> bool:
         """Whether an innovation in rad/s of this variance is believed at `time` s; NaN is not."""
@@ -42,15 +47,20 @@ class InnovationGate:
     def rejected(self, innovation: float) -> None:
         """A sample was rejected; one without an innovation (NaN) says nothing about the filter."""
         self._rejected_in_a_row += math.isfinite(innovation)
+        self._accepted_in_a_row = 0
 
     def accepted(self) -> None:
         """A sample was accepted."""
         self._rejected_in_a_row = 0
+        self._accepted_in_a_row += 1
+        if self._accepted_in_a_row >= RESTART_AFTER:  # what is taken anew may be so unsure that one passes
+            self._shut_out = 0
 
     def restarted(self, time: float) -> None:
         """The speed was taken as measured at `time` s."""
         if self.exhausted:
             self._wide_until = time + WIDE_FOR
+            self._shut_out += 1
         self._rejected_in_a_row = 0
 
 

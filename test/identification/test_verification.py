@@ -104,6 +104,42 @@ def test_a_record_that_is_cut_out_of_the_motion_begins_without_a_swing(truth, cr
     assert pressure_check(Run("cut", cut), crane, truth).moving_rms < 0.8 * BAR
 
 
+def test_a_record_with_a_hole_has_no_inertia_there(truth, crane):
+    """The speed jumps over a hole of 2 s: no acceleration, and no kick to the load on its wire."""
+    run = ahc_run(truth, crane)
+    kept = (run.time < 14.0) | (run.time >= 16.0)
+    cut = {name: values[kept] for name, values in run.columns.items()}
+    check = pressure_check(Run("hole", cut | {"wire_out": np.full(kept.sum(), 50.0)}), crane, truth)
+    assert check.moving_rms < 0.8 * BAR
+    assert len(check.time) == kept.sum()
+
+
+@pytest.mark.parametrize("column", ["motor_speed", "hook_load", "passive.pressure_a"])
+def test_a_sample_that_is_no_number_is_said(truth, crane, column):
+    run = ahc_run(truth, crane)
+    values = run[column].copy()
+    values[70] = np.nan
+    with pytest.raises(InputError, match=f"gap row 72: column '{column}' is not a finite number"):
+        pressure_check(Run("gap", {**run.columns, column: values}), crane, truth)
+
+
+@pytest.mark.parametrize("shown", [0.0, -20.0])
+def test_an_empty_hook_may_weigh_nothing(truth, crane, shown):
+    run = ahc_run(truth, crane, load=1.0)
+    count = np.ones(len(run))
+    columns = {**run.columns, "hook_load": shown * count, "wire_out": 50.0 * count}
+    assert pressure_check(Run("empty", columns), crane, truth).moving_rms < 1.0 * BAR
+
+
+@pytest.mark.parametrize("shown", [0.0, -3.0, 2.0])
+def test_a_wire_that_is_short_or_counted_from_elsewhere_does_not_ring(truth, crane, shown):
+    """A tenth of a rad/s of noise; a wire of 2 m swings eight times a second, one of -3 m would run away."""
+    run = ahc_run(truth, crane)
+    noise = np.random.default_rng(3).normal(0.0, 0.1, len(run))
+    noisy = {**run.columns, "motor_speed": run["motor_speed"] + noise, "wire_out": np.full(len(run), shown)}
+    assert pressure_check(Run("short", noisy), crane, truth).moving_rms < 1.0 * BAR
+
+
 def test_a_winch_that_never_turns(truth, crane):
     run = ahc_run(truth, crane)
     still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})

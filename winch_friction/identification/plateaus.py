@@ -1,6 +1,6 @@
 """Constant-speed plateaus in logged cycles: transients excluded, statistics per plateau (paper 2 section 2.2)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,13 +65,18 @@ def find_plateaus(run: Run, crane: Crane, rule: PlateauRule | None = None, group
 
 def _check(run: Run, group: str) -> None:
     needed = ("time", "motor_speed", f"{group}.pressure_a", f"{group}.pressure_b", f"{group}.displacement", "hook_load")
-    for column in needed:
+    refuse_gaps(run, needed)
+    if len(run) < 20:
+        raise InputError(f"{run.name}: {len(run)} samples are too few to find constant speed in")
+
+
+def refuse_gaps(run: Run, columns: Iterable[str]) -> None:
+    """Raise `InputError`, naming row and column, where one of these is missing or not a finite number throughout."""
+    for column in columns:
         bad = ~np.isfinite(run[column])
         if bad.any():
             where = f"{run.name} row {int(bad.argmax()) + 2}: column '{column}'"
             raise InputError(f"{where} is not a finite number; cut the gap out or give the run without it")
-    if len(run) < 20:
-        raise InputError(f"{run.name}: {len(run)} samples are too few to find constant speed in")
 
 
 def _steady_pieces(run: Run, rule: PlateauRule, group: str) -> Iterator[slice]:

@@ -24,7 +24,13 @@ from winch_friction.identification.system_identification import (
     read_test,
     winch_seed,
 )
-from winch_friction.identification.verification import PressureCheck, TestError, pressure_check, test_errors
+from winch_friction.identification.verification import (
+    PressureCheck,
+    TestError,
+    pressure_check,
+    refuse_unusable,
+    test_errors,
+)
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
@@ -145,6 +151,8 @@ def run_practice(
     spread = spread or load_unit_spread()
     for run in (*folder.tests, *folder.held_out):
         read_test(run, folder.crane)  # an unusable log is said before the long fits
+    for run in (*folder.tests, *folder.ahc):
+        refuse_unusable(run)
     provenance: dict[str, Any] = {"data_sha256": dict(folder.hashes)}
     motor = identify_motor(
         folder.table,

@@ -1,5 +1,6 @@
 """Does the model hold on what it has not seen? Friction per test (paper 2 Fig 16, 17), pressures (Fig 18, 21, 23)."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,17 +10,20 @@ from scipy.signal import bilinear, lfilter, lfilter_zi, savgol_filter
 
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data
-from winch_friction.physics.channels import GRAVITY, RPM
+from winch_friction.identification.plateaus import refuse_gaps
+from winch_friction.physics.channels import GROUP_CHANNELS, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
-from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.crane import run_drum_torque, run_rope_radius
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
 _SMOOTHING = 0.2  # s, window of the winch's acceleration
 _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judgement
+_HOLE = 3.5  # samples; a record that lacks more has a hole, if that is longer than what is smoothed as well
+_LEAST_SAMPLES = 10  # of a piece between holes
 _STICKING = 0.5  # rad/s of the smoothed speed; a winch that creeps faster has the friction of its direction
 STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
 
@@ -105,20 +109,50 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
 
     The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
     winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
-    relative error of the displacement feedback that a joint fit found for these motors.
+    relative error of the displacement feedback that a joint fit found for these motors. A record with holes is
+    predicted piece by piece. Raises `InputError` for a missing column, NaN, and a winch that never turns.
     """
+    refuse_unusable(run)
     run = _with_true_displacement(run, displacement_scale)
     group = "active" if "active" in run.groups else run.groups[0]
-    if not np.any(np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING):
+    pieces = _pieces(run)
+    if not any(np.any(_turns(piece)) for piece in pieces):
         raise InputError(f"{run.name}: the winch never turns; there is no friction to verify")
+    checks = [_check(piece, crane, model, group) for piece in pieces]
+    joined = (
+        np.concatenate([getattr(each, name) for each in checks]) for name in ("time", "speed", "measured", "predicted")
+    )
+    return PressureCheck(run.name, group, *joined)
+
+
+def refuse_unusable(run: Run) -> None:
+    """Raise `InputError` where a run's pressures could not be predicted: a column is missing or has gaps."""
+    of_groups = (f"{group}.{channel}" for group in run.groups for channel in GROUP_CHANNELS)
+    tip = ("heave_velocity",) if "heave_velocity" in run else ()
+    refuse_gaps(run, ("time", "motor_speed", "hook_load", *of_groups, *tip))
+
+
+def _pieces(run: Run) -> list[Run]:
+    """What lies between holes that are longer than what is smoothed: over one of them the speed would jump."""
+    holes = np.flatnonzero(np.diff(run.time) > max(_SMOOTHING, _HOLE * _step(run))) + 1
+    pieces = (slice(*each) for each in itertools.pairwise([0, *holes.tolist(), len(run)]))
+    cut = [replace(run, columns={n: v[piece] for n, v in run.columns.items()}) for piece in pieces]
+    return [piece for piece in cut if len(piece) >= _LEAST_SAMPLES]
+
+
+def _turns(run: Run) -> Any:
+    return np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING
+
+
+def _check(run: Run, crane: Crane, model: FrictionModel, group: str) -> PressureCheck:
     drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}
     drum_torque = run_drum_torque(run, crane)
     inertia, acceleration = inertia_torque(run, crane)
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
     capacity = crane.motor_count(group) * run[f"{group}.displacement"]
     predicted = held / capacity
-    moving = np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING
-    for _ in range(4):  # the driving group's friction depends on its own pressure, weakly
+    moving = _turns(run)
+    for _ in range(4 if moving.any() else 0):  # the driving group's friction depends on its own pressure, weakly
         points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
         friction = np.asarray(model.torque(points))
         predicted = (held + _through_standstill(run.time, friction, moving)) / capacity
@@ -168,18 +202,21 @@ def inertia_torque(run: Run, crane: Crane) -> tuple[FloatArray, FloatArray]:
     """
     acceleration = _smooth(run, run["motor_speed"], 1)
     load = run["hook_load"]
-    radius = run_drum_torque(run, crane) / (load * GRAVITY) / crane.gear_ratio  # m of wire per rad
+    radius = run_rope_radius(run, crane) / crane.gear_ratio  # m of wire per rad
     wire_speed = radius * run["motor_speed"] + run.column("heave_velocity", 0.0)
     return crane.inertia * acceleration + load * radius * _load_acceleration(run, crane, wire_speed), acceleration
 
 
 def _load_acceleration(run: Run, crane: Crane, wire_speed: FloatArray) -> FloatArray:
     """Acceleration of the load when the wire's upper end moves at `wire_speed`: a lightly damped spring and mass."""
-    length = float(np.mean(run.column("wire_out")))
-    if not (np.isfinite(length) and np.isfinite(crane.wire_stiffness)):
-        return _smooth(run, wire_speed, 1)
+    known = run.column("wire_out")[np.isfinite(run.column("wire_out"))]
+    length = float(np.mean(known)) if len(known) else 0.0
     mass = float(np.mean(run["hook_load"]))
-    rest = [_WIRE_DAMPING / mass, crane.wire_stiffness / length / mass]
+    # a counter may be zeroed anywhere, and of an empty hook a load cell may read nothing, or less
+    stiffness = crane.wire_stiffness / length / mass if length > 0.0 and mass > 0.0 else np.inf
+    if 2.0 * np.pi / np.sqrt(stiffness) < _SMOOTHING:  # a swing that nobody sees, but noise would excite
+        return _smooth(run, wire_speed, 1)
+    rest = [_WIRE_DAMPING / mass, stiffness]
     numerator, denominator = bilinear([*rest, 0.0], [1.0, *rest], fs=1.0 / _step(run))
     # the load moves with its wire when the record begins, which may be in the midst of a motion
     state = wire_speed[0] * lfilter_zi(numerator, denominator)

@@ -259,8 +259,11 @@ def pressure_feedforward(friction_torque: float, motor_count: int, displacement:
 
 def run_drum_torque(run: Run, crane: Crane, load: float = float("nan")) -> FloatArray:
     """T_d in N m along a run from `hook_load`, or from a given load in kg where the run has none."""
-    loads = run.column("hook_load", load)
+    return run.column("hook_load", load) * GRAVITY * run_rope_radius(run, crane)
+
+
+def run_rope_radius(run: Run, crane: Crane) -> FloatArray:
+    """Rope radius in m along a run, by `wire_layer`; of the outer layer where none is said."""
     layers = run.column("wire_layer")
     radii = {layer: crane.drum.radius(layer) for layer in np.unique(layers[~np.isnan(layers)])}
-    radius = np.array([radii.get(layer, crane.drum.radius(float("nan"))) for layer in layers])
-    return loads * GRAVITY * radius
+    return np.array([radii.get(layer, crane.drum.radius(float("nan"))) for layer in layers])

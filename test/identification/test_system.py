@@ -212,3 +212,27 @@ def test_what_the_motor_model_knows_to_be_wrong_is_taken_out_of_the_tests(runs, 
     seed = winch_seed(found, declared, "my_crane", {})
     assert seed.corrections == known
     assert seed.crane == crane.name
+
+
+def test_what_neither_tests_nor_a_prior_see_is_not_certain(truth, crane, spread):
+    """With nothing on the hook: what goes with the load has no column, and the system of a new crane no prior."""
+    motor = truth.only("motor")
+    found = [find_plateaus(run, crane) for run in cycles(truth, crane, {"a": (215, 0), "b": (164, 0)})]
+    system = fit_system(curve_data([friction_curve(each, crane) for each in found]), motor).model
+    prior = winch_prior(supplier_prior(motor, spread), system, "empty")
+    fitted = joint_fit(observations(found, crane), prior, spread).model
+    std = dict(zip(fitted.parameter_names, fitted.std, strict=True))
+    for name in ("C1", "C6"):
+        assert std[name] >= spread.relative_std[name] * fitted.value(name)
+    assert std["K4"] < 0.1 * fitted.value("K4")  # what is seen is as sure as ever
+
+
+@pytest.mark.parametrize("tonnes", [0.0, -0.2])  # as a load cell says it of an empty hook
+def test_nothing_on_the_hook_is_one_load_too(truth, crane, motor, spread, tonnes):
+    def shown(run, share):
+        return replace(run, columns={**run.columns, "hook_load": np.full(len(run), share * tonnes * 1e3)})
+
+    one, two = cycles(truth, crane, {"a": (215, 0), "b": (164, 0)})
+    empty = [shown(one, 1.0), shown(two, 2.0)]
+    with pytest.raises(InputError, match="of one load"):
+        identify_system(empty, crane, motor, spread)

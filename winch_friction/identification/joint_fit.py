@@ -21,6 +21,8 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 
+# in units of the spread between units: what neither data nor prior see has ten times its sigma and is not certain
+_LEAST_INFORMATION = 1e-2
 SENSOR_ERRORS = ("displacement_scale", "pressure_scale", "pressure_offset")
 
 
@@ -99,7 +101,7 @@ class _Problem:
     """Residuals over the scaled unknowns: parameters, sensor errors, load errors."""
 
     def __init__(self, data: Observations, prior: FrictionModel, spread: UnitSpread) -> None:
-        self.data, self.prior = data, prior
+        self.data, self.prior, self.spread = data, prior, spread
         self.scale = np.maximum(spread.std(prior), 1e-30)
         self.centre = np.array(prior.values)
         self.tolerances = np.array([getattr(spread, name) for name in SENSOR_ERRORS])
@@ -145,12 +147,15 @@ class _Problem:
     def result(self, solution: Any, noise_scale: float, iterations: int) -> JointFit:
         theta, sensors, loads = self.split(solution.x)
         jacobian = solution.jac
-        covariance = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
         n, m = self.count, len(SENSOR_ERRORS)
-        posterior = covariance[:n, :n] * np.outer(self.scale, self.scale)
-        sensor_std = np.sqrt(np.diag(covariance))[n : n + m] * self.tolerances
         bounds = np.array([self.prior.bounds_of(name) for name in self.prior.parameter_names])
         model = self.prior.with_values(np.clip(theta, bounds[:, 0], bounds[:, 1]).tolist())
+        unit = np.ones(jacobian.shape[1])
+        unit[:n] = np.maximum(self.spread.std(model), 1e-30) / self.scale
+        seen, directions = np.linalg.eigh((jacobian * unit).T @ (jacobian * unit))
+        covariance = (directions / np.maximum(seen, _LEAST_INFORMATION)) @ directions.T * np.outer(unit, unit)
+        posterior = covariance[:n, :n] * np.outer(self.scale, self.scale)
+        sensor_std = np.sqrt(np.diag(covariance))[n : n + m] * self.tolerances
         return JointFit(
             model=model.with_covariance(0.5 * (posterior + posterior.T)),
             prior=self.prior,

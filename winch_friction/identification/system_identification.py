@@ -125,7 +125,7 @@ def identify_system(
 def _check_loads(tests: Sequence[Test]) -> None:
     """Raise `InputError` where all tests hang one load: what goes with the load could not be told from the rest."""
     torques = [float(np.median([plateau.drum_torque for plateau in test.plateaus])) for test in tests]
-    if max(torques) < DIFFERENT_LOAD * min(torques):
+    if max(torques) <= DIFFERENT_LOAD * max(min(torques), 0.0):
         raise InputError(
             f"identify system: {len(tests)} test(s) of one load ({min(torques) / 1e3:.4g} kN m at the drum): friction "
             "that goes with the load cannot be told from the rest; give tests of at least two loads"

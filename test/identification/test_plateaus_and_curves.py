@@ -140,3 +140,30 @@ def test_too_short(truth, crane):
     short = replace(run, columns={name: values[:10] for name, values in run.columns.items()})
     with pytest.raises(InputError, match="t.csv: 10 samples are too few"):
         find_plateaus(short, crane)
+
+
+def on_layers(run, crane, layer):
+    """The run as it is with other wire layers in use than the outer one, loads alone."""
+    radius = np.array([crane.drum.radius(each) for each in layer]) - crane.drum.radius(6)
+    more = run["hook_load"] * 9.81 * radius / (crane.gear_ratio * 11 * run["main.displacement"])
+    return replace(run, columns={**run.columns, "main.pressure_a": run["main.pressure_a"] + more, "wire_layer": layer})
+
+
+def test_a_layer_that_changes_within_a_direction_is_no_friction(truth, crane):
+    """Hoisting faster and faster from layer 5 to 6 and back again: both layers stand in both directions, but at one
+    speed they differ, by half a dozen bar."""
+    run = cycle(truth, crane, "a", 215, 79)
+    slow, up = np.abs(run["motor_speed"]) < 300 * RPM, run["motor_speed"] > 0.0
+    moved = friction_curve(find_plateaus(on_layers(run, crane, np.where(up == slow, 5.0, 6.0)), crane), crane)
+    stayed = friction_curve(find_plateaus(run, crane), crane)
+    assert moved.friction_torque == pytest.approx(stayed.friction_torque, abs=0.05)  # N m, of 41
+
+
+def test_a_layer_holds_until_another_one_is_said(truth, crane):
+    """A slow channel of a log that writes it once a second."""
+    run = cycle(truth, crane, "a", 215, 79)
+    layer = np.where(run.time < 60.0, 5.0, 6.0)
+    every = on_layers(run, crane, layer)
+    sparse = replace(every, columns={**every.columns, "wire_layer": np.where(np.arange(len(run)) % 25, np.nan, layer)})
+    found, wanted = find_plateaus(sparse, crane), find_plateaus(every, crane)
+    assert [each.drum_torque for each in found] == pytest.approx([each.drum_torque for each in wanted], rel=1e-9)

@@ -1,7 +1,7 @@
 """Total friction over speed from hoisting and lowering at equal speed (paper 2 eq 2-6)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,15 +50,16 @@ def friction_curve(plateaus: Sequence[Plateau], crane: Crane, group: str = "main
     Raises `InputError` when a direction is missing, when one has a single plateau, or when their speeds do not overlap.
     """
     test = plateaus[0].run if plateaus else "test"
-    up, down = _branch(plateaus, +1, test), _branch(plateaus, -1, test)
-    grid = _common_grid(up[0], down[0], test)
     motors = crane.motor_count(group)
-    drum_torque = float(np.mean([each.drum_torque for each in plateaus]))
+    drum_torque = float(np.mean([each.drum_torque for each in plateaus])) if plateaus else 0.0
+    alike = [_at_load(each, drum_torque, crane.gear_ratio * motors) for each in plateaus]
+    up, down = _branch(alike, +1, test), _branch(alike, -1, test)
+    grid = _common_grid(up[0], down[0], test)
     return FrictionCurve(
         test=test,
         speed=grid,
-        pressure_up=np.interp(grid, *up) - _load_difference(plateaus, +1, drum_torque, crane, motors),
-        pressure_down=np.interp(grid, *down) - _load_difference(plateaus, -1, drum_torque, crane, motors),
+        pressure_up=np.interp(grid, *up),
+        pressure_down=np.interp(grid, *down),
         displacement=float(np.mean([each.displacement for each in plateaus])),
         drum_torque=drum_torque,
         motors=motors,
@@ -66,12 +67,11 @@ def friction_curve(plateaus: Sequence[Plateau], crane: Crane, group: str = "main
     )
 
 
-def _load_difference(plateaus: Sequence[Plateau], direction: int, mean: float, crane: Crane, motors: int) -> float:
-    """Pa by which a direction's load differs from the mean: a change of wire layer is no friction."""
-    chosen = [each for each in plateaus if each.speed * direction > 0]
-    difference = float(np.mean([each.drum_torque for each in chosen])) - mean
-    displacement = float(np.mean([each.displacement for each in chosen]))
-    return difference / (crane.gear_ratio * motors * displacement)
+def _at_load(plateau: Plateau, mean: float, shafts: float) -> Plateau:
+    """The plateau as the test's mean load would show it: a change of wire layer is no friction, nor does the friction
+    itself change much with it. `shafts`: motors times the gear ratio."""
+    difference = (plateau.drum_torque - mean) / (shafts * plateau.displacement)
+    return replace(plateau, pressure_drop=plateau.pressure_drop - difference)
 
 
 def _branch(plateaus: Sequence[Plateau], direction: int, test: str) -> tuple[FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import run_drum_torque
+from winch_friction.physics.winch.crane import held, run_drum_torque
 
 
 @dataclass(frozen=True)
@@ -118,8 +118,8 @@ def _changes(displacement: FloatArray, half: int) -> Any:
 
 
 def _steps(layer: FloatArray) -> Any:
-    stepped = np.diff(layer, prepend=layer[:1]) != 0.0
-    return stepped & np.isfinite(layer)
+    layer = held(layer)
+    return (np.diff(layer, prepend=layer[:1]) != 0.0) & np.isfinite(layer)
 
 
 def _stretches(mask: Any) -> Iterator[tuple[int, int]]:

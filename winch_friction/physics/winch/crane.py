@@ -263,7 +263,17 @@ def run_drum_torque(run: Run, crane: Crane, load: float = float("nan")) -> Float
 
 
 def run_rope_radius(run: Run, crane: Crane) -> FloatArray:
-    """Rope radius in m along a run, by `wire_layer`; of the outer layer where none is said."""
-    layers = run.column("wire_layer")
+    """Rope radius in m along a run, by `wire_layer`, which holds until another one is said; of the outer layer where
+    none is."""
+    layers = held(run.column("wire_layer"))
     radii = {layer: crane.drum.radius(layer) for layer in np.unique(layers[~np.isnan(layers)])}
     return np.array([radii.get(layer, crane.drum.radius(float("nan"))) for layer in layers])
+
+
+def held(values: FloatArray) -> FloatArray:
+    """Values of which each holds over the NaN behind it, the first one before it too."""
+    known = ~np.isnan(values)
+    if known.all() or not known.any():
+        return values
+    last = np.maximum.accumulate(np.where(known, np.arange(len(values)), 0))
+    return values[np.maximum(last, known.argmax())]

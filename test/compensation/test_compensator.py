@@ -10,6 +10,7 @@ from winch_friction.compensation import CompensatorConfig, FeedforwardCompensato
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError, from_mapping
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch import sample_operating_point
 from winch_friction.records.crane_file import load_crane
@@ -429,3 +430,18 @@ def test_a_gap_that_an_age_limit_of_seconds_allows_counts_as_half_a_second_of_fa
         output.follow(100.0, math.inf, usable=True, enabled=True)
         faded.append(output.fade.value)
     assert faded == pytest.approx([0.0, 0.125, 0.25, 0.375])
+
+
+@pytest.mark.parametrize(
+    ("term", "channel"), [("viscosity_temperature", "oil_temperature"), ("torque_ripple", "shaft_angle")]
+)
+def test_what_a_term_reads_is_an_input_that_can_be_lost(term, channel):
+    """A ripple at an angle that nobody says would be a torque of one direction."""
+    more = term_named(term)
+    values = (*SEED.values, *(each.typical for each in more.parameters))
+    each = FeedforwardCompensator(CRANE, replace(SEED, terms=(*SEED.terms, more), values=values, covariance=None))
+    known = replace(ahc_sample(0.0, 100.0), **{channel: 30.0})
+    assert each.step(known).valid
+    lost = each.step(ahc_sample(PERIOD, 100.0))
+    assert not lost.valid
+    assert each.status()["missing"] == channel

@@ -3,6 +3,7 @@
 import copy
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from driven_winch import rigid_samples
 
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.channels import BAR
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.seed_range import seed_range
 from winch_friction.physics.signals import GroupSample
 from winch_friction.physics.winch import sample_operating_point
@@ -119,6 +121,26 @@ def test_the_covariance_stays_positive_definite_over_many_steps(crane, seed):
             correlation = each._filter.P[np.ix_(kept, kept)] / np.outer(scale[kept], scale[kept])
             assert np.linalg.eigvalsh(correlation).min() > 0.0
     assert each.counts["accepted"] > 28_000
+
+
+@pytest.mark.parametrize(
+    ("term", "channel"), [("viscosity_temperature", "oil_temperature"), ("torque_ripple", "shaft_angle")]
+)
+def test_what_a_term_reads_is_not_made_up_where_it_is_lost(crane, seed, term, channel):
+    """Oil of 20 degC taken for one of 40 would be learned as another friction."""
+    more = term_named(term)
+    values = (*seed.values, *(each.typical for each in more.parameters))
+    reading = replace(seed, terms=(*seed.terms, more), values=values, covariance=np.diag(np.square(values)) * 0.01)
+    each = FrictionEstimator(crane, reading, CONFIG)
+    whole = list(samples(crane, seed, duration=8.0))
+    for sample in whole[:200]:
+        setattr(sample, channel, 20.0)
+        assert each.step(sample).accepted
+    learned_from = each.counts["learned_from"]
+    assert learned_from > 100
+    for sample in whole[200:]:
+        assert each.step(sample).state == "rejected"
+    assert each.counts["learned_from"] == learned_from
 
 
 @pytest.mark.parametrize("shown", [False, True], ids=["no load cell", "a load cell that has died since"])

@@ -8,6 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
@@ -86,3 +87,12 @@ def test_a_load_cell_a_few_per_cent_off_is_none(sea: tuple[Sample, ...], error: 
         if passed < 50.0:
             service.take_row(sample)
             assert not service.contradiction
+
+
+def test_an_estimator_says_which_input_of_its_model_is_missing(sea: tuple[Sample, ...]) -> None:
+    term = term_named("viscosity_temperature")
+    values = (*SEED.values, *(each.typical for each in term.parameters))
+    service = EstimatorService(CRANE, replace(SEED, terms=(*SEED.terms, term), values=values, covariance=None), TOPICS)
+    service.take_row(replace(sea[0], oil_temperature=float("nan")))
+    assert service.missing == ("oil_temperature",)
+    assert service.status(sea[0].time)["state"] == "waiting"

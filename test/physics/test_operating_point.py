@@ -77,3 +77,23 @@ def test_a_motor_that_is_swung_out_loses_a_number_by_a_power_of_its_displacement
     x = run_operating_points(run, crane_150t, drum_torque=np.zeros(len(A)))
     assert model.torque(x) == pytest.approx(0.0, abs=1e-2)
     assert np.isfinite(model.jacobian(x)).all()
+
+
+def test_a_layer_that_nobody_says_is_the_outer_one_for_a_term_as_for_the_load(crane_150t):
+    term = term_named("layer_bedding")
+    model = FrictionModel("layers", (term,), tuple(each.typical for each in term.parameters))
+    load = crane_150t.drum_torque(55e3)
+    group = {"main": GroupSample(120e5, 25e5, 3e-5)}
+    columns = {"time": np.zeros(1), "motor_speed": np.full(1, SPEED), "main.pressure_a": A[:1],
+               "main.pressure_b": B[:1], "main.displacement": np.full(1, 3e-5)}  # fmt: skip
+
+    def torques(**layer):
+        sample = Sample(time=0.0, motor_speed=SPEED, groups=group, **layer)
+        run = Run("layers", columns | {name: np.full(1, value) for name, value in layer.items()})
+        one = sample_operating_point(sample, crane_150t, drum_torque=load, speed=SPEED)
+        all_of_it = run_operating_points(run, crane_150t, drum_torque=np.full(1, load))
+        return model.compile(1).scalar_torque(one, model.values, ()), float(model.torque(all_of_it)[0])
+
+    assert torques() == pytest.approx(torques(wire_layer=6.0))
+    assert torques()[0] > 100.0
+    assert torques(wire_layer=1.0) == pytest.approx((0.0, 0.0))

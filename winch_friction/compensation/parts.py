@@ -12,6 +12,7 @@ from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, registered_terms
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all
+from winch_friction.physics.friction.term import irreplaceable
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, pressure_feedforward, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges
@@ -27,7 +28,7 @@ class Needs:
     def __init__(self, ranges: ChannelRanges, reads: Set[str], source: str, load_known: bool) -> None:
         self._ranges, self._crane = ranges, ranges.crane
         speed = "speed_reference" if source == "reference" else "motor_speed"
-        self._scalars = (speed, "oil_temperature") if "oil_temperature" in reads else (speed,)
+        self._scalars = (speed, *irreplaceable(reads))
         self._balance_for_load = "drum_torque" in reads and not load_known
 
     def missing(self, sample: Sample) -> tuple[str, ...]:

@@ -26,6 +26,7 @@ from winch_friction.estimation.trust import Consistency, Excitation, InnovationG
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
+from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges
@@ -87,7 +88,7 @@ class FrictionEstimator:
         self.config = config or EstimatorConfig()
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
-        self._ranges = ChannelRanges(self.crane)
+        self._ranges, self._needed = ChannelRanges(self.crane), needed(self.seed.terms)
         self._enabled = True
         self.reset()
 
@@ -117,7 +118,7 @@ class FrictionEstimator:
     def step(self, sample: Sample) -> Estimate:
         """Take one sample as it was measured; what the seed knows to be wrong with it is taken out first."""
         sample = self._correct(sample)
-        if self.uncorrectable(sample) or not usable(sample, self._ranges):
+        if self.uncorrectable(sample) or not usable(sample, self._ranges, self._needed):
             return self._rejected(sample, NAN, NAN)
         if self._last is None:
             return self._restart(sample) if self._begun else self._begin(sample)

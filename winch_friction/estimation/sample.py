@@ -33,18 +33,24 @@ def heave_velocity(sample: Sample) -> float:
     return sample.heave_velocity if math.isfinite(sample.heave_velocity) else 0.0
 
 
-def usable(sample: Sample, ranges: ChannelRanges) -> bool:
-    """Whether the sample has a time, and a speed, drive, wire layer (or none) and load (or none) of this crane's."""
+def usable(sample: Sample, ranges: ChannelRanges, needed: Sequence[str] = ()) -> bool:
+    """Whether the sample has a time, and a speed, drive, wire layer (or none) and load (or none) of this crane's, and
+    what the model's terms `needed` beside them."""
     plausible, weight, force = ranges.plausible, sample.hook_load, sample.rope_force
     if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
         return False
-    if not ranges.crane.drum.has(sample.wire_layer):
+    if not ranges.crane.drum.has(sample.wire_layer) or absent(sample, ranges, needed):
         return False
     if weight == weight and not plausible("hook_load", weight):
         return False
     if force == force and not plausible("rope_force", force):
         return False
     return not ranges.crane.drive.lacking(sample, plausible)
+
+
+def absent(sample: Sample, ranges: ChannelRanges, needed: Sequence[str]) -> tuple[str, ...]:
+    """Which of these channels the sample does not have, or not within what the crane can show."""
+    return tuple(name for name in needed if not ranges.plausible(name, getattr(sample, name)))
 
 
 def saturated(sample: Sample, crane: Crane, config: EstimatorConfig) -> bool:

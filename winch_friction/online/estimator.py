@@ -6,12 +6,14 @@ from typing import Any
 
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
+from winch_friction.estimation.sample import absent
 from winch_friction.online.agreement import LoadBalance
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.sample_stream import InputHold
@@ -33,7 +35,7 @@ class EstimatorService:
         since: float = -math.inf,
     ) -> None:  # fmt: skip
         self.options, self.model_period = options or ServiceOptions(), model_period
-        self.law = FrictionEstimator(crane, seed, config, since)
+        self.law, self._needed = FrictionEstimator(crane, seed, config, since), needed(seed.terms)
         hold = InputHold(topics.groups, max_age, dict(SLOW_INPUTS))
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
         self.last: Estimate | None = None
@@ -57,7 +59,11 @@ class EstimatorService:
 
     def _learn(self, sample: Sample) -> Estimate:
         standing = (f"{name} cannot be taken out" for name in self.law.uncorrectable(sample))
-        self.missing = (*self.law.crane.drive.lacking(sample), *standing)
+        self.missing = (
+            *self.law.crane.drive.lacking(sample),
+            *absent(sample, self.inputs.ranges, self._needed),
+            *standing,
+        )
         self.last = self.law.step(sample)
         if self.last.accepted:
             gain = self._gain.contradiction(sample)

@@ -4,7 +4,7 @@ A name in a model file stands for exactly one declared term, by the registry.
 """
 
 import importlib.util
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
@@ -140,6 +140,21 @@ class Term:
     def latex(self) -> str:
         """The equation in LaTeX, from the same declaration."""
         return str(sp.latex(self.torque))
+
+
+# channels that a term may read and in whose place nothing can stand: a layer that is not said is the outer one
+IRREPLACEABLE = ("oil_temperature", "shaft_angle", "wire_out")
+
+
+def irreplaceable(reads: Iterable[str]) -> tuple[str, ...]:
+    """Those of the signals that terms read."""
+    read = set(reads)
+    return tuple(name for name in IRREPLACEABLE if name in read)
+
+
+def needed(terms: Iterable[Term]) -> tuple[str, ...]:
+    """The irreplaceable channels that these terms read."""
+    return irreplaceable(name for term in terms for name in term.reads)
 
 
 # -- terms by name

@@ -104,9 +104,9 @@ CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
 _TEMPLATE: list[Any] = [_DEFAULTS.get(name) for name in _ORDER]
 _PLACES = tuple(_ORDER.index(name) for name in CHANNEL_SIGNALS)
 _channels_of = attrgetter(*CHANNEL_SIGNALS)
-_DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL = (
+_DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL, _WIRE_LAYER = (
     _ORDER.index(name)
-    for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total")
+    for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total", "wire_layer")
 )
 
 
@@ -160,6 +160,7 @@ def sample_operating_point(
 ) -> tuple[float, ...]:
     """The operating point of one sample at a given speed; `width` smooths the direction, rad/s."""
     x: list[Any] = _TEMPLATE.copy()
+    x[_WIRE_LAYER] = float(len(crane.drum.layer_radii))
     for index, value in zip(_PLACES, _channels_of(sample), strict=True):
         if value == value:
             x[index] = value
@@ -179,7 +180,8 @@ def run_operating_points(
 ) -> tuple[Any, ...]:
     """The operating points of a whole run as arrays of one length."""
     speed = run["motor_speed"]
-    optional = {name: run[name] for name in CHANNEL_SIGNALS if name in run}
+    outer = np.full(len(run), float(len(crane.drum.layer_radii)))
+    optional = {"wire_layer": outer} | {name: run[name] for name in CHANNEL_SIGNALS if name in run}
     return operating_point(
         direction=smooth_signs(speed, width),
         speed=speed,

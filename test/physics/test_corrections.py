@@ -142,6 +142,21 @@ def test_every_correction_gives_the_truth_back(name, sign, truth, crane_150t, cr
     assert run.metadata["corrections"] == (name,)
 
 
+@pytest.mark.parametrize("name", DECLARED)
+def test_a_sample_that_is_lost_spoils_its_neighbours_alone(name, truth, crane_150t, crane2_model):
+    correction = typical(name)
+    model, logged = replace(crane2_model, corrections=(correction,)), spoiled(truth, correction)
+    lossy = {column: values.copy() for column, values in logged.columns.items()}
+    for column, values in lossy.items():
+        if column != "time":
+            values[500:503] = np.nan
+    whole, holed = (corrected(run, crane_150t, model)[0] for run in (logged, replace(logged, columns=lossy)))
+    far = np.ones(len(whole), bool)
+    far[490:515] = False
+    for column in whole.columns:
+        np.testing.assert_allclose(holed[column][far], whole[column][far], rtol=1e-5, atol=1e-6, err_msg=column)
+
+
 def test_a_delay_of_whole_samples_is_exact(truth, crane_150t, crane2_model):
     correction = Correction("signal_delay", 0.1)
     model = replace(crane2_model, corrections=(correction,))

@@ -64,6 +64,15 @@ def leakage_per_coefficient(law: str, drop: FloatArray, thinness: FloatArray | f
 
 
 # -- gas in oil and accumulators
+def bridged(values: FloatArray) -> FloatArray:
+    """Values with a straight line over what is no number: what is summed up along a record must not end there."""
+    known = np.isfinite(values)
+    if known.all() or not known.any():
+        return values
+    places = np.arange(len(values))
+    return np.interp(places, places[known], values[known])
+
+
 ATMOSPHERE = 1.0e5  # Pa, at which the volume of free air is stated
 ADIABATIC = 1.4  # exponent of air that is compressed too fast to give its heat away
 
@@ -71,6 +80,7 @@ ADIABATIC = 1.4  # exponent of air that is compressed too fast to give its heat 
 def relaxed_compression(time: FloatArray, pressure: FloatArray, time_constant: float) -> FloatArray:
     """First-order low-pass of ln(p / p_0) over `time_constant` s, from rest at the first sample; exact for a signal
     held over each step."""
+    pressure = bridged(pressure)
     change = np.log(np.maximum(pressure, 1.0) / max(float(pressure[0]), 1.0))
     keep = np.exp(-np.diff(time, prepend=time[0]) / time_constant)
     relaxed, value = np.empty(len(time)), 0.0
@@ -94,6 +104,7 @@ def path_of_high_side(
     pressure_a: FloatArray, pressure_b: FloatArray, taken: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
     """What a function of pressure has taken up in the line with the higher pressure, positive towards port A."""
+    pressure_a, pressure_b = bridged(pressure_a), bridged(pressure_b)
     side = np.where(pressure_a >= pressure_b, 1.0, -1.0)
     high = np.maximum(pressure_a, pressure_b)
     left, came = side[:-1], side[1:]

@@ -3,6 +3,7 @@
 And which crane it belongs to, and what it assumes where it does not say how sure it is.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -200,8 +201,9 @@ def _state_history(functions: CompiledTerms, rows: FloatArray, theta: tuple[floa
     z: tuple[float, ...] = functions.initial_states
     previous = rows[0, TIME_INDEX]
     for k, row in enumerate(rows.tolist()):
-        z = advance_all(functions, row, theta, z, row[TIME_INDEX] - previous)
-        previous = row[TIME_INDEX]
+        after = advance_all(functions, row, theta, z, row[TIME_INDEX] - previous)
+        if all(map(math.isfinite, after)):  # what happens while a signal is lost is made up for by the next row
+            z, previous = after, row[TIME_INDEX]
         history[k] = z
     return tuple(history.T)
 

@@ -145,3 +145,19 @@ def test_the_largest_displacement_is_the_tables_unless_it_is_said(write):
     path = write(HEADER, "1000,200,160,94.0")
     assert read_supplier_table(path).max_displacement == pytest.approx(160 * CM3_PER_REV)
     assert read_supplier_table(path, 215 * CM3_PER_REV).max_displacement == pytest.approx(215 * CM3_PER_REV)
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_the_map_of_a_motor_that_does_not_swing_has_two_axes(write, complete):
+    rows = [
+        f"{n},{p},160,{5 + 0.01 * n + 0.02 * p}"
+        for n in (500, 1000, 2000)
+        for p in (100, 200, 300)
+        if complete or (n, p) != (2000, 300)
+    ]
+    black_box = BlackBoxMap(read_supplier_table(write(HEADER.replace("efficiency [%]", "torque_loss [N*m]"), *rows)))
+    speed, pressure = np.full(2, 750 * RPM), np.full(2, 150 * BAR)
+    displacement = np.array([160.5, 120.0]) * CM3_PER_REV
+    assert black_box.torque_loss(speed, pressure, displacement)[0] == pytest.approx(5 + 7.5 + 3.0)
+    assert black_box.outside(speed, pressure, displacement).tolist() == [False, True]
+    assert black_box.outside(4.0 * speed, pressure, displacement).all()

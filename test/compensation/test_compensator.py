@@ -445,3 +445,14 @@ def test_what_a_term_reads_is_an_input_that_can_be_lost(term, channel):
     lost = each.step(ahc_sample(PERIOD, 100.0))
     assert not lost.valid
     assert each.status()["missing"] == channel
+
+
+@pytest.mark.parametrize("begin", [0.0, 1.7e9])
+def test_a_sample_that_comes_just_in_time_is_no_silence(begin):
+    """Ten samples a second, and an age of a tenth of one: what is left is the rounding of the stamps."""
+    slow, quick = (compensator(max_age=age) for age in (0.1, 0.2))
+    for k in range(40):
+        speed = 100.0 * math.sin(0.1 * k)
+        outputs = [each.step(ahc_sample(begin + 0.1 * k, speed)) for each in (slow, quick)]
+        assert outputs[0].friction_torque == pytest.approx(outputs[1].friction_torque, abs=0.01)
+    assert outputs[0].state == "active"

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
 from winch_friction.physics.errors import InputError
 
+ROUNDING = 1e-6  # s; a sample that is as old as it may be is no silence (a Unix time has 2e-7 s)
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew
 # stamps may gain this on the steady clock: a sender's clock, or a simulation, that runs faster than ours
 FASTEST_STAMPS = 1.5
@@ -132,7 +133,7 @@ class SafeOutput:
             self.steps_back += time < self._fed
             self._bump = True
             return 0.0
-        if ramping or time - self._fed > self.hold:
+        if ramping or time - self._fed > self.hold + ROUNDING:
             torque = self.remaining(time)
             self._let_go(torque)
             self._bump = True

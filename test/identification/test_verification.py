@@ -114,6 +114,28 @@ def test_a_record_with_a_hole_has_no_inertia_there(truth, crane):
     assert len(check.time) == kept.sum()
 
 
+def test_what_lies_between_long_holes_is_predicted_by_itself(truth, crane):
+    run = ahc_run(truth, crane)
+    columns = {**run.columns, "wire_out": np.full(len(run), 50.0)}
+    halves = [
+        Run("half", {name: values[part] for name, values in columns.items()})
+        for part in (slice(700), slice(1800, None))
+    ]
+    both = Run("both", {name: np.concatenate([half[name] for half in halves]) for name in columns})
+    found = pressure_check(both, crane, truth).predicted
+    assert np.array_equal(found, np.concatenate([pressure_check(half, crane, truth).predicted for half in halves]))
+
+
+def test_rows_that_are_lost_now_and_then_are_no_faster_motion(truth, crane):
+    run = ahc_run(truth, crane)
+    columns = {**run.columns, "wire_out": np.full(len(run), 50.0), "wire_layer": np.full(len(run), 6.0)}
+    kept = np.random.default_rng(2).random(len(run)) > 0.2
+    check = pressure_check(Run("lost", {name: values[kept] for name, values in columns.items()}), crane, truth)
+    assert check.moving_rms < 0.8 * BAR
+    assert np.array_equal(check.time, run.time[kept])
+    assert np.array_equal(check.speed, run["motor_speed"][kept])
+
+
 @pytest.mark.parametrize("column", ["motor_speed", "hook_load", "passive.pressure_a"])
 def test_a_sample_that_is_no_number_is_said(truth, crane, column):
     run = ahc_run(truth, crane)

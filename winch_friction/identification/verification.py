@@ -22,7 +22,8 @@ LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
 _SMOOTHING = 0.2  # s, window of the winch's acceleration
 _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judgement
-_HOLE = 3.5  # samples; a record that lacks more has a hole, if that is longer than what is smoothed as well
+_HOLE = 3.0  # s; half a quick wave: a straight line over more says nothing of the motion
+_LOST = 1.5  # samples; where two rows are further apart than this, some between them are lost
 _LEAST_SAMPLES = 10  # of a piece between holes
 _STICKING = 0.5  # rad/s of the smoothed speed; a winch that creeps faster has the friction of its direction
 STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
@@ -109,8 +110,8 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
 
     The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
     winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
-    relative error of the displacement feedback that a joint fit found for these motors. A record with holes is
-    predicted piece by piece. Raises `InputError` for a missing column, NaN, and a winch that never turns.
+    relative error of the displacement feedback that a joint fit found for these motors. A record with long holes
+    is predicted piece by piece. Raises `InputError` for a missing column, NaN, and a winch that never turns.
     """
     refuse_unusable(run)
     run = _with_true_displacement(run, displacement_scale)
@@ -118,11 +119,12 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     pieces = _pieces(run)
     if not any(np.any(_turns(piece)) for piece in pieces):
         raise InputError(f"{run.name}: the winch never turns; there is no friction to verify")
-    checks = [_check(piece, crane, model, group) for piece in pieces]
-    joined = (
-        np.concatenate([getattr(each, name) for each in checks]) for name in ("time", "speed", "measured", "predicted")
+    drop = f"{group}.pressure_a", f"{group}.pressure_b"
+    time, speed, high, low = (
+        np.concatenate([each[name] for each in pieces]) for name in ("time", "motor_speed", *drop)
     )
-    return PressureCheck(run.name, group, *joined)
+    predicted = np.concatenate([_predicted(piece, crane, model, group) for piece in pieces])
+    return PressureCheck(run.name, group, time, speed, high - low, predicted)
 
 
 def refuse_unusable(run: Run) -> None:
@@ -133,18 +135,32 @@ def refuse_unusable(run: Run) -> None:
 
 
 def _pieces(run: Run) -> list[Run]:
-    """What lies between holes that are longer than what is smoothed: over one of them the speed would jump."""
-    holes = np.flatnonzero(np.diff(run.time) > max(_SMOOTHING, _HOLE * _step(run))) + 1
+    """What lies between long holes: over one of them the speed would jump."""
+    holes = np.flatnonzero(np.diff(run.time) > _HOLE) + 1
     pieces = (slice(*each) for each in itertools.pairwise([0, *holes.tolist(), len(run)]))
     cut = [replace(run, columns={n: v[piece] for n, v in run.columns.items()}) for piece in pieces]
     return [piece for piece in cut if len(piece) >= _LEAST_SAMPLES]
+
+
+def _even(run: Run) -> Run:
+    """A piece with straight lines over rows that are lost: what smooths and swings counts its samples as even."""
+    step = _step(run)
+    if np.diff(run.time).max() < _LOST * step:
+        return run
+    time = np.arange(run.time[0], run.time[-1] + 0.5 * step, step)
+    nearest = np.searchsorted(0.5 * (run.time[1:] + run.time[:-1]), time)
+    lines = {name: np.interp(time, run.time, values) for name, values in run.columns.items() if name != "wire_layer"}
+    layers = {name: values[nearest] for name, values in run.columns.items() if name == "wire_layer"}
+    return replace(run, columns={**lines, **layers, "time": time})
 
 
 def _turns(run: Run) -> Any:
     return np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING
 
 
-def _check(run: Run, crane: Crane, model: FrictionModel, group: str) -> PressureCheck:
+def _predicted(piece: Run, crane: Crane, model: FrictionModel, group: str) -> FloatArray:
+    """Pa at the times of a piece."""
+    run = _even(piece)
     drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in run.groups}
     drum_torque = run_drum_torque(run, crane)
     inertia, acceleration = inertia_torque(run, crane)
@@ -156,7 +172,7 @@ def _check(run: Run, crane: Crane, model: FrictionModel, group: str) -> Pressure
         points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
         friction = np.asarray(model.torque(points))
         predicted = (held + _through_standstill(run.time, friction, moving)) / capacity
-    return PressureCheck(run.name, group, run.time, run["motor_speed"], drop[group], predicted)
+    return predicted if run is piece else np.interp(piece.time, run.time, predicted)
 
 
 def _with_true_displacement(run: Run, scale: float) -> Run:

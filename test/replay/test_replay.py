@@ -1,6 +1,7 @@
 """Replay: over a run, over its bag and live, the same samples give the same outputs."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,6 +99,41 @@ def test_the_replay_of_a_live_recording_equals_it(tmp_path, heard, crane_150t, c
     assert live.missing == 0
     assert live.largest < 1e-9
     assert live.equal
+
+
+def test_another_winch_in_the_bag_neither_teaches_nor_is_compared(tmp_path, heard, crane_150t, crane2_model):
+    """Two winches on one deck: the other one's models and torques are its own."""
+    topics, hold = crane_topics(crane_150t, heard.groups), InputHold(heard.groups)
+    other = replace(crane2_model, values=tuple(1.2 * value for value in crane2_model.values))
+    with BagWriter(tmp_path / "deck") as bag:
+        said = MESSAGES.make("std_msgs/msg/String", data=model_to_text(other))
+        bag.write("/starboard/friction_model", said, 0.0)
+        for sample in hold.samples(heard):
+            for winch in ("port", "starboard"):
+                for topic, message in topics.encode(sample, MESSAGES):
+                    bag.write(f"/{winch}/{topic}", message, sample.time)
+            answer = joint_state(MESSAGES, stamp_header(sample.time, MESSAGES), "winch_motor", effort=0.0)
+            bag.write("/starboard/compensator/friction_torque", answer, sample.time + 0.004)
+    given = (crane_150t, crane2_model, SETTINGS)
+    port = replay_recording(tmp_path / "deck", *given, learn=False, namespace="port")
+    starboard = replay_recording(tmp_path / "deck", *given, learn=False, namespace="starboard")
+    alone = replay_compensator(heard, FeedforwardCompensator(crane_150t, crane2_model, SETTINGS.phases[0].config))
+    np.testing.assert_allclose(port.compensator["friction_torque"], alone["friction_torque"], rtol=1e-9, atol=1e-9)
+    assert port.live == ()
+    assert [each.node for each in starboard.live] == ["compensator"]
+    assert np.abs(starboard.compensator["friction_torque"] - alone["friction_torque"]).max() > 10.0
+
+
+def test_a_text_that_is_no_model_is_refused_as_by_the_node(tmp_path, heard, crane_150t, crane2_model):
+    topics, hold = crane_topics(crane_150t, heard.groups), InputHold(heard.groups)
+    with BagWriter(tmp_path / "bag") as bag:
+        bag.write("/friction_model", MESSAGES.make("std_msgs/msg/String", data="hello"), 0.0)
+        for sample in hold.samples(heard):
+            for topic, message in topics.encode(sample, MESSAGES):
+                bag.write(f"/{topic}", message, sample.time)
+    replayed = replay_recording(tmp_path / "bag", crane_150t, crane2_model, SETTINGS)
+    assert [said for said in replayed.warnings if "model refused: /friction_model" in said]
+    assert np.abs(replayed.compensator["friction_torque"]).max() > 100.0
 
 
 def test_other_settings_are_seen_to_differ(tmp_path, heard, crane_150t, crane2_model):

@@ -1,5 +1,7 @@
 """Which recordings a fleet has, when an earlier result still stands, and which names cannot."""
 
+import os
+
 import pytest
 
 from winch_friction.fleet.recordings import find_recordings
@@ -37,3 +39,16 @@ def test_a_recording_that_has_grown_is_another_version(tmp_path):
     after = find_recordings([str(touched(tmp_path, "north/a.csv", size=11))])[0]
     assert (before.crane, before.name, before.address) == (after.crane, after.name, after.address)
     assert before.version != after.version
+
+
+def test_a_recording_that_was_made_anew_is_another_version_though_it_has_the_same_size(tmp_path):
+    """As by `import --set motor_speed.sign=-1 --overwrite`."""
+    before = find_recordings([str(touched(tmp_path, "north/a.csv"))])[0]
+    os.utime(tmp_path / "north" / "a.csv", ns=(1, before.changed + 1))
+    assert find_recordings([str(tmp_path)])[0].version != before.version
+
+
+def test_a_simulators_truth_and_a_fleets_own_results_are_no_recordings(tmp_path):
+    touched(tmp_path, "north/a.csv", "north/truth/a_truth.csv", "out/replay/north/a.parquet", "out/store/part.parquet")
+    found = find_recordings([str(tmp_path)], without=[tmp_path / "out" / "replay", tmp_path / "out" / "store"])
+    assert [(each.crane, each.name) for each in found] == [("north", "a")]

@@ -187,7 +187,7 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
     seconds = np.full(len(cells), np.nan)
     for row, cell in enumerate(cells):
         parts = time_parts(cell)
-        if parts is None:
+        if parts is None or (base.form == "datetime" and parts[0] is None):
             if strict and cell is not None and str(cell).strip():
                 raise InputError(f"{where}: {place(row)}: '{str(cell)[:40]}' is no time of the form '{base.form}'")
             continue
@@ -230,7 +230,9 @@ def _zone_shift(cells: Any, base: TimeBase, where: str) -> float:
         zone = ZoneInfo(base.zone)
     except (ZoneInfoNotFoundError, ValueError, OSError) as error:
         raise InputError(f"{where}: time.zone '{base.zone}' is not known; write e.g. UTC or Europe/Oslo") from error
-    parts = next(p for p in (time_parts(cell) for cell in cells) if p is not None)
+    parts = next((p for p in map(time_parts, cells) if p is not None and p[0] is not None), None)
+    if parts is None:  # no date at all: what the first cell says is told by its row
+        return 0.0
     local = datetime(1970, 1, 1) + timedelta(
         days=days_since_1970(parts[:3], base.order or "ymd", where), seconds=clock_seconds(parts)
     )

@@ -15,7 +15,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.model_file import load_model, model_to_text
-from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.runs import bag_options_of, read_run, write_run
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import crane_topics, joint_state, stamp_header
 from winch_friction.replay.compensator import replay_compensator
@@ -271,6 +271,24 @@ def test_a_parameter_file_that_would_set_nothing_is_refused(tmp_path, text):
     params = tmp_path / "params.yaml"
     params.write_text(text)
     with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
+        settings_from_file(params)
+    with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
+        bag_options_of(params)  # of gap, identify and convert: gauge pressures would be taken for absolute ones
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("compensator: {ros__parameters: {model_delay: fast}}", "params.yaml: model_delay must be a finite number"),
+        ("estimator: {ros__parameters: {max_age: -0.1}}", "params.yaml: estimator: max_age must be above 0 s"),
+        ("compensator: {ros__parameters: {follow_model_topic: 'no'}}", "follow_model_topic must be true or false"),
+        ("compensator: {ros__parameters: [1]}", "ros__parameters must hold names with values"),
+    ],
+)
+def test_a_parameter_that_is_no_value_is_refused_in_one_line(tmp_path, text, said):
+    params = tmp_path / "params.yaml"
+    params.write_text(text)
+    with pytest.raises(InputError, match=said):
         settings_from_file(params)
 
 

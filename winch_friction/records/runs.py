@@ -14,6 +14,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.strict_yaml import read_yaml
 from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
 
+NODES = ("compensator", "estimator")  # that have inputs, by the names of their sections in a parameter file
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
 
@@ -130,18 +131,35 @@ def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
         if str(name).rsplit("/", 1)[-1] in ("**", node):
             if not isinstance(section, Mapping) or "ros__parameters" not in section:
                 raise InputError(f"{where}: {name} has no ros__parameters; is this a ROS parameter file?")
-            merged |= section["ros__parameters"] or {}
+            own = section["ros__parameters"] or {}
+            if not isinstance(own, Mapping):
+                raise InputError(f"{where}: {name}: ros__parameters must hold names with values, found {own!r}")
+            merged |= own
     return merged
 
 
-def bag_options_of(params_file: Path | None, node: str = "compensator") -> dict[str, Any]:
+def refuse_without_nodes(content: Any, where: str) -> None:
+    """Raise `InputError` for a file none of whose sections is one of `NODES`: it would set nothing."""
+    found = [str(name) for name in content] if isinstance(content, Mapping) else []
+    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *NODES}:
+        raise InputError(
+            f"{where}: no parameters of {' or '.join(NODES)}: expected one of these names (or /**) with "
+            f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"
+        )
+
+
+def bag_options_of(params_file: Path | None) -> dict[str, Any]:
     """Options of `open_bag` from the nodes' ROS parameter file; none without one.
 
-    Raises `InputError` for what is no such file.
+    What only the estimator's section says holds, too: both nodes hear the same inputs. Raises `InputError` for what
+    is no such file.
     """
     if params_file is None:
         return {}
-    parameters = parameters_of(read_yaml(params_file), node, str(params_file))
+    content, parameters = read_yaml(params_file), dict[str, Any]()
+    refuse_without_nodes(content, str(params_file))
+    for node in reversed(NODES):
+        parameters |= parameters_of(content, node, str(params_file))
     names = {each.name for each in fields(InputMapping)}
     own = {key: tuple(filter(None, v)) if isinstance(v, list) else v for key, v in parameters.items() if key in names}
     mapping = from_mapping(InputMapping, own, str(params_file))

@@ -23,6 +23,10 @@ def test_a_folder_is_a_crane_and_each_run_file_or_bag_a_recording(tmp_path):
     assert found[2].size == 20
 
 
+def test_a_logger_under_windows_writes_capitals(tmp_path):
+    assert [each.name for each in find_recordings([str(touched(tmp_path, "north/A.CSV"))])] == ["A"]
+
+
 def test_two_recordings_of_one_crane_and_name_are_refused(tmp_path):
     touched(tmp_path, "east/north/a.csv", "west/north/a.csv")
     with pytest.raises(InputError, match="two recordings are named 'north/a'"):

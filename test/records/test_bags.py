@@ -188,6 +188,9 @@ def test_nothing_is_overwritten_and_a_failed_write_leaves_nothing(tmp_path):
         raise RuntimeError
     with pytest.raises(InputError, match="before 0"):
         write_run(make_run(rows=5, start=-1.0), tmp_path / "z")
+    for start in (1.7e12, 6.4e10):  # ms since 1970 that are called s; days of MATLAB in s
+        with pytest.raises(InputError, match="a bag holds times from 0 to"):
+            write_run(make_run(rows=5, start=start), tmp_path / "z")
     assert [each.name for each in tmp_path.iterdir()] == ["x"]
 
 

@@ -15,7 +15,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.model_file import load_model, model_to_text
-from winch_friction.records.runs import bag_options_of, read_run, write_run
+from winch_friction.records.runs import read_run, write_run
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import crane_topics, joint_state, stamp_header
 from winch_friction.replay.compensator import replay_compensator
@@ -178,6 +178,16 @@ def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
     np.testing.assert_array_equal(written["motor_torque"], replayed.compensator["friction_torque"])
 
 
+def test_a_run_from_before_its_zero_makes_a_table_and_no_bag(tmp_path, run, capsys):
+    early = replace(run, columns={**run.columns, "time": run.time - run.time[0] - 5.0})
+    source = str(write_run(early, tmp_path / "early.parquet"))
+    words = ["replay", source, "--crane", "crane_150t", "--model", "a6vm215_crane2", "--out"]
+    assert main.run([*words, str(tmp_path / "bag")]) == 2
+    assert "a bag holds times from 0 to" in capsys.readouterr().err
+    assert main.run([*words, str(tmp_path / "table.csv")]) == 0
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["early.parquet", "table.csv"]
+
+
 def test_the_verb(tmp_path, bag, capsys):
     arguments = ["replay", str(bag), "--crane", "crane_150t", "--model", "a6vm215_crane2"]
     files = ["--out", str(tmp_path / "o.csv"), "--picture", str(tmp_path / "o.png")]
@@ -257,43 +267,3 @@ def test_a_log_too_slow_to_be_replayed_is_said_by_its_step(tmp_path, run, capsys
     said = capsys.readouterr().err.splitlines()[-1]
     assert "slow.csv: column 'time': a sample every 20 s is too slow for a replay, which takes one every 4 s" in said
     assert "max_age" not in said
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "compensater:\n  ros__parameters: {scale: 0.3}\n",
-        "winch: {compensator: {ros__parameters: {scale: 0.3}}}\n",
-        "schema: winch_friction.scenario/1\nname: x\n",
-    ],
-)
-def test_a_parameter_file_that_would_set_nothing_is_refused(tmp_path, text):
-    params = tmp_path / "params.yaml"
-    params.write_text(text)
-    with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
-        settings_from_file(params)
-    with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
-        bag_options_of(params)  # of gap, identify and convert: gauge pressures would be taken for absolute ones
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("compensator: {ros__parameters: {model_delay: fast}}", "params.yaml: model_delay must be a finite number"),
-        ("estimator: {ros__parameters: {max_age: -0.1}}", "params.yaml: estimator: max_age must be above 0 s"),
-        ("compensator: {ros__parameters: {follow_model_topic: 'no'}}", "follow_model_topic must be true or false"),
-        ("compensator: {ros__parameters: [1]}", "ros__parameters must hold names with values"),
-    ],
-)
-def test_a_parameter_that_is_no_value_is_refused_in_one_line(tmp_path, text, said):
-    params = tmp_path / "params.yaml"
-    params.write_text(text)
-    with pytest.raises(InputError, match=said):
-        settings_from_file(params)
-
-
-@pytest.mark.parametrize("node", ["/**", "/winch_1/estimator", "compensator"])
-def test_a_parameter_file_of_one_node_will_do(tmp_path, node):
-    params = tmp_path / "params.yaml"
-    params.write_text(f"{node}:\n  ros__parameters: {{max_age: 0.3}}\n")
-    assert settings_from_file(params)

@@ -32,10 +32,10 @@ def run(
       winch-friction convert run log.csv log.parquet log.mcap
     """
     from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.runs import bag_options_of, read_run
+    from winch_friction.records.runs import bag_options_of, read_run, refuse_unknown_kind
 
     for each in out:
-        refuse_input_as_output(each, [source])
+        refuse_input_as_output(refuse_unknown_kind(each), [source])
     refuse_existing(overwrite, *out)
     content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
     show_warnings(content.warnings)

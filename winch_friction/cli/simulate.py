@@ -116,6 +116,7 @@ def _list_effects(as_json: bool) -> None:
 
 
 def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Path]]:
+    from winch_friction.records.runs import refuse_unknown_kind
     from winch_friction.simulation import load_scenario
     from winch_friction.simulation.campaigns import CAMPAIGNS
 
@@ -126,11 +127,15 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
             raise InputError(f"--out {out}: '{name}' is a set of runs and needs a folder")
         return [(s, 1000 * seed + k, out / f"{s.name}.{kind}") for k, s in enumerate(CAMPAIGNS[name](seed), 1)]
     scenario = load_scenario(name)
-    return [(scenario, seed, out if out.suffix else out / f"{scenario.name}.{kind}")]
+    return [(scenario, seed, refuse_unknown_kind(out) if out.suffix else out / f"{scenario.name}.{kind}")]
 
 
 def _refuse_overwriting(paths: list[Path], force: bool) -> None:
+    from winch_friction.records.runs import BAG_SUFFIXES
+
     for path in paths:
+        if path.exists() and path.suffix in BAG_SUFFIXES:
+            raise InputError(f"{path}: exists already, and a bag is never replaced; give another --out, or remove it")
         if path.exists() and not force:
             raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
 

@@ -91,7 +91,7 @@ def _assembled(sizes: Mapping[str, int], address: Any) -> list[Recording]:
         own = PurePosixPath(path)
         if str(own.parent) in bags:
             members.setdefault(str(own.parent), []).append((path, size))
-        elif own.suffix in RUN_SUFFIXES and not own.name.startswith(".") and not own.stem.endswith(TRUTH):
+        elif own.suffix.lower() in RUN_SUFFIXES and not own.name.startswith(".") and not own.stem.endswith(TRUTH):
             members[path] = [(path, size)]
     return [
         Recording(address(path), PurePosixPath(path).parent.name or "fleet", PurePosixPath(path).stem, tuple(files))

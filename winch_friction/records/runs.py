@@ -29,15 +29,16 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
+    suffix = path.suffix.lower()  # a logger under Windows writes LOG.CSV
     if path.is_dir() or path.suffix in BAG_SUFFIXES:
         from winch_friction.records.bags import read_bag
 
         return read_bag(path, crane, complete=complete, **bag_options)
-    if path.suffix == ".csv":
+    if suffix == ".csv":
         from winch_friction.records.csv_file import read_csv_run
 
         return read_csv_run(path, crane, complete)
-    if path.suffix in (".parquet", ".pq"):
+    if suffix in (".parquet", ".pq"):
         from winch_friction.records.parquet_file import read_parquet_run
 
         return read_parquet_run(path, crane, complete)
@@ -65,7 +66,7 @@ def refuse_same_names(runs: Sequence[Run]) -> None:
 
 def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
     """Write a run by suffix: .csv, .parquet, or a rosbag2 folder (.mcap or .db3 in the name choose the storage)."""
-    path = Path(path)
+    path = refuse_unknown_kind(Path(path))
     if path.suffix == ".csv":
         from winch_friction.records.csv_file import write_csv_run
 
@@ -74,11 +75,16 @@ def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
         from winch_friction.records.parquet_file import write_parquet_run
 
         return write_parquet_run(run, path)
-    if path.suffix in ("", ".bag", *BAG_SUFFIXES):
-        from winch_friction.records.bag_write import write_bag
+    from winch_friction.records.bag_write import write_bag
 
-        return write_bag(run, path, **bag_options)
-    raise InputError(f"{path}: cannot write this kind of file; use {KINDS}")
+    return write_bag(run, path, **bag_options)
+
+
+def refuse_unknown_kind(path: Path) -> Path:
+    """The path, when a run can be written under its name; else `InputError`."""
+    if path.suffix not in (".csv", ".parquet", ".pq", "", ".bag", *BAG_SUFFIXES):
+        raise InputError(f"{path}: cannot write this kind of file; use {KINDS}")
+    return path
 
 
 # -- how inputs travel

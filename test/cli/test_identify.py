@@ -6,6 +6,8 @@ import shutil
 
 import pytest
 
+from winch_friction.cli.console import refuse_foreign
+from winch_friction.cli.identify import PRACTICE
 from winch_friction.cli.main import run
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
@@ -37,6 +39,7 @@ def test_practice_writes_report_and_seeds(practice):
     assert len(seed.provenance["data_sha256"]) == 15
     assert said["seed"]["parameters"]["K2"]["value"] == pytest.approx(seed.value("K2"))
     assert load_model(out / "motor.yaml").covariance is not None
+    refuse_foreign(out, ("motor.yaml",), "report.html", PRACTICE)  # a second call may replace them
 
 
 def test_the_seed_holds_the_truth(practice):

@@ -55,11 +55,12 @@ def command(
 
       winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
-    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.console import refuse_foreign, refuse_unwritable
     from winch_friction.cli.inputs import provenance_of
     from winch_friction.fleet.recordings import find_recordings
 
     refuse_unwritable(out / "fleet.json")
+    refuse_foreign(out, ("fleet.json", "report.html"), "fleet.jsonl")
     options = _storage_options(storage or [])
     recordings = find_recordings(sources, options, own_folders(out))
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)

@@ -112,6 +112,14 @@ def test_shipped_files_fit_their_schema(folder):
         assert problems(yaml.safe_load(path.read_text()), schema) == [], path
 
 
+def test_the_schema_refuses_a_motor_groups_name_that_the_reader_refuses():
+    content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
+    content["groups"] = {"active 1": 3, "passive": 8}
+    assert problems(content, all_schemas()["crane"]) == [
+        "groups: 'active 1' is not a name of a motor group: letters, digits and _, a letter first"
+    ]
+
+
 def test_published_schemas_are_the_readers(tmp_path):
     assert run(["init", "schemas", "--out", str(tmp_path)]) == 0
     published = config_directory() / "schemas"

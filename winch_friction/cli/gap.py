@@ -221,6 +221,8 @@ def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
 
 def show_result(content: dict[str, Any], out: Path) -> None:
     """The verdict for a person."""
+    from winch_friction.discrepancy.adequacy import told_apart
+
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
     rows = [
         [
@@ -238,7 +240,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
-            print(f"lacking: {check['what']} {check['value']:.3g} {check['unit']}, needed {check['needed']:g}")
+            value = told_apart(check["value"], check["needed"])
+            print(f"lacking: {check['what']} {value} {check['unit']}, needed {check['needed']:g}")
     if gap["before"] is not None:
         print(
             f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "

@@ -183,6 +183,8 @@ def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any
             at = run_operating_points(right, machine, drum_torque=run_drum_torque(right, machine))
             torques.append(np.interp(run.time, right.time, np.broadcast_to(model.torque(at), (len(right),))))
         difference = torques[1] - torques[0]
+        if not np.isfinite(difference).any():
+            raise InputError(f"{run.name}: no row has speed, load and pressures all at once: nothing to compare on")
         k = int(np.nanargmax(np.abs(difference)))
         rows.append(
             {

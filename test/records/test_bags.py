@@ -125,6 +125,10 @@ def test_broken_messages_are_counted_not_fatal(tmp_path):
     run = read_run(tmp_path / "x", complete=False)
     assert len(run) == 60
     assert any("3 messages cannot be read" in each for each in run.warnings)
+    shown = []
+    with pytest.raises(InputError, match="3 messages cannot be read"):
+        shown.extend(bag_frames(tmp_path / "x", "", 0.0))  # a list keeps what came before an error
+    assert sum(len(frame["points"].get("speed", [])) for frame in shown) > 10
 
 
 def damaged_in_the_middle(path):

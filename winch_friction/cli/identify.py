@@ -214,7 +214,7 @@ def practice(
     """
     from winch_friction.cli.console import progress, refuse_foreign, refuse_unwritable, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
-    from winch_friction.cli.inputs import provenance_of, refuse_implausible
+    from winch_friction.cli.inputs import provenance_of, refuse_copies, refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
@@ -222,6 +222,7 @@ def practice(
     refuse_unwritable(out / "report.html")
     refuse_foreign(out, ("report.html", "motor.yaml", "seed.yaml"), "report.html", PRACTICE)
     folder = read_practice(_example(example))
+    refuse_copies([*folder.tests, *folder.held_out])
     forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)
     done = run_practice(
         folder,

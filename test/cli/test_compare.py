@@ -60,3 +60,17 @@ def test_a_run_without_a_row_that_holds_everything_is_refused(tmp_path, capsys):
     words = ["compare", "a6vm215_crane1", "a6vm215_crane2", str(tmp_path / "apart.csv"), "--crane", "crane_150t"]
     assert run(words) == 2
     assert "apart.csv: no row has speed, load and pressures all at once" in capsys.readouterr().err
+
+
+def test_models_that_read_no_load_are_compared_on_runs_that_have_none(tmp_path, capsys):
+    time = np.arange(0.0, 10.0, 0.01)
+    speed = 20.0 * np.sin(time)
+    write_run(Run("el", {"time": time, "motor_speed": speed, "motor_torque": 200.0 * speed}), tmp_path / "el.csv")
+    text = (config_directory() / "models" / "emps_viscous.yaml").read_text()
+    (tmp_path / "half.yaml").write_text(text.replace("203.5", "101.75"))
+    half, whole = load_model(tmp_path / "half.yaml"), load_model("emps_viscous")
+    words = ["compare", "emps_viscous", str(tmp_path / "half.yaml"), str(tmp_path / "el.csv"), "--json"]
+    assert run(words) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    difference = (half.value("C5") - whole.value("C5")) * 20.0
+    assert abs(row["largest [N*m]"]) == pytest.approx(abs(difference), rel=1e-3)

@@ -88,6 +88,19 @@ def test_a_lost_channel_becomes_nan_after_its_age_and_is_said(tmp_path):
     assert any("active.pressure_b" in each and "/winch/joint_states" in each for each in back.warnings)
 
 
+def test_what_of_a_bag_is_not_believed_is_said(tmp_path, crane_150t):
+    """A load in g passes no sensor's range; a displacement in per cent was told as a column that is not there."""
+    run = make_run(rows=50)
+    heavy = {**run.columns, "hook_load": np.where(np.arange(50) < 20, 1e9, run["hook_load"])}
+    back = read_run(write_run(Run("x", heavy), tmp_path / "x"))
+    assert any("topic '/winch/hook_load': 20 of 50 messages are left out" in each for each in back.warnings)
+    topics = crane_topics(crane_150t, run.groups)
+    per_cent = {**run.columns, "active.displacement": np.full(50, 80.0 * crane_150t.max_displacement)}
+    write_bag(Run("y", per_cent), tmp_path / "y", topics)
+    with pytest.raises(InputError, match="/winch/active/displacement': 50 of 50 messages are left out"):
+        read_run(tmp_path / "y", crane_150t)
+
+
 def test_a_recorder_on_another_clock_does_not_matter(tmp_path):
     run, topics = make_run(rows=30), TopicMap(groups=("active",), displacement_unit="m3_per_rad")
     with BagWriter(tmp_path / "x") as writer:

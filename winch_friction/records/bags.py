@@ -19,6 +19,7 @@ from winch_friction.records.run_checks import Place, checked_run
 from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"
+_LEFT_OUT = "messages are left out"
 
 
 def read_bag(
@@ -44,16 +45,27 @@ def read_bag(
     if not len(columns["time"]):
         raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint")
     place: Place = lambda row: f"sample {row + 1} of '{speed}'"
-    return checked_run(
-        path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings, metadata=bag_metadata(path)
-    )
+    try:
+        return checked_run(
+            path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings,
+            metadata=bag_metadata(path),
+        )  # fmt: skip
+    except InputError as refused:  # a column that is missing may be one of which nothing was believed
+        raise InputError(*refused.problems, *(each for each in warnings if _LEFT_OUT in each)) from None
 
 
 def bag_samples(bag: Bag, hold: InputHold) -> Iterator[Sample]:
-    """The samples that a node would have made of a bag's messages."""
+    """The samples that a node would have made of a bag; its warnings tell at the end what was not believed."""
     stream = SampleStream(bag.topics, hold)
-    taken = (stream.take(each.source, each.message, each.receipt) for each in bag.inputs())
-    return (sample for sample in taken if sample is not None)
+    for each in bag.inputs():
+        sample = stream.take(each.source, each.message, each.receipt)
+        if sample is not None:
+            yield sample
+    bag.warnings += [
+        f"{bag.name}: topic '{bag.actual[topic]}': {count} of {stream.counts[topic]} {_LEFT_OUT}: without a finite "
+        "value of the winch's joint, out of order, or beyond what any sensor gives"
+        for topic, count in stream.rejected.items()
+    ]
 
 
 def _columns(samples: Iterable[Sample], groups: Sequence[str]) -> dict[str, FloatArray]:

@@ -6,13 +6,14 @@ from importing.logs import write_workbook
 
 from campaign.import_habits import became, kinds
 from winch_friction.commissioning.check import quick_check
-from winch_friction.importing.carry_out import open_with_map
+from winch_friction.importing.carry_out import import_log, open_with_map
 from winch_friction.importing.cells import is_number
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.text_log import read_text_log
 from winch_friction.importing.units import header_readings
 from winch_friction.importing.workbook_log import read_workbook_log
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 MENDED = (
@@ -76,6 +77,30 @@ def test_what_only_python_takes_for_a_number_is_named_by_its_cell(tmp_path, cell
 def test_a_small_number_with_a_point_has_no_thousands():
     assert not is_number("0.500", ",", ".")
     assert is_number("1.500,5", ",", ".")
+
+
+def test_how_a_map_by_hand_reads_a_log_holds_without_its_kind(tmp_path):
+    """1,500 rpm is what a map says that it is."""
+    (tmp_path / "log.csv").write_text("t [s];n [rpm]\n" + "".join(f"{k};1,500\n" for k in range(50)))
+    for settings, value in (({}, 1.5), ({"decimal": ".", "thousands": ","}, 1500.0)):
+        made = LogMap({"motor_speed": Entry("n [rpm]", "rpm")}, ("t [s]",), log=settings)
+        assert open_with_map(tmp_path / "log.csv", made).columns[1].values[0] == value
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("pressure_a", "of a motor group: write GROUP.pressure_a"), ("main.motor_speed", "of no motor group")],
+)
+def test_a_channel_is_of_a_group_or_is_not(tmp_path, name, said):
+    (tmp_path / "log.csv").write_text("t [s],n [rpm]\n" + "".join(f"{k},5\n" for k in range(50)))
+    made = LogMap({name: Entry("n [rpm]", "rpm")}, ("t [s]",))
+    with pytest.raises(InputError, match=said):
+        import_log(tmp_path / "log.csv", made, None)
+
+
+def test_symbols_that_are_units_too_are_names_where_there_are_no_others(tmp_path):
+    (tmp_path / "log.csv").write_text("\n".join(["t;n;pa;d", *(f"{k};5;7;9" for k in range(50))]) + "\n")
+    assert [each.name for each in read_text_log(tmp_path / "log.csv").columns] == ["t", "n", "pa", "d"]
 
 
 def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path):

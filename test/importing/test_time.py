@@ -51,6 +51,16 @@ def test_a_cell_without_a_date_is_no_date(cells, zone):
         seconds(texts(*cells), TimeBase("datetime", order="ymd", zone=zone))
 
 
+def test_columns_that_cannot_be_joined_are_refused():
+    date = texts("2024-06-15", "2024-06-15")
+    with pytest.raises(InputError, match="holds plain numbers"):
+        to_seconds([date, numbers(1.0, 2.0)], TimeBase("datetime", order="ymd"), "log", str)
+    with pytest.raises(InputError, match="holds plain numbers"):
+        to_seconds([numbers(1.0, 2.0), numbers(3.0, 4.0)], TimeBase("seconds"), "log", str)
+    with pytest.raises(InputError, match="time.fraction is the unit of the last of several columns"):
+        seconds(numbers(1.0, 2.0), TimeBase("unix", fraction="ms"))
+
+
 def test_times_of_day_go_on_past_midnight():
     found = seconds(texts("23:59:58", "23:59:59", "00:00:00", "00:00:01"), TimeBase("clock"))
     assert np.diff(found) == pytest.approx([1.0, 1.0, 1.0])

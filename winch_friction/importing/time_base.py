@@ -152,10 +152,17 @@ def to_seconds(
     columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool = True
 ) -> FloatArray:
     """Seconds of every row; NaN where a cell is empty; raises `InputError` by row for a cell that is no time."""
+    if base.fraction and len(columns) < 2:
+        raise InputError(f"{where}: time.fraction is the unit of the last of several columns; time.from names one")
     if base.fraction:
         scale, _ = conversion_to_si(base.fraction, "s", where)
         *whole, beyond = columns
         return to_seconds(whole, replace(base, fraction=""), where, place, strict) + scale * beyond.values
+    if len(columns) > 1 and any(each.numeric for each in columns):
+        raise InputError(
+            f"{where}: time.from: a date and a time of day are joined where both are texts; column "
+            f"'{next(each.name for each in columns if each.numeric)}' holds plain numbers: name one column"
+        )
     if columns[0].numeric:
         seconds = _from_numbers(columns[0].values, base, where)
     else:

@@ -67,6 +67,17 @@ def test_runs_are_not_overwritten(short, tmp_path, capsys):
     assert run(["simulate", short, "--out", str(out), "--force"]) == 0
 
 
+def test_an_earlier_truth_is_not_overwritten(short, tmp_path, capsys):
+    """Its run was taken elsewhere, where it needs it still."""
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "truth" / "run_truth.csv").write_text("precious")
+    words = ["simulate", short, "--out", str(tmp_path / "run.csv"), "--truth"]
+    assert run(words) == 2
+    assert "run_truth.csv: exists already" in capsys.readouterr().err
+    assert (tmp_path / "truth" / "run_truth.csv").read_text() == "precious"
+    assert run([*words, "--force"]) == 0
+
+
 def test_a_bag_is_never_replaced_and_nobody_is_told_that_it_could_be(short, tmp_path, capsys):
     """--force was advised, worked for the length of the simulation, and was refused."""
     out = tmp_path / "run.mcap"

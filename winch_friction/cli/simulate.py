@@ -71,7 +71,7 @@ def command(
     with problems:
         plan = _plan(scenario, seed, out, kind)
         targets = [path for _, _, path in plan]
-        _refuse_overwriting(targets, force)
+        _refuse_overwriting([*targets, *(_truth_of(path) for path in targets if truth)], force)
         refuse_unwritable(*targets[:1])
     winch, friction = machine_of(crane or (plan[0][0].crane if plan else ""), model, [], problems)
     problems.say()
@@ -151,8 +151,7 @@ def _simulate_to(
     _refuse_runaway(scenario, result.truth["motor_speed"])
     write_run(result.run, path)
     if truth:
-        kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
-        write_run(result.truth, path.parent / TRUTH_FOLDER / f"{path.stem}_truth{kind}")
+        write_run(result.truth, _truth_of(path))
     time, speed = result.run.time, result.truth["motor_speed"]
     return {
         "run": str(path),
@@ -161,6 +160,12 @@ def _simulate_to(
         "largest speed [rpm]": float(max(abs(speed)) * 30.0 / 3.141592653589793),
         "position error [mm RMS]": float(1e3 * (result.truth["position_error"] ** 2).mean() ** 0.5),
     }
+
+
+def _truth_of(path: Path) -> Path:
+    """Where the truth of a run goes."""
+    kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
+    return path.parent / TRUTH_FOLDER / f"{path.stem}_truth{kind}"
 
 
 def _refuse_runaway(scenario: Any, speed: Any) -> None:

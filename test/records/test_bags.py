@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from run_strategies import make_run, runs, same
 
 from winch_friction.cli.live import bag_frames
+from winch_friction.importing.reading import read_log
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_file import open_bag
@@ -99,6 +100,27 @@ def test_what_of_a_bag_is_not_believed_is_said(tmp_path, crane_150t):
     write_bag(Run("y", per_cent), tmp_path / "y", topics)
     with pytest.raises(InputError, match="/winch/active/displacement': 50 of 50 messages are left out"):
         read_run(tmp_path / "y", crane_150t)
+
+
+def test_of_times_that_go_back_nothing_else_is_told(tmp_path):
+    with BagWriter(tmp_path / "x") as writer:
+        for k in range(100):
+            time = 0.02 * (k if k < 80 else k - 75)
+            writer.write("/winch/joint_states", speed_message(time, 1.0), 0.02 * k)
+            load = MESSAGES.make("std_msgs/msg/Float64", data=1e9 if k < 20 else 55e3)
+            writer.write("/winch/hook_load", load, 0.02 * k)
+    with pytest.raises(InputError, match="time goes back") as refused:
+        read_run(tmp_path / "x", complete=False)
+    assert len(refused.value.problems) == 1
+
+
+def test_stamps_that_stand_still_are_for_import(tmp_path):
+    with BagWriter(tmp_path / "x") as writer:
+        for k in range(100):
+            writer.write("/winch/joint_states", speed_message(0.0, float(k)), 1.7e9 + 0.02 * k)
+    with pytest.raises(InputError, match="is stamped 0 s: .* winch-friction import takes the times of receipt"):
+        read_run(tmp_path / "x", complete=False)
+    assert np.diff(read_log(tmp_path / "x").column("time").values) == pytest.approx(np.full(99, 0.02), abs=1e-6)
 
 
 def test_a_recorder_on_another_clock_does_not_matter(tmp_path):

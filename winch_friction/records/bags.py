@@ -1,6 +1,7 @@
 """A bag as a run: one row per speed message, every other input held as in the nodes."""
 
 import json
+import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from operator import attrgetter
@@ -20,6 +21,7 @@ from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"
 _LEFT_OUT = "messages are left out"
+_ALL_LEFT_OUT = re.compile(rf"\b(\d+) of \1 {_LEFT_OUT}")
 
 
 def read_bag(
@@ -44,6 +46,11 @@ def read_bag(
         warnings, speed = list(bag.warnings), bag.actual[bag.topics.speed_topic]
     if not len(columns["time"]):
         raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint")
+    if len(columns["time"]) > 1 and not np.ptp(columns["time"]):
+        raise InputError(
+            f"{path}: every message on '{speed}' is stamped {columns['time'][0]:g} s: its sender knows no time; "
+            "winch-friction import takes the times of receipt"
+        )
     place: Place = lambda row: f"sample {row + 1} of '{speed}'"
     try:
         return checked_run(
@@ -51,7 +58,7 @@ def read_bag(
             metadata=bag_metadata(path),
         )  # fmt: skip
     except InputError as refused:  # a column that is missing may be one of which nothing was believed
-        raise InputError(*refused.problems, *(each for each in warnings if _LEFT_OUT in each)) from None
+        raise InputError(*refused.problems, *filter(_ALL_LEFT_OUT.search, warnings)) from None
 
 
 def bag_samples(bag: Bag, hold: InputHold) -> Iterator[Sample]:

@@ -84,6 +84,16 @@ def test_a_good_run_is_plausible_with_a_page_and_json(tmp_path, capsys):
     assert "http://" not in page.replace("http://www.w3.org", "")
 
 
+def test_two_runs_of_one_name_are_refused(tmp_path, capsys):
+    """In check.json the second would stand for both."""
+    for folder in ("monday", "tuesday"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "log.parquet").write_bytes(TEST.read_bytes())
+    paths = [str(tmp_path / folder / "log.parquet") for folder in ("monday", "tuesday")]
+    assert run(["check", *paths, "--crane", "crane_150t"]) == 2
+    assert "log.parquet: two runs have this name" in capsys.readouterr().err
+
+
 def test_a_cell_of_1e30_is_named_with_its_place(tmp_path, capsys):
     read = read_run(TEST)
     pressure = read["main.pressure_a"].copy()

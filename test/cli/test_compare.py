@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from winch_friction.cli.main import run
+from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.model_curve import model_curve
+from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import read_run, write_run
 
 
 @pytest.mark.parametrize(("loads", "warned"), [("15,55,100", False), ("55,5000", True)])
@@ -47,3 +50,27 @@ def test_a_difference_is_more_than_the_models_do_not_know_from_two_sigma_on(caps
     more = found["rows"][0]["in sigmas"] > 2.0
     assert (", more than what they do not know" in found["said"]) is more
     assert (", within what they do not know" in found["said"]) is not more
+
+
+def test_a_run_without_a_row_that_holds_everything_is_refused(tmp_path, capsys):
+    read = read_run(config_directory() / "examples" / "practice_150t" / "test_02.parquet")
+    load, speed = read["hook_load"].copy(), read["motor_speed"].copy()
+    load[: len(load) // 2], speed[len(load) // 2 :] = np.nan, np.nan
+    write_run(Run("apart", {**read.columns, "hook_load": load, "motor_speed": speed}), tmp_path / "apart.csv")
+    words = ["compare", "a6vm215_crane1", "a6vm215_crane2", str(tmp_path / "apart.csv"), "--crane", "crane_150t"]
+    assert run(words) == 2
+    assert "apart.csv: no row has speed, load and pressures all at once" in capsys.readouterr().err
+
+
+def test_models_that_read_no_load_are_compared_on_runs_that_have_none(tmp_path, capsys):
+    time = np.arange(0.0, 10.0, 0.01)
+    speed = 20.0 * np.sin(time)
+    write_run(Run("el", {"time": time, "motor_speed": speed, "motor_torque": 200.0 * speed}), tmp_path / "el.csv")
+    text = (config_directory() / "models" / "emps_viscous.yaml").read_text()
+    (tmp_path / "half.yaml").write_text(text.replace("203.5", "101.75"))
+    half, whole = load_model(tmp_path / "half.yaml"), load_model("emps_viscous")
+    words = ["compare", "emps_viscous", str(tmp_path / "half.yaml"), str(tmp_path / "el.csv"), "--json"]
+    assert run(words) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    difference = (half.value("C5") - whole.value("C5")) * 20.0
+    assert abs(row["largest [N*m]"]) == pytest.approx(abs(difference), rel=1e-3)

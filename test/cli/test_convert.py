@@ -1,6 +1,7 @@
 """The verb convert, as a person calls them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -37,3 +38,12 @@ def test_convert_keeps_every_digit(runs, tmp_path, capsys):
 def test_a_measurement_that_is_not_there_is_said_so(tmp_path, capsys):
     assert main.run(["convert", "emps", str(tmp_path / "none.mat"), str(tmp_path / "e.csv")]) == 2
     assert capsys.readouterr().err == f"winch-friction: {tmp_path / 'none.mat'}: no such file\n"
+
+
+def test_what_a_bag_cannot_carry_is_said(runs, tmp_path, capsys):
+    run = read_run(runs / "one.csv")
+    more = {**run.columns, "active.pressure_drop_simulated": np.ones(len(run))}
+    source = write_run(replace(run, columns=more, aside={"note": np.arange(len(run))}), tmp_path / "more.parquet")
+    assert main.run(["convert", "run", str(source), str(tmp_path / "a.csv"), str(tmp_path / "b.mcap")]) == 0
+    (said,) = [line for line in capsys.readouterr().err.splitlines() if "no topic" in line]
+    assert said.endswith("b.mcap: a bag has no topic for active.pressure_drop_simulated, note: left out")

@@ -151,3 +151,26 @@ def test_without_the_sdk_one_line_says_what_to_install(bag, monkeypatch):
     monkeypatch.setitem(sys.modules, "foxglove", None)
     with pytest.raises(InputError, match=r"pip install 'winch_friction\[foxglove\]'"):
         written(bag, Path("x.mcap"))
+
+
+def test_a_topic_of_a_type_that_nobody_knows_is_read_past_and_said(tmp_path, capsys):
+    """A crane's own message type kept the whole bag from being shown."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg("float64 grease", "crane_msgs/msg/Grease"))
+    joint = MESSAGES.store.types[JOINT_STATE]
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        speed = writer.add_connection("/winch/joint_states", joint.__msgtype__, typestore=store)
+        own = writer.add_connection("/crane/grease", "crane_msgs/msg/Grease", typestore=store)
+        for k in range(50):
+            message = joint_state(MESSAGES, stamp_header(0.02 * k, MESSAGES), "winch_motor", velocity=10.0)
+            writer.write(speed, 20_000_000 * k, MESSAGES.store.serialize_cdr(message, JOINT_STATE))
+            grease = store.types["crane_msgs/msg/Grease"](grease=1.0)
+            writer.write(own, 20_000_000 * k, store.serialize_cdr(grease, "crane_msgs/msg/Grease"))
+        writer.write(speed, 10**9, b"\0\1\0\0\7")  # broken
+    assert written(tmp_path / "bag", tmp_path / "out.mcap") == 51
+    assert "topic '/crane/grease': crane_msgs/msg/Grease" in capsys.readouterr().err
+    with serving(tmp_path / "bag", "", 0.0, 0) as address:
+        assert address.startswith("ws://")

@@ -5,10 +5,15 @@ import re
 import shutil
 
 import pytest
+import yaml
 
+from winch_friction.cli.console import refuse_foreign
+from winch_friction.cli.identify import PRACTICE
 from winch_friction.cli.main import run
+from winch_friction.identification.practice import read_practice
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import read_run, write_run
 
 EXAMPLE = config_directory() / "examples" / "practice_150t"
 QUICK = ["--restarts", "1", "--evaluations", "300"]
@@ -37,6 +42,7 @@ def test_practice_writes_report_and_seeds(practice):
     assert len(seed.provenance["data_sha256"]) == 15
     assert said["seed"]["parameters"]["K2"]["value"] == pytest.approx(seed.value("K2"))
     assert load_model(out / "motor.yaml").covariance is not None
+    refuse_foreign(out, ("motor.yaml",), "report.html", PRACTICE)  # a second call may replace them
 
 
 def test_the_seed_holds_the_truth(practice):
@@ -81,13 +87,16 @@ def folder(tmp_path):
     return shutil.copytree(EXAMPLE, tmp_path / "example")
 
 
+GOOD = f"<title>{PRACTICE}good</title>"  # what an earlier call has left
+
+
 @pytest.fixture
 def good(tmp_path):
     """An output folder with good results."""
     out = tmp_path / "out"
     out.mkdir()
     for name in ("seed.yaml", "motor.yaml", "report.html"):
-        (out / name).write_text("good")
+        (out / name).write_text(GOOD)
     return out
 
 
@@ -134,7 +143,15 @@ def nan_in_a_log(folder):
     write_run(replace(run_, columns={**run_.columns, "main.pressure_a": pressure}), folder / "test_02.parquet")
 
 
+def a_copy_held_out(folder):
+    content = yaml.safe_load((folder / "practice.yaml").read_text())
+    shutil.copy(folder / content["tests"][0], folder / "copy.parquet")
+    content["held_out_tests"] = ["copy.parquet"]
+    (folder / "practice.yaml").write_text(yaml.safe_dump(content))
+
+
 BROKEN = {
+    a_copy_held_out: r"copy.parquet hold the same samples: a copy proves nothing",
     remove_test: r"test_05.parquet: no such file",
     efficiency_above_one: r"supplier.csv row 41: column 'efficiency' = 101.5 is above 1",
     no_table: r"supplier.csv: cannot be read",
@@ -151,7 +168,16 @@ def test_a_broken_folder_is_one_line_and_good_results_stay(damage, folder, good,
     said = capsys.readouterr().err.strip().splitlines()
     assert len([line for line in said if line.startswith("winch-friction:")]) == 1
     assert re.search(BROKEN[damage], said[-1]), said
-    assert {path.read_text() for path in good.iterdir()} == {"good"}
+    assert {path.read_text() for path in good.iterdir()} == {GOOD}
+
+
+def test_a_test_may_be_a_bag(folder):
+    bag = write_run(read_run(folder / "test_01.parquet"), folder / "test_01")
+    text = (folder / "practice.yaml").read_text()
+    (folder / "practice.yaml").write_text(text.replace("test_01.parquet", bag.name))
+    read = read_practice(folder)
+    assert read.tests[0].name == "test_01"
+    assert "test_02.parquet" in read.hashes
 
 
 def test_a_folder_without_practice_file(tmp_path, capsys):

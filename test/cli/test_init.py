@@ -52,6 +52,18 @@ def test_what_is_written_is_read(own):
         assert problems(yaml.safe_load((own / f"{name}.yaml").read_text()), schemas[kind]) == []
 
 
+@pytest.mark.parametrize("name", ["12", "yes", "Nord: 7", "Kran # 7", "[7]"])
+def test_any_name_is_read_back_as_it_was_given(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "crane", "--name", name, *CRANE[2:], "--out", "crane.yaml"]) == 0
+    of = ["--crane", "crane.yaml", "--name", name]
+    for kind in ("plant", "model", "scenario", "map"):
+        assert run(["init", kind, *of[: 2 if kind == "map" else 4], "--out", f"{kind}.yaml"]) == 0
+    crane, plant, model = load_crane("crane.yaml"), load_plant("plant.yaml"), load_model("model.yaml")
+    assert {crane.name, plant.name, plant.crane, model.name, model.crane} == {name}
+    assert load_map(tmp_path / "map.yaml").crane == load_scenario("scenario.yaml").crane == name
+
+
 def test_an_own_crane_is_simulated_and_checked(own, capsys):
     machine = ["--crane", "crane_50t.yaml", "--model", "seed_crane_50t.yaml"]
     for scenario in ("ahc_crane_50t.yaml", "normal_crane_50t.yaml"):
@@ -110,6 +122,14 @@ def test_shipped_files_fit_their_schema(folder):
     schema = all_schemas()[KINDS[folder]]
     for path in sorted((config_directory() / folder).glob("*.yaml")):
         assert problems(yaml.safe_load(path.read_text()), schema) == [], path
+
+
+def test_the_schema_refuses_a_motor_groups_name_that_the_reader_refuses():
+    content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
+    content["groups"] = {"active 1": 3, "passive": 8}
+    assert problems(content, all_schemas()["crane"]) == [
+        "groups: 'active 1' is not a name of a motor group: letters, digits and _, a letter first"
+    ]
 
 
 def test_published_schemas_are_the_readers(tmp_path):

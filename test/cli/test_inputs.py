@@ -7,9 +7,9 @@ from winch_friction.physics.errors import InputError
 
 
 def test_a_folders_runs_are_neither_truth_nor_hidden_files_nor_anything_else(tmp_path):
-    for name in ("b.csv", "a.parquet", "a_truth.csv", ".c.csv", "notes.txt"):
+    for name in ("b.csv", "a.parquet", "a_truth.csv", ".c.csv", "notes.txt", "z.CSV"):
         (tmp_path / name).touch()
-    assert [each.name for each in run_paths([tmp_path])] == ["a.parquet", "b.csv"]
+    assert [each.name for each in run_paths([tmp_path])] == ["a.parquet", "b.csv", "z.CSV"]
 
 
 def test_a_folder_with_metadata_is_one_bag_and_a_file_is_taken_as_it_is_named(tmp_path):

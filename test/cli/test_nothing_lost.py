@@ -86,6 +86,12 @@ def test_an_earlier_result_is_replaced_when_told_so_and_a_bag_never(here, capsys
     assert "bag is never replaced" in capsys.readouterr().err
 
 
+def test_a_kind_that_cannot_be_written_is_said_before_the_others_are(here, capsys):
+    assert run(["convert", "run", "run.csv", "new.parquet", "new.xlsx"]) == 2
+    assert "new.xlsx: cannot write this kind of file" in capsys.readouterr().err
+    assert not (here / "new.parquet").exists()
+
+
 def test_copies_of_a_run_prove_nothing(here, capsys):
     """A copy among the locked runs would prove the model on what it was fitted to."""
     for name in ("a", "b", "c"):

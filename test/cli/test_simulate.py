@@ -47,6 +47,7 @@ def test_hidden_effects_and_truth(short, tmp_path):
         (["{short}", "--format", "xlsx"], "not a kind of run file"),
         (["{short}", "--crane", "emps"], "electric"),
         ([], "which scenario?"),
+        (["{short}", "--out", "run.xlsx"], "cannot write this kind of file"),
     ],
 )
 def test_bad_input_is_one_line(arguments, message, short, tmp_path, capsys):
@@ -64,6 +65,28 @@ def test_runs_are_not_overwritten(short, tmp_path, capsys):
     assert run(["simulate", short, "--out", str(out)]) == 2
     assert out.read_text() == "precious"
     assert run(["simulate", short, "--out", str(out), "--force"]) == 0
+
+
+def test_an_earlier_truth_is_not_overwritten(short, tmp_path, capsys):
+    """Its run was taken elsewhere, where it needs it still."""
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "truth" / "run_truth.csv").write_text("precious")
+    words = ["simulate", short, "--out", str(tmp_path / "run.csv"), "--truth"]
+    assert run(words) == 2
+    assert "run_truth.csv: exists already" in capsys.readouterr().err
+    assert (tmp_path / "truth" / "run_truth.csv").read_text() == "precious"
+    assert run([*words, "--force"]) == 0
+
+
+def test_a_bag_is_never_replaced_and_nobody_is_told_that_it_could_be(short, tmp_path, capsys):
+    """--force was advised, worked for the length of the simulation, and was refused."""
+    out = tmp_path / "run.mcap"
+    out.write_text("precious")
+    for force in ([], ["--force"]):
+        assert run(["simulate", short, "--out", str(out), *force]) == 2
+        said = capsys.readouterr().err
+        assert "a bag is never replaced" in said
+        assert "--force" not in said
 
 
 def test_effects_are_listed(capsys):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning.kinematics import LATE, MOST, agreements
+from winch_friction.commissioning.mistakes import delayed
 
 TIME = np.arange(300) * 0.2
 SPEED = 100.0 * np.sin(0.8 * TIME) + 40.0 * np.sin(2.1 * TIME + 1.0)
@@ -42,3 +43,10 @@ def test_a_channel_that_does_not_follow_is_left_out_unless_it_must():
     noise = np.random.default_rng(0).standard_normal(300)
     assert score("heave_velocity", noise) is None
     assert score("heave_velocity", noise, ("heave_velocity",))[1] == MOST
+
+
+@pytest.mark.parametrize(("seconds", "said"), [(0.3, "motor_speed is late"), (-0.3, "the drive's torque is late")])
+def test_a_drive_without_oil_has_no_pressures_that_are_late(seconds, said):
+    assert delayed(seconds, hydraulic=False).words.startswith(said)
+    assert "pressures" not in delayed(seconds, hydraulic=False).words
+    assert "pressures" in delayed(seconds).words

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import long_enough, of_prepared
+from winch_friction.discrepancy.adequacy import Check, long_enough, of_prepared
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import Run
 
@@ -35,6 +35,15 @@ def test_each_direction_is_counted_by_itself_and_of_the_training_runs_alone():
     assert found["moving time"].value == pytest.approx(21.0)
     assert found["moving time of the locked runs"].value == pytest.approx(36.0)
     assert found["reversals"].value == 1.0
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(19.96, "19.96"), (19.99996, "19.99996"), (20.0, "20"), (20.04, "20"), (3.14159, "3.14")]
+)
+def test_what_falls_short_is_not_rounded_to_what_is_needed(value, shown):
+    assert Check("records that can be used", value, 20.0, "s", value >= 20.0).sentence.endswith(
+        f"used: {shown} s, needed 20 s"
+    )
 
 
 @pytest.mark.parametrize(("rate", "kept"), [(0.5, False), (0.9, False), (0.99, True), (4.0, True)])

@@ -101,14 +101,17 @@ def test_the_verb_takes_an_fmu_and_writes_what_to_add(fmu, tmp_path, capsys):
     [
         ("winch_friction.fmu/9", "is not"),
         ("no_such_variable: {column: motor_speed}", "no variable no_such_variable"),
+        ("parameters: {gain: much}", "parameters: gain must be a finite number"),
+        ("parameters: [gain]", "parameters: expected a mapping"),
     ],
 )
 def test_a_wrong_map_is_said(fmu, tmp_path, change, said):
-    text = (
-        MAP.replace("winch_friction.fmu/1", change)
-        if "/9" in change
-        else MAP.replace("inputs:", f"inputs:\n  {change}")
-    )
+    if "/9" in change:
+        text = MAP.replace("winch_friction.fmu/1", change)
+    elif change.startswith("parameters"):
+        text = f"{MAP}\n{change}\n"
+    else:
+        text = MAP.replace("inputs:", f"inputs:\n  {change}")
     path = tmp_path / "map.yaml"
     path.write_text(text)
     with pytest.raises(InputError, match=said):

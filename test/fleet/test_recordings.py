@@ -1,5 +1,7 @@
 """Which recordings a fleet has, when an earlier result still stands, and which names cannot."""
 
+import os
+
 import pytest
 
 from winch_friction.fleet.recordings import find_recordings
@@ -21,6 +23,10 @@ def test_a_folder_is_a_crane_and_each_run_file_or_bag_a_recording(tmp_path):
     assert found[2].size == 20
 
 
+def test_a_logger_under_windows_writes_capitals(tmp_path):
+    assert [each.name for each in find_recordings([str(touched(tmp_path, "north/A.CSV"))])] == ["A"]
+
+
 def test_two_recordings_of_one_crane_and_name_are_refused(tmp_path):
     touched(tmp_path, "east/north/a.csv", "west/north/a.csv")
     with pytest.raises(InputError, match="two recordings are named 'north/a'"):
@@ -37,3 +43,16 @@ def test_a_recording_that_has_grown_is_another_version(tmp_path):
     after = find_recordings([str(touched(tmp_path, "north/a.csv", size=11))])[0]
     assert (before.crane, before.name, before.address) == (after.crane, after.name, after.address)
     assert before.version != after.version
+
+
+def test_a_recording_that_was_made_anew_is_another_version_though_it_has_the_same_size(tmp_path):
+    """As by `import --set motor_speed.sign=-1 --overwrite`."""
+    before = find_recordings([str(touched(tmp_path, "north/a.csv"))])[0]
+    os.utime(tmp_path / "north" / "a.csv", ns=(1, before.changed + 1))
+    assert find_recordings([str(tmp_path)])[0].version != before.version
+
+
+def test_a_simulators_truth_and_a_fleets_own_results_are_no_recordings(tmp_path):
+    touched(tmp_path, "north/a.csv", "north/truth/a_truth.csv", "out/replay/north/a.parquet", "out/store/part.parquet")
+    found = find_recordings([str(tmp_path)], without=[tmp_path / "out" / "replay", tmp_path / "out" / "store"])
+    assert [(each.crane, each.name) for each in found] == [("north", "a")]

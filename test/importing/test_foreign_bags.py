@@ -6,6 +6,9 @@ from importing.logs import example, same
 
 from winch_friction.importing.carry_out import import_log
 from winch_friction.importing.propose import propose
+from winch_friction.importing.reading import read_log
+from winch_friction.records.bag_write import MESSAGES, BagWriter
+from winch_friction.records.topics import FLUID_PRESSURE, joint_state, stamp_header
 
 
 def write_foreign_bag(path, run):
@@ -45,3 +48,19 @@ def test_a_foreign_recording_is_proposed_and_imported(tmp_path, crane_150t):
     back = import_log(tmp_path / "bag", found.log_map, crane_150t)
     assert len(back) == len(run)
     assert same(back, run, ["motor_speed", "main.pressure_a", "main.pressure_b", "main.displacement", "hook_load"])
+
+
+def test_a_sensor_that_falls_silent_is_said(tmp_path):
+    """Its last value is held to the end of the log."""
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(500):
+            header = stamp_header(100.0 + 0.02 * k, MESSAGES)
+            speed = joint_state(MESSAGES, header, "drum", velocity=1.0 + k)
+            bag.write("/plc/speed", speed, 100.0 + 0.02 * k)
+            for name, lasts in (("a", 200), ("b", 500)):
+                if k % 2 == 0 and k < lasts:
+                    made = MESSAGES.make(FLUID_PRESSURE, header=header, fluid_pressure=2e7 + k, variance=0.0)
+                    bag.write(f"/plc/{name}", made, 100.0 + 0.02 * k)
+    (said,) = [each for each in read_log(tmp_path / "bag").notes if "say nothing for long" in each]
+    assert "/plc/a:fluid_pressure for 6.02 s, 3.96 s after its first value" in said
+    assert "/plc/b" not in said

@@ -2,11 +2,18 @@
 
 import numpy as np
 import pytest
+from importing.logs import write_workbook
 
 from campaign.import_habits import became, kinds
 from winch_friction.commissioning.check import quick_check
+from winch_friction.importing.carry_out import import_log, open_with_map
+from winch_friction.importing.cells import is_number
+from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.text_log import read_text_log
 from winch_friction.importing.units import header_readings
+from winch_friction.importing.workbook_log import read_workbook_log
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 MENDED = (
@@ -45,6 +52,77 @@ MENDED = (
 def test_a_habit_is_imported_or_its_cause_is_said(kind, tmp_path):
     result = became(kind, tmp_path)
     assert result.good, f"{result.outcome}: {result.said}"
+
+
+def semicolons(path, speeds):
+    """A log in German: a semicolon between the cells, a comma before the decimals."""
+    rows = [f"{k // 10},{k % 10};{speed};150,5" for k, speed in enumerate(speeds)]
+    path.write_text("\n".join(["Zeit [s];Drehzahl [U/min];Druck A [bar]", *rows]) + "\n")
+    return read_text_log(path).columns[1]
+
+
+def test_thousands_at_the_begin_of_a_log_are_thousands(tmp_path):
+    """The decimal mark was looked for at the end alone, where the winch stands."""
+    column = semicolons(tmp_path / "log.csv", ["1.500"] * 50 + ["500"] * 600)
+    assert column.values[:50].tolist() == [1500.0] * 50
+
+
+@pytest.mark.parametrize("cell", ["1.500", "1_000"])
+def test_what_only_python_takes_for_a_number_is_named_by_its_cell(tmp_path, cell):
+    column = semicolons(tmp_path / "log.csv", ["500"] * 400 + [cell] + ["500"] * 400)
+    assert column.bad == ((400, cell),)
+    assert np.isnan(column.values[400])
+
+
+def test_a_small_number_with_a_point_has_no_thousands():
+    assert not is_number("0.500", ",", ".")
+    assert is_number("1.500,5", ",", ".")
+
+
+def test_how_a_map_by_hand_reads_a_log_holds_without_its_kind(tmp_path):
+    """1,500 rpm is what a map says that it is."""
+    (tmp_path / "log.csv").write_text("t [s];n [rpm]\n" + "".join(f"{k};1,500\n" for k in range(50)))
+    for settings, value in (({}, 1.5), ({"decimal": ".", "thousands": ","}, 1500.0)):
+        made = LogMap({"motor_speed": Entry("n [rpm]", "rpm")}, ("t [s]",), log=settings)
+        assert open_with_map(tmp_path / "log.csv", made).columns[1].values[0] == value
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("pressure_a", "of a motor group: write GROUP.pressure_a"), ("main.motor_speed", "of no motor group")],
+)
+def test_a_channel_is_of_a_group_or_is_not(tmp_path, name, said):
+    (tmp_path / "log.csv").write_text("t [s],n [rpm]\n" + "".join(f"{k},5\n" for k in range(50)))
+    made = LogMap({name: Entry("n [rpm]", "rpm")}, ("t [s]",))
+    with pytest.raises(InputError, match=said):
+        import_log(tmp_path / "log.csv", made, None)
+
+
+def test_symbols_that_are_units_too_are_names_where_there_are_no_others(tmp_path):
+    (tmp_path / "log.csv").write_text("\n".join(["t;n;pa;d", *(f"{k};5;7;9" for k in range(50))]) + "\n")
+    assert [each.name for each in read_text_log(tmp_path / "log.csv").columns] == ["t", "n", "pa", "d"]
+
+
+def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path):
+    """The map was made of a log without one."""
+    (tmp_path / "two.csv").write_bytes(b"\xef\xbb\xbft [s],n [rpm]\n" + b"".join(b"%d,5\n" % k for k in range(50)))
+    assert read_text_log(tmp_path / "two.csv", {"encoding": "utf-8"}).columns[0].name == "t [s]"
+
+
+def test_rows_below_a_longer_preamble_are_found_by_the_same_map(tmp_path):
+    rows = ["t [s],n [rpm]", *(f"{k},5" for k in range(50))]
+    for name, preamble in (("one.csv", []), ("two.csv", ["crane 7", "logged by Kim"])):
+        (tmp_path / name).write_text("\n".join([*preamble, *rows]) + "\n")
+    settings = read_text_log(tmp_path / "one.csv").settings
+    made = LogMap({"motor_speed": Entry("n [rpm]", "rpm")}, ("t [s]",), log=settings)
+    assert len(open_with_map(tmp_path / "two.csv", made)) == 50
+
+
+def test_a_map_by_hand_need_not_name_every_row_of_a_spreadsheet(tmp_path):
+    pytest.importorskip("openpyxl")
+    path = write_workbook(tmp_path / "log.xlsx", [["t [s]", "n [rpm]"], *([k, 5] for k in range(50))])
+    log = read_workbook_log(path, {"kind": "workbook", "names_row": 1, "first_row": 2})
+    assert [each.name for each in log.columns] == ["t [s]", "n [rpm]"]
 
 
 @pytest.mark.parametrize(

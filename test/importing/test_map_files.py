@@ -34,6 +34,8 @@ WRONG = [
     "schema: winch_friction.map/1\ncolumns: {}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\ntime: {form: sundial}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\nbad_cells: ignore",
+    "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\nlog: {delimiter: ';;'}",
+    "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\nlog: {decimal: ''}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\ncolour: red",
 ]
 
@@ -63,6 +65,14 @@ def test_the_reader_and_the_schema_refuse_alike(text):
 def test_the_published_schema_is_the_codes(tmp_path):
     published = Path(__file__).parents[2] / "docs" / "schemas" / "map.schema.json"
     assert json.loads(published.read_text(encoding="utf-8")) == map_schema()
+
+
+def test_a_switch_is_set_from_the_command_line():
+    """`true` came as a word, and was no."""
+    assert not with_settings(MAP, ["time.spread=false"]).time.spread
+    assert with_settings(with_settings(MAP, ["time.spread=false"]), ["time.spread=true"]).time.spread
+    with pytest.raises(InputError, match="spread must be true or false"):
+        with_settings(MAP, ["time.spread=maybe"])
 
 
 def test_settings_change_a_map_and_answer_its_questions():

@@ -8,6 +8,7 @@ from winch_friction.importing.log import LogColumn
 from winch_friction.importing.ticks import spread_ticks
 from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
 from winch_friction.importing.time_text import clock_seconds, time_parts, zone_seconds
+from winch_friction.physics.errors import InputError
 
 NOON_2024 = 1_718_452_800.0  # 15 June 2024, 12:00 UTC
 
@@ -41,6 +42,23 @@ def test_a_zone_east_of_greenwich_is_ahead(zone, hours):
         base = TimeBase("datetime", order="ymd")
         found = seconds(texts(f"2024-06-15 12:00:00{zone}", f"2024-06-15 12:00:01{zone}"), base)
         assert found == pytest.approx([NOON_2024 - 3600.0 * hours, NOON_2024 - 3600.0 * hours + 1.0])
+
+
+@pytest.mark.parametrize("zone", ["UTC", "Europe/Oslo"])
+@pytest.mark.parametrize("cells", [("12:00:00", "12:00:01"), ("abc", "abd")])
+def test_a_cell_without_a_date_is_no_date(cells, zone):
+    with pytest.raises(InputError, match=f"'{cells[0]}' is no time of the form 'datetime'"):
+        seconds(texts(*cells), TimeBase("datetime", order="ymd", zone=zone))
+
+
+def test_columns_that_cannot_be_joined_are_refused():
+    date = texts("2024-06-15", "2024-06-15")
+    with pytest.raises(InputError, match="holds plain numbers"):
+        to_seconds([date, numbers(1.0, 2.0)], TimeBase("datetime", order="ymd"), "log", str)
+    with pytest.raises(InputError, match="holds plain numbers"):
+        to_seconds([numbers(1.0, 2.0), numbers(3.0, 4.0)], TimeBase("seconds"), "log", str)
+    with pytest.raises(InputError, match="time.fraction is the unit of the last of several columns"):
+        seconds(numbers(1.0, 2.0), TimeBase("unix", fraction="ms"))
 
 
 def test_times_of_day_go_on_past_midnight():

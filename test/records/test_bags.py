@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from run_strategies import make_run, runs, same
 
 from winch_friction.cli.live import bag_frames
+from winch_friction.importing.reading import read_log
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_file import open_bag
@@ -88,6 +89,40 @@ def test_a_lost_channel_becomes_nan_after_its_age_and_is_said(tmp_path):
     assert any("active.pressure_b" in each and "/winch/joint_states" in each for each in back.warnings)
 
 
+def test_what_of_a_bag_is_not_believed_is_said(tmp_path, crane_150t):
+    """A load in g passes no sensor's range; a displacement in per cent was told as a column that is not there."""
+    run = make_run(rows=50)
+    heavy = {**run.columns, "hook_load": np.where(np.arange(50) < 20, 1e9, run["hook_load"])}
+    back = read_run(write_run(Run("x", heavy), tmp_path / "x"))
+    assert any("topic '/winch/hook_load': 20 of 50 messages are left out" in each for each in back.warnings)
+    topics = crane_topics(crane_150t, run.groups)
+    per_cent = {**run.columns, "active.displacement": np.full(50, 80.0 * crane_150t.max_displacement)}
+    write_bag(Run("y", per_cent), tmp_path / "y", topics)
+    with pytest.raises(InputError, match="/winch/active/displacement': 50 of 50 messages are left out"):
+        read_run(tmp_path / "y", crane_150t)
+
+
+def test_of_times_that_go_back_nothing_else_is_told(tmp_path):
+    with BagWriter(tmp_path / "x") as writer:
+        for k in range(100):
+            time = 0.02 * (k if k < 80 else k - 75)
+            writer.write("/winch/joint_states", speed_message(time, 1.0), 0.02 * k)
+            load = MESSAGES.make("std_msgs/msg/Float64", data=1e9 if k < 20 else 55e3)
+            writer.write("/winch/hook_load", load, 0.02 * k)
+    with pytest.raises(InputError, match="time goes back") as refused:
+        read_run(tmp_path / "x", complete=False)
+    assert len(refused.value.problems) == 1
+
+
+def test_stamps_that_stand_still_are_for_import(tmp_path):
+    with BagWriter(tmp_path / "x") as writer:
+        for k in range(100):
+            writer.write("/winch/joint_states", speed_message(0.0, float(k)), 1.7e9 + 0.02 * k)
+    with pytest.raises(InputError, match="is stamped 0 s: .* winch-friction import takes the times of receipt"):
+        read_run(tmp_path / "x", complete=False)
+    assert np.diff(read_log(tmp_path / "x").column("time").values) == pytest.approx(np.full(99, 0.02), abs=1e-6)
+
+
 def test_a_recorder_on_another_clock_does_not_matter(tmp_path):
     run, topics = make_run(rows=30), TopicMap(groups=("active",), displacement_unit="m3_per_rad")
     with BagWriter(tmp_path / "x") as writer:
@@ -125,6 +160,10 @@ def test_broken_messages_are_counted_not_fatal(tmp_path):
     run = read_run(tmp_path / "x", complete=False)
     assert len(run) == 60
     assert any("3 messages cannot be read" in each for each in run.warnings)
+    shown = []
+    with pytest.raises(InputError, match="3 messages cannot be read"):
+        shown.extend(bag_frames(tmp_path / "x", "", 0.0))  # a list keeps what came before an error
+    assert sum(len(frame["points"].get("speed", [])) for frame in shown) > 10
 
 
 def damaged_in_the_middle(path):
@@ -188,6 +227,9 @@ def test_nothing_is_overwritten_and_a_failed_write_leaves_nothing(tmp_path):
         raise RuntimeError
     with pytest.raises(InputError, match="before 0"):
         write_run(make_run(rows=5, start=-1.0), tmp_path / "z")
+    for start in (1.7e12, 6.4e10):  # ms since 1970 that are called s; days of MATLAB in s
+        with pytest.raises(InputError, match="a bag holds times from 0 to"):
+            write_run(make_run(rows=5, start=start), tmp_path / "z")
     assert [each.name for each in tmp_path.iterdir()] == ["x"]
 
 

@@ -69,6 +69,14 @@ def test_convert_takes_the_parameter_file(run: Run, params: Path, tmp_path: Path
     assert main.run(arguments) == 2  # without it there is no such joint
 
 
+def test_conventions_in_the_estimators_section_hold_too(params: Path, tmp_path: Path):
+    both, one = tmp_path / "both.yaml", {"ros__parameters": {**CONVENTIONS, "pressure_reference": "gauge"}}
+    both.write_text(yaml.safe_dump({"/winch/estimator": {"ros__parameters": CONVENTIONS}}))
+    assert bag_options_of(both) == bag_options_of(params)
+    both.write_text(yaml.safe_dump({"estimator": {"ros__parameters": CONVENTIONS}, "compensator": one}))
+    assert bag_options_of(both)["pressure_reference"] == "gauge"
+
+
 def test_the_drum_by_its_own_name(run: Run, tmp_path: Path):
     mapping = _live(speed_joint="drum", drum_joint="drum")
     bag = write_bag(run, tmp_path / "bag", mapping.topics(CRANE))

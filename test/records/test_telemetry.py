@@ -27,6 +27,15 @@ def test_points_are_spaced_and_in_the_units_that_people_read():
     assert telemetry.frame()["points"] == {}
 
 
+def test_a_plain_number_of_a_bridge_is_dated_by_its_receipt():
+    telemetry = Telemetry()
+    telemetry.take("winch/joint_states", Message(data=104.7198), 7.0)
+    telemetry.take("winch/reference", Message(data=-104.7198), 7.0)
+    points = telemetry.frame()["points"]
+    assert points["speed"] == [[7.0, pytest.approx(1000.0, rel=1e-4)]]
+    assert points["reference"] == [[7.0, pytest.approx(-1000.0, rel=1e-4)]]
+
+
 def test_the_truth_carries_friction_and_tracking_error():
     telemetry = Telemetry()
     message = joint(1.0, name=["winch_motor", "load"], position=[0.0, 0.004], velocity=[0.0, 0.0], effort=[350.0, 1.0])

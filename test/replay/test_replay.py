@@ -1,6 +1,7 @@
 """Replay: over a run, over its bag and live, the same samples give the same outputs."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -100,6 +101,41 @@ def test_the_replay_of_a_live_recording_equals_it(tmp_path, heard, crane_150t, c
     assert live.equal
 
 
+def test_another_winch_in_the_bag_neither_teaches_nor_is_compared(tmp_path, heard, crane_150t, crane2_model):
+    """Two winches on one deck: the other one's models and torques are its own."""
+    topics, hold = crane_topics(crane_150t, heard.groups), InputHold(heard.groups)
+    other = replace(crane2_model, values=tuple(1.2 * value for value in crane2_model.values))
+    with BagWriter(tmp_path / "deck") as bag:
+        said = MESSAGES.make("std_msgs/msg/String", data=model_to_text(other))
+        bag.write("/starboard/friction_model", said, 0.0)
+        for sample in hold.samples(heard):
+            for winch in ("port", "starboard"):
+                for topic, message in topics.encode(sample, MESSAGES):
+                    bag.write(f"/{winch}/{topic}", message, sample.time)
+            answer = joint_state(MESSAGES, stamp_header(sample.time, MESSAGES), "winch_motor", effort=0.0)
+            bag.write("/starboard/compensator/friction_torque", answer, sample.time + 0.004)
+    given = (crane_150t, crane2_model, SETTINGS)
+    port = replay_recording(tmp_path / "deck", *given, learn=False, namespace="port")
+    starboard = replay_recording(tmp_path / "deck", *given, learn=False, namespace="starboard")
+    alone = replay_compensator(heard, FeedforwardCompensator(crane_150t, crane2_model, SETTINGS.phases[0].config))
+    np.testing.assert_allclose(port.compensator["friction_torque"], alone["friction_torque"], rtol=1e-9, atol=1e-9)
+    assert port.live == ()
+    assert [each.node for each in starboard.live] == ["compensator"]
+    assert np.abs(starboard.compensator["friction_torque"] - alone["friction_torque"]).max() > 10.0
+
+
+def test_a_text_that_is_no_model_is_refused_as_by_the_node(tmp_path, heard, crane_150t, crane2_model):
+    topics, hold = crane_topics(crane_150t, heard.groups), InputHold(heard.groups)
+    with BagWriter(tmp_path / "bag") as bag:
+        bag.write("/friction_model", MESSAGES.make("std_msgs/msg/String", data="hello"), 0.0)
+        for sample in hold.samples(heard):
+            for topic, message in topics.encode(sample, MESSAGES):
+                bag.write(f"/{topic}", message, sample.time)
+    replayed = replay_recording(tmp_path / "bag", crane_150t, crane2_model, SETTINGS)
+    assert [said for said in replayed.warnings if "model refused: /friction_model" in said]
+    assert np.abs(replayed.compensator["friction_torque"]).max() > 100.0
+
+
 def test_other_settings_are_seen_to_differ(tmp_path, heard, crane_150t, crane2_model):
     path = live_recording(tmp_path / "live", heard, crane_150t, crane2_model, SETTINGS)
     other = ReplaySettings(phases=(Phase(config=CompensatorConfig(ramp_time=0.2, lead=0.001)),))
@@ -140,6 +176,16 @@ def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
         remap={"winch/joint_states": "/compensator/friction_torque"},
     )
     np.testing.assert_array_equal(written["motor_torque"], replayed.compensator["friction_torque"])
+
+
+def test_a_run_from_before_its_zero_makes_a_table_and_no_bag(tmp_path, run, capsys):
+    early = replace(run, columns={**run.columns, "time": run.time - run.time[0] - 5.0})
+    source = str(write_run(early, tmp_path / "early.parquet"))
+    words = ["replay", source, "--crane", "crane_150t", "--model", "a6vm215_crane2", "--out"]
+    assert main.run([*words, str(tmp_path / "bag")]) == 2
+    assert "a bag holds times from 0 to" in capsys.readouterr().err
+    assert main.run([*words, str(tmp_path / "table.csv")]) == 0
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["early.parquet", "table.csv"]
 
 
 def test_the_verb(tmp_path, bag, capsys):
@@ -221,25 +267,3 @@ def test_a_log_too_slow_to_be_replayed_is_said_by_its_step(tmp_path, run, capsys
     said = capsys.readouterr().err.splitlines()[-1]
     assert "slow.csv: column 'time': a sample every 20 s is too slow for a replay, which takes one every 4 s" in said
     assert "max_age" not in said
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "compensater:\n  ros__parameters: {scale: 0.3}\n",
-        "winch: {compensator: {ros__parameters: {scale: 0.3}}}\n",
-        "schema: winch_friction.scenario/1\nname: x\n",
-    ],
-)
-def test_a_parameter_file_that_would_set_nothing_is_refused(tmp_path, text):
-    params = tmp_path / "params.yaml"
-    params.write_text(text)
-    with pytest.raises(InputError, match=r"params.yaml: no parameters of compensator or estimator.* found [a-z]"):
-        settings_from_file(params)
-
-
-@pytest.mark.parametrize("node", ["/**", "/winch_1/estimator", "compensator"])
-def test_a_parameter_file_of_one_node_will_do(tmp_path, node):
-    params = tmp_path / "params.yaml"
-    params.write_text(f"{node}:\n  ros__parameters: {{max_age: 0.3}}\n")
-    assert settings_from_file(params)

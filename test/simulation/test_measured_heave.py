@@ -61,12 +61,14 @@ def test_the_demo_s_legs_carry_the_motion_with_them(tmp_path):
         ("time [s],height [m]\n0,1\n1,2\n", "no column heave"),
         ("time [s],heave [m]\n0,1\n1,2\n5,1\n6,0\n", "line 4: 4 s without a height"),
         ("time [s],heave [m]\n0,1\n1,\n2,1\n3,0\n", "line 3: heave is no number"),
+        ("time [s],heave [m]\n0,1\n1,1_0\n2,1\n3,0\n", "line 3: heave is no number"),
+        ("time [s],heave [m],Größe\n0,1\n1,2\n2,1\n3,0\n", "save it as UTF-8"),
         ("time [s],heave [m]\n0,1\n1,2\n1,3\n3,0\n", "time must increase"),
         ("time [s],heave [m]\n0,100\n1,900\n2,100\n3,0\n", "unit right"),
     ],
 )
 def test_what_is_no_motion_is_refused_with_the_reason(tmp_path, text, said):
-    (tmp_path / "heave.csv").write_text(text)
+    (tmp_path / "heave.csv").write_text(text, encoding="cp1252")
     with pytest.raises(InputError, match=said):
         load_heave(tmp_path / "heave.csv")
 

@@ -33,15 +33,18 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.console import refuse_foreign, refuse_unwritable
     from winch_friction.cli.inputs import folders_of_cranes, load_terms, provenance_of, read_inputs, run_paths
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
+    from winch_friction.records.runs import refuse_same_names
 
     load_terms(terms_file)
     paths = run_paths(runs)
     refuse_unwritable(out and out / "check.html")
+    refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
     read, winch, seed = read_inputs(paths, crane, model)
+    refuse_same_names(read)
     near = folders_of_cranes([*paths, *([Path(crane)] if crane else [])])
     result = check(read, winch, seed, known_cranes(*near))
     content = result.content()

@@ -173,16 +173,19 @@ def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any
     from winch_friction.records.runs import read_runs
 
     rows: list[dict[str, Any]] = []
+    loaded = any("drum_torque" in term.reads for model in (one, two) for term in model.terms)
     for run in read_runs(paths, crane):
         show_warnings(run.warnings)
-        if "hook_load" not in run:
+        if "hook_load" not in run and loaded:
             raise InputError(f"{run.name}: compare needs the column 'hook_load'")
-        torques = []
+        torques, load = [], float("nan") if loaded else 0.0
         for model in (one, two):
             right, machine = corrected(run, crane, model)
-            at = run_operating_points(right, machine, drum_torque=run_drum_torque(right, machine))
+            at = run_operating_points(right, machine, drum_torque=run_drum_torque(right, machine, load))
             torques.append(np.interp(run.time, right.time, np.broadcast_to(model.torque(at), (len(right),))))
         difference = torques[1] - torques[0]
+        if not np.isfinite(difference).any():
+            raise InputError(f"{run.name}: no row has speed, load and pressures all at once: nothing to compare on")
         k = int(np.nanargmax(np.abs(difference)))
         rows.append(
             {

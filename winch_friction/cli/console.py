@@ -126,6 +126,7 @@ def _cell(value: Any) -> str:
 
 
 # -- where they write to
+_HEAD = 1 << 16  # bytes of a file, within which it says its schema or title
 PAGE = (".html", ".htm")
 MODEL = (".yaml", ".yml", "")
 
@@ -156,6 +157,24 @@ def refuse_existing(overwrite: bool, *places: Path | None) -> None:
             raise InputError(f"--out {place}: exists already, and a folder or bag is never replaced; give another name")
         if not overwrite:
             raise InputError(f"--out {place}: exists already; give another name, or --overwrite to replace it")
+
+
+def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: str = "") -> None:
+    """Raise `InputError` where a folder holds files that a verb writes, and they are not those of an earlier call.
+
+    An earlier call has left `mark`, which says `schema`; the names may be patterns.
+    """
+    if out is None or not out.is_dir():
+        return
+    made = out / mark
+    if made.is_file() and schema.encode() in made.read_bytes()[:_HEAD]:
+        return
+    there = sorted(each.name for name in names for each in out.glob(name))
+    if there:
+        raise InputError(
+            f"--out {out}: holds {', '.join(there)}, no result of this verb: give a folder of its own, or move what is "
+            "there"
+        )
 
 
 def refuse_unwritable(*places: Path | None) -> None:

@@ -8,7 +8,7 @@ import typer
 from winch_friction.cli.console import refuse_existing, refuse_input_as_output, show_json, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath, Overwrite
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, Run
 
 app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
 OUT = typer.Argument(help="Where to, one or several: .csv, .parquet, .mcap, .db3, or a folder for a bag.")
@@ -32,10 +32,10 @@ def run(
       winch-friction convert run log.csv log.parquet log.mcap
     """
     from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.runs import bag_options_of, read_run
+    from winch_friction.records.runs import bag_options_of, read_run, refuse_unknown_kind
 
     for each in out:
-        refuse_input_as_output(each, [source])
+        refuse_input_as_output(refuse_unknown_kind(each), [source])
     refuse_existing(overwrite, *out)
     content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
     show_warnings(content.warnings)
@@ -65,9 +65,21 @@ def emps(
 def _write(content: Run, paths: list[Path], as_json: bool) -> None:
     from winch_friction.records.runs import write_run
 
+    show_warnings(f"{path}: a bag has no topic for {', '.join(lost)}: left out" for path in paths
+                  if path.suffix not in (".csv", ".parquet", ".pq") and (lost := _without_topic(content)))  # fmt: skip
     written = [str(write_run(content, path)) for path in paths]
     if as_json:
         show_json({"written": written, "samples": len(content), "columns": list(content.columns)})
         return
     for path in written:
         print(f"{path}: {len(content)} samples of {', '.join(content.columns)}")
+
+
+def _without_topic(content: Run) -> list[str]:
+    """The columns of a run that no message of the winch carries."""
+    carried = {
+        "time",
+        *SAMPLE_SCALARS,
+        *(f"{group}.{channel}" for group in content.groups for channel in GROUP_CHANNELS),
+    }
+    return [name for name in (*content.columns, *content.aside) if name not in carried]

@@ -147,4 +147,5 @@ def _pump(frames: Iterator[dict[str, Any]], broadcast: Broadcast) -> None:
                             "faults": faults(status)})  # fmt: skip
     except InputError as error:
         said = str(error)
-    broadcast.end(said)
+    finally:  # a page that waits for ever would look like a winch that stands still
+        broadcast.end(said)

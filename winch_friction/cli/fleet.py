@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
-from winch_friction.cli.fleet_work import VERBS, Task, carry_out, dated_rows, plan
+from winch_friction.cli.fleet_work import VERBS, Task, carry_out, dated_rows, own_folders, plan
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
@@ -55,13 +55,14 @@ def command(
 
       winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
-    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.console import refuse_foreign, refuse_unwritable
     from winch_friction.cli.inputs import provenance_of
     from winch_friction.fleet.recordings import find_recordings
 
     refuse_unwritable(out / "fleet.json")
+    refuse_foreign(out, ("fleet.json", "report.html"), "fleet.jsonl")
     options = _storage_options(storage or [])
-    recordings = find_recordings(sources, options)
+    recordings = find_recordings(sources, options, own_folders(out))
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
     outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)
     content = {"verb": verb, "outcomes": [asdict(each) for each in outcomes], **_over_time(outcomes, out)}
@@ -105,7 +106,7 @@ def _over_time(outcomes: list[Outcome], out: Path) -> dict[str, Any]:
         if row["kind"] == "trait":
             series.setdefault((row["crane"], row["name"]), []).append((row["time"], row["value"], row["std"]))
     followed = monthly(series)
-    undated = sum(each.status == 0 for each in outcomes) if not rows else 0
+    undated = not rows and any(each.status == 0 and each.result["traits"] for each in outcomes)
     return {
         "steps": [
             asdict(step) | {"month": month_text(step.month), "unit": TRAITS[step.trait]}

@@ -1,6 +1,7 @@
 """One piece of a fleet's work: a verb on a recording or on all recordings of a crane, in whichever process it runs."""
 
 import contextlib
+import hashlib
 import io
 import json
 import time
@@ -12,6 +13,7 @@ from typing import Any
 from winch_friction.fleet.ledger import Outcome, work_key
 from winch_friction.fleet.recordings import Recording, at_hand
 from winch_friction.physics.errors import InputError
+from winch_friction.records.atomic import config_directory
 
 UNIX = 1e8  # s; a time below it counts from some origin of its own and has no date
 
@@ -49,6 +51,7 @@ class Task:
     model_file: str
     target: str
     storage: tuple[tuple[str, Any], ...] = ()
+    contents: str = ""  # of the files that it names, where it was planned: a worker may not have them all
 
     @property
     def crane(self) -> str:
@@ -65,7 +68,9 @@ class Task:
     def key(self) -> str:
         """Names this work in the ledger."""
         inputs = " ".join(f"{each.address}={each.version}" for each in self.recordings)
-        options = {"options": self.options, "crane": self.crane_file, "model": self.model_file}
+        options = {
+            "options": self.options, "crane": self.crane_file, "model": self.model_file, "contents": self.contents,
+        }  # fmt: skip
         return work_key(self.verb, inputs, self.target, options)
 
 
@@ -95,8 +100,25 @@ def plan(
         own = {"crane": piece[0].crane, "name": piece[0].name}
         files = crane.replace("{crane}", own["crane"]), model.replace("{crane}", own["crane"])
         target = str(out / how.target.format(**own))
-        tasks.append(Task(verb, piece, tuple(options), *files, target, tuple(sorted(storage.items()))))
+        contents = _contents(*files, *options)
+        tasks.append(Task(verb, piece, tuple(options), *files, target, tuple(sorted(storage.items())), contents))
     return tasks
+
+
+def own_folders(out: Path) -> list[Path]:
+    """Where an earlier call has written its results, which are no recordings; none before the first call."""
+    parts = [*(Path(how.target).parts[0] for how in VERBS.values()), "store"]
+    return [out / part for part in parts] if (out / "fleet.jsonl").exists() else []
+
+
+def _contents(*names: str) -> str:
+    """What stands in the files among these words: a crane or a model that was mended is other work."""
+    digest = hashlib.sha256()
+    for name in names:
+        for path in (Path(name), *(config_directory() / kind / f"{name}.yaml" for kind in ("cranes", "models"))):
+            if path.is_file():
+                digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def carry_out(task: Task) -> Outcome:
@@ -127,12 +149,16 @@ def _called(task: Task, paths: Sequence[Path]) -> tuple[int, Any, str]:
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
         anew = ["--overwrite"] if how.own_file else []
         status = run([*arguments, "--out", task.target, *anew, "--json"])
-    lines = [line for line in complained.getvalue().splitlines() if line.strip()]
-    return (
-        status,
-        _parsed(said.getvalue()) if status == 0 else None,
-        "" if status == 0 else (lines or ["no message"])[-1],
-    )
+    result = _parsed(said.getvalue())
+    return (status, result, "") if status == 0 else (status, None, _message(result, complained.getvalue()))
+
+
+def _message(result: Any, complained: str) -> str:
+    """Why a verb did not end well: its own sentence, as of runs that contradict their crane, else its last words."""
+    if isinstance(result, dict) and result.get("sentence"):
+        return str(result["sentence"])
+    lines = [line for line in complained.splitlines() if line.strip()]
+    return (lines or ["no message"])[-1]
 
 
 def _parsed(text: str) -> Any:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from winch_friction.cli.console import show_warnings
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.errors import InputError
 
@@ -68,8 +69,9 @@ def written(bag: Path, out: Path, namespace: str = "") -> int:
         with sdk.open_mcap(made, context=context):
             for message in bag_messages(bag, 0.0):
                 relay.take(message)
-                count += 1
+                count += message.topic not in relay.passed
         os.replace(made, out)
+    show_warnings(relay.passed.values())
     return count
 
 
@@ -84,6 +86,7 @@ def serving(bag: Path | None, namespace: str, rate: float, port: int, host: str 
     relay, asked = Relay(context, namespace), Asked()
     if bag is not None:
         relay.advertise(bag_topics(bag))
+        show_warnings(relay.passed.values())
     name = f"winch_friction {bag.name if bag is not None else namespace}".strip()
     try:
         server = sdk.start_server(name=name, host=host, port=port, server_listener=asked, context=context)

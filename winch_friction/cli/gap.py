@@ -27,6 +27,7 @@ Examples:
 """
 
 MODEL = "a6vm215_crane2"  # of the 150 t crane, where none is named
+WRITTEN = ("gap.json", "model.yaml", "report.html", "addition.csv", "proposal_*.py", "proposal_*.yaml")
 app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
 
@@ -88,7 +89,7 @@ def run_gap(
     params_file: Path | None = None,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
-    from winch_friction.cli.console import refuse_input_as_output
+    from winch_friction.cli.console import refuse_foreign, refuse_input_as_output
     from winch_friction.cli.inputs import read_inputs, refuse_copies, refuse_implausible, run_paths
     from winch_friction.discrepancy.answer import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
@@ -103,6 +104,7 @@ def run_gap(
     paths = run_paths(paths)
     for name in ("model.yaml", "gap.json", "addition.csv"):
         refuse_input_as_output(out / name, [model, *paths])
+    refuse_foreign(out, WRITTEN, "gap.json", "winch_friction.gap/")
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
@@ -219,6 +221,8 @@ def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
 
 def show_result(content: dict[str, Any], out: Path) -> None:
     """The verdict for a person."""
+    from winch_friction.discrepancy.adequacy import told_apart
+
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
     rows = [
         [
@@ -236,7 +240,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
-            print(f"lacking: {check['what']} {check['value']:.3g} {check['unit']}, needed {check['needed']:g}")
+            value = told_apart(check["value"], check["needed"])
+            print(f"lacking: {check['what']} {value} {check['unit']}, needed {check['needed']:g}")
     if gap["before"] is not None:
         print(
             f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "

@@ -12,6 +12,7 @@ from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTex
 
 app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
 
+PRACTICE = "Friction practice: "  # begins the title of its page
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
 Force = Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")]
 Seed = Annotated[int, typer.Option(help="Seed of the complex method and of the bootstrap.")]
@@ -211,15 +212,17 @@ def practice(
 
     Example: winch-friction identify practice practice_150t --out practice/
     """
-    from winch_friction.cli.console import progress, refuse_unwritable, show_json, stdout
+    from winch_friction.cli.console import progress, refuse_foreign, refuse_unwritable, show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
-    from winch_friction.cli.inputs import provenance_of, refuse_implausible
+    from winch_friction.cli.inputs import provenance_of, refuse_copies, refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
     refuse_unwritable(out / "report.html")
+    refuse_foreign(out, ("report.html", "motor.yaml", "seed.yaml"), "report.html", PRACTICE)
     folder = read_practice(_example(example))
+    refuse_copies([*folder.tests, *folder.held_out])
     forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)
     done = run_practice(
         folder,

@@ -4,8 +4,11 @@ The rules scale crane_150t and the model a6vm215_crane2 (paper 2) by size: volum
 displacement, inertia with its power 5/3, a wire with its diameter squared. They begin a file; they do not measure.
 """
 
+import json
 from dataclasses import dataclass
 from typing import Any
+
+import yaml
 
 from winch_friction.physics.channels import CM3_PER_REV, GRAVITY
 from winch_friction.physics.errors import InputError
@@ -77,6 +80,15 @@ class CraneFacts:
         return displacement * 300e5 * self.gear_ratio / (GRAVITY * self.radii[-1]) / 1e3
 
 
+def _text(word: str) -> str:
+    """A word as YAML has it: in quotes where it would be read as something else (`12`, `yes`, `Nord: 7`)."""
+    try:
+        plain = yaml.safe_load(f"word: {word}") == {"word": word}
+    except yaml.YAMLError:
+        plain = False
+    return word if plain else json.dumps(word, ensure_ascii=False)
+
+
 def crane_text(f: CraneFacts) -> str:
     """The crane file."""
     size = f.motors * f.displacement / (MOTORS * DISPLACEMENT)
@@ -89,7 +101,7 @@ def crane_text(f: CraneFacts) -> str:
         groups += f"\n  active: {f.active}\n  passive: {f.motors - f.active}"
     return f"""# Written by winch-friction init crane. Check what is called an ESTIMATE against the crane's documents.
 schema: winch_friction.crane/1
-name: {f.name}
+name: {_text(f.name)}
 drive: hydraulic                # electric, power and current: docs/interfaces.md
 gear_ratio: {f.gear_ratio:g}
 max_displacement: {{value: {f.displacement:g}, unit: cm^3/rev}}   # per motor
@@ -115,8 +127,8 @@ def plant_text(crane: Crane, name: str) -> str:
     wire = crane.wire_stiffness / WIRE_STIFFNESS if crane.wire_stiffness < 1e300 else 1.0
     return f"""# Written by winch-friction init plant for crane '{crane.name}': scaled from winch_150t. ESTIMATES.
 schema: winch_friction.plant/1
-name: {name}
-crane: {crane.name}             # simulating another crane with it is refused
+name: {_text(name)}
+crane: {_text(crane.name)}             # simulating another crane with it is refused
 pump:
   flow: {FLOW * size:.4g}                  # m^3/s at full stroke
   lag: 0.1                      # s; or bandwidth (rad/s) and damping of a second-order pump
@@ -156,8 +168,8 @@ def model_text(crane: Crane, name: str) -> str:
     return f"""# Written by winch-friction init model: a6vm215_crane2 scaled to crane '{crane.name}'. A ROUGH SEED.
 # winch-friction identify system or practice makes a measured one of it.
 schema: winch_friction.model/1
-name: {name}
-crane: {crane.name}
+name: {_text(name)}
+crane: {_text(crane.name)}
 terms: [{", ".join(seed.term_names)}]
 constants:
   max_displacement: {{value: {crane.max_displacement / CM3_PER_REV:.6g}, unit: cm^3/rev}}
@@ -182,9 +194,9 @@ def scenario_text(crane: Crane, name: str, plant: str, mode: str, load: float | 
     )
     return f"""# Written by winch-friction init scenario. All keys: docs/simulation.md, scenario.schema.json.
 schema: winch_friction.scenario/1
-name: {name}
-crane: {crane.name}             # simulating another crane is refused
-plant: {plant}
+name: {_text(name)}
+crane: {_text(crane.name)}             # simulating another crane is refused
+plant: {_text(plant)}
 duration: {240 if mode == "ahc" else 120}                   # s
 mode: {mode}                       # normal: one group; ahc: active and passive motors
 load: {{value: {mass:.3g}, unit: t}}     # whole hanging mass, hook included
@@ -211,7 +223,7 @@ def map_text(crane: Any) -> str:
         for group in groups
         for channel, unit in (("pressure_a", "bar"), ("pressure_b", "bar"), ("displacement", "cm^3/rev"))
     )
-    named = f"crane: {crane.name}\n" if crane is not None else ""
+    named = f"crane: {_text(crane.name)}\n" if crane is not None else ""
     return f"""# Written by winch-friction init map: fill in COLUMN with the log's own names, remove the rest.
 # winch-friction import LOG --propose --crane CRANE --map MAP.yaml looks at the log and writes all this itself.
 schema: winch_friction.map/1

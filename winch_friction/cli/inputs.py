@@ -41,7 +41,7 @@ def _runs_in(folder: Path) -> list[Path]:
 def _is_run(path: Path) -> bool:
     if path.stem.endswith(TRUTH) or path.name.startswith("."):
         return False
-    return path.suffix in RUN_SUFFIXES if path.is_file() else (path / "metadata.yaml").is_file()
+    return path.suffix.lower() in RUN_SUFFIXES if path.is_file() else (path / "metadata.yaml").is_file()
 
 
 def load_terms(path: Path | None) -> None:

@@ -89,18 +89,23 @@ def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, An
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:
             raise InputError(f"{path}: none of the winch's topics is in it ({', '.join(names)})")
-        last = came = 0
+        last = came = broken = 0
         for connection, stamp, raw in reader.messages(chosen):
             came += 1
-            telemetry.take(names[connection.topic], reader.deserialize(raw, connection.msgtype))
+            try:
+                message = reader.deserialize(raw, connection.msgtype)
+                telemetry.take(names[connection.topic], message, stamp * 1e-9)
+            except Exception:  # whatever the bytes of a broken message lead to
+                broken += 1
+                continue
             if stamp - last >= BAG_PERIOD * 1e9:
                 if rate > 0.0 and last:
                     time.sleep(min(BAG_PERIOD, (stamp - last) * 1e-9) / rate)
                 last = stamp
                 yield telemetry.frame()
         yield telemetry.frame()
-        for said in damage(str(path), chosen, came):
-            raise InputError(said)
+        if said := [*damage(str(path), chosen, came), *([f"{path}: {broken} messages cannot be read"] * bool(broken))]:
+            raise InputError(*said)
 
 
 def bag_topics(path: Path) -> dict[str, str]:

@@ -71,7 +71,7 @@ def command(
     with problems:
         plan = _plan(scenario, seed, out, kind)
         targets = [path for _, _, path in plan]
-        _refuse_overwriting(targets, force)
+        _refuse_overwriting([*targets, *(_truth_of(path) for path in targets if truth)], force)
         refuse_unwritable(*targets[:1])
     winch, friction = machine_of(crane or (plan[0][0].crane if plan else ""), model, [], problems)
     problems.say()
@@ -116,6 +116,7 @@ def _list_effects(as_json: bool) -> None:
 
 
 def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Path]]:
+    from winch_friction.records.runs import refuse_unknown_kind
     from winch_friction.simulation import load_scenario
     from winch_friction.simulation.campaigns import CAMPAIGNS
 
@@ -126,11 +127,15 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
             raise InputError(f"--out {out}: '{name}' is a set of runs and needs a folder")
         return [(s, 1000 * seed + k, out / f"{s.name}.{kind}") for k, s in enumerate(CAMPAIGNS[name](seed), 1)]
     scenario = load_scenario(name)
-    return [(scenario, seed, out if out.suffix else out / f"{scenario.name}.{kind}")]
+    return [(scenario, seed, refuse_unknown_kind(out) if out.suffix else out / f"{scenario.name}.{kind}")]
 
 
 def _refuse_overwriting(paths: list[Path], force: bool) -> None:
+    from winch_friction.records.runs import BAG_SUFFIXES
+
     for path in paths:
+        if path.exists() and path.suffix in BAG_SUFFIXES:
+            raise InputError(f"{path}: exists already, and a bag is never replaced; give another --out, or remove it")
         if path.exists() and not force:
             raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
 
@@ -146,8 +151,7 @@ def _simulate_to(
     _refuse_runaway(scenario, result.truth["motor_speed"])
     write_run(result.run, path)
     if truth:
-        kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
-        write_run(result.truth, path.parent / TRUTH_FOLDER / f"{path.stem}_truth{kind}")
+        write_run(result.truth, _truth_of(path))
     time, speed = result.run.time, result.truth["motor_speed"]
     return {
         "run": str(path),
@@ -156,6 +160,12 @@ def _simulate_to(
         "largest speed [rpm]": float(max(abs(speed)) * 30.0 / 3.141592653589793),
         "position error [mm RMS]": float(1e3 * (result.truth["position_error"] ** 2).mean() ** 0.5),
     }
+
+
+def _truth_of(path: Path) -> Path:
+    """Where the truth of a run goes."""
+    kind = path.suffix if path.suffix in (".csv", ".parquet") else ".csv"
+    return path.parent / TRUTH_FOLDER / f"{path.stem}_truth{kind}"
 
 
 def _refuse_runaway(scenario: Any, speed: Any) -> None:

@@ -114,7 +114,7 @@ def diagnose(
     bench = _Bench(views, scores, model)
     contradict = bool((scores > CONTRADICTS).any())
     mistakes = [each for each in fixed_mistakes(views, crane, others) if contradict or _is_sure(each)]
-    mistakes += [delayed(sign * d) for d in DELAYS for sign in (1.0, -1.0)]
+    mistakes += [delayed(sign * d, crane.drive.hydraulic) for d in DELAYS for sign in (1.0, -1.0)]
     if contradict:
         mistakes += _free([v for v, s in zip(views, scores, strict=True) if s > CONTRADICTS])
     mistakes += _companions(views) if contradict or scores.sum() > SURE else []

@@ -279,11 +279,10 @@ def _geared(factor: float) -> Repair:
     return lambda view: replace(view, gear_ratio=view.gear_ratio * factor)
 
 
-def delayed(seconds: float) -> Mistake:
-    """The speed and its companions are logged late (positive) against pressures, by this many seconds."""
-    which = (
-        "motor_speed is late against the pressures" if seconds > 0.0 else "the pressures are late against motor_speed"
-    )
+def delayed(seconds: float, hydraulic: bool = True) -> Mistake:
+    """The speed and its companions are logged late (positive) against what tells the torque, by this many seconds."""
+    told, are = ("the pressures", "are") if hydraulic else ("the drive's torque", "is")
+    which = f"motor_speed is late against {told}" if seconds > 0.0 else f"{told} {are} late against motor_speed"
     words = f"{which} by about {abs(seconds):.2g} s"
     return Mistake(
         "delay", "motor_speed", words, DELAY * (1.0 + 0.5 * abs(seconds)), lambda view: _shifted(view, seconds), seconds

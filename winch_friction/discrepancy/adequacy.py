@@ -37,7 +37,13 @@ class Check:
     def sentence(self) -> str:
         """What is lacking, in words."""
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{self.what}: {self.value:.3g}{unit}, needed {self.needed:g}{unit}"
+        return f"{self.what}: {told_apart(self.value, self.needed)}{unit}, needed {self.needed:g}{unit}"
+
+
+def told_apart(value: float, needed: float) -> str:
+    """A value to three digits, or to as many as tell that it falls short: 19.96 s of 20 s are not "20 s"."""
+    shown = (f"{value:.{digits}g}" for digits in range(3, 18))
+    return next((each for each in shown if (float(each) < needed) == (value < needed)), f"{value:g}")
 
 
 def _at_least(what: str, value: float, needed: float, unit: str = "1") -> Check:
@@ -56,7 +62,8 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             raise InputError(f"{run.name}: lasts {lasts:.2g} s; that is no record of a winch at work")
         rate = (len(time) - 1) / lasts
         if lasts < LIMITS.shortest_record:
-            notes.append(f"{run.name} left out: it lasts {lasts:.3g} s, needed {LIMITS.shortest_record:g} s")
+            needed = LIMITS.shortest_record
+            notes.append(f"{run.name} left out: it lasts {told_apart(lasts, needed)} s, needed {needed:g} s")
         elif rate < IN_TIME * LIMITS.lowest_rate and not _steady(run):
             notes.append(f"{run.name} left out: logged at {rate:.3g} Hz, needed {LIMITS.lowest_rate:g} Hz")
         else:

@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -11,6 +11,7 @@ from winch_friction.physics.errors import InputError
 
 RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
 BAG_FILE = "metadata.yaml"
+TRUTH = "_truth"  # ends the names of what simulate --truth writes beside its runs
 LARGEST_LOCAL_COPY = 50e9  # bytes; a bucket's object beyond that is not fetched unasked
 
 
@@ -22,6 +23,7 @@ class Recording:
     crane: str
     name: str
     files: tuple[tuple[str, int], ...]  # paths within the storage, bytes
+    changed: int = 0  # ns, when the last of them was written; 0 in a bucket
 
     @property
     def size(self) -> int:
@@ -30,21 +32,23 @@ class Recording:
 
     @property
     def version(self) -> str:
-        """What must be the same for an earlier result to stand: the files' names and sizes."""
-        return ";".join(f"{PurePosixPath(path).name}:{size}" for path, size in self.files)
+        """What must be the same for an earlier result to stand: the files' names, sizes and times."""
+        return ";".join([*(f"{PurePosixPath(path).name}:{size}" for path, size in self.files), str(self.changed)])
 
 
-def find_recordings(sources: Sequence[str], storage: Mapping[str, Any] | None = None) -> list[Recording]:
+def find_recordings(
+    sources: Sequence[str], storage: Mapping[str, Any] | None = None, without: Sequence[Path] = ()
+) -> list[Recording]:
     """Every recording below the sources, sorted by crane and name.
 
     A source is a run file, a bag folder, a folder of those (searched to any depth) or an address that fsspec knows,
     such as `s3://bucket/prefix`, with its options in `storage`. The folder that a recording lies in is its crane's
-    name.
+    name. A simulator's truth is no recording, and what lies in folders `without` is none.
     Raises `InputError` for a source without any recording and for two recordings of one crane and name.
     """
     found: dict[str, Recording] = {}
     for source in sources:
-        here = _below(str(source), dict(storage or {}))
+        here = [each for each in _below(str(source), dict(storage or {})) if not _lies_in(each, without)]
         if not here:
             raise InputError(f"{source}: no recording there; looked for {', '.join(RUN_SUFFIXES)} and bag folders")
         found |= {each.address: each for each in here}
@@ -63,13 +67,20 @@ def _below(source: str, storage: dict[str, Any]) -> list[Recording]:
     return _assembled(sizes, lambda path: f"{protocol}://{path}")
 
 
+def _lies_in(recording: Recording, folders: Sequence[Path]) -> bool:
+    if "://" in recording.address:
+        return False
+    place = Path(recording.address).resolve()
+    return any(place.is_relative_to(folder.resolve()) for folder in folders)
+
+
 def _local(source: Path) -> list[Recording]:
     if not source.exists():
         raise InputError(f"{source}: no such file or folder")
-    if source.is_file():
-        return _assembled({source.as_posix(): source.stat().st_size}, str)
-    files = {path.as_posix(): path.stat().st_size for path in sorted(source.rglob("*")) if path.is_file()}
-    return _assembled(files, str)
+    paths = [source] if source.is_file() else [path for path in sorted(source.rglob("*")) if path.is_file()]
+    about = {path.as_posix(): path.stat() for path in paths}
+    found = _assembled({path: each.st_size for path, each in about.items()}, str)
+    return [replace(each, changed=max(about[path].st_mtime_ns for path, _ in each.files)) for each in found]
 
 
 def _assembled(sizes: Mapping[str, int], address: Any) -> list[Recording]:
@@ -80,7 +91,7 @@ def _assembled(sizes: Mapping[str, int], address: Any) -> list[Recording]:
         own = PurePosixPath(path)
         if str(own.parent) in bags:
             members.setdefault(str(own.parent), []).append((path, size))
-        elif own.suffix in RUN_SUFFIXES and not own.name.startswith("."):
+        elif own.suffix.lower() in RUN_SUFFIXES and not own.name.startswith(".") and not own.stem.endswith(TRUTH):
             members[path] = [(path, size)]
     return [
         Recording(address(path), PurePosixPath(path).parent.name or "fleet", PurePosixPath(path).stem, tuple(files))

@@ -27,6 +27,9 @@ def write_store(folder: Path, rows: Sequence[dict[str, Any]]) -> Path:
 def read_store(folder: Path) -> Any:
     """The rows as a pandas frame with the columns of `COLUMNS`."""
     import pandas as pd
+    import pyarrow as pa
+    from pyarrow.dataset import partitioning
 
-    frame = pd.read_parquet(folder)
+    keys = pa.schema([("crane", pa.string()), ("month", pa.string())])  # or crane 007 would be read as a number
+    frame = pd.read_parquet(folder, partitioning=partitioning(keys, flavor="hive"))
     return frame.astype({"crane": str, "month": str})[list(COLUMNS)]

@@ -92,7 +92,9 @@ def read_practice(folder: Path) -> PracticeFolder:
         held_out=tuple(runs["held_out_tests"]),
         ahc=tuple(runs["ahc_tests"]),
         hashes={
-            each.name: _hash(each) for each in (supplier, *(folder / n for group in names.values() for n in group))
+            each.name: _hash(each)
+            for each in (supplier, *(folder / n for group in names.values() for n in group))
+            if each.is_file()  # a bag is a folder
         },
         note=note,
     )

@@ -14,7 +14,7 @@ from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.units import CHANNEL_UNITS, conversion
 from winch_friction.physics.channels import limits_of
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
 from winch_friction.records.run_checks import checked_run
@@ -61,7 +61,7 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
 def open_with_map(path: Path, log_map: LogMap) -> Log:
     """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found."""
     wanted = {*log_map.time_from, *(e.source for e in log_map.columns.values() if not e.constant)}
-    kind = str(log_map.log.get("kind", ""))
+    kind = str(log_map.log.get("kind", "")) or ("workbook" if _is_kind(path, "workbook") else "text")
     try:
         log = read_log(path, log_map.log if kind in ("text", "workbook") and _is_kind(path, kind) else None)
         if wanted <= {column.name for column in log.columns}:
@@ -111,6 +111,12 @@ def _steps(log: Log, log_map: LogMap, crane: Crane | None, said: list[str], prob
             problems.append(
                 f"columns: '{name}' is no channel; use {', '.join(CHANNEL_UNITS)}, for a motor group GROUP.{channel}"
             )
+            continue
+        if (channel in GROUP_CHANNELS) != ("." in name):
+            wanted = (
+                f"of a motor group: write GROUP.{channel}" if "." not in name else f"of no motor group: '{channel}'"
+            )
+            problems.append(f"columns: '{name}' is {wanted}")
             continue
         yield name, lambda n=name, e=entry, c=channel: _values(log, n, c, e, log_map, crane, said, problems, strict)
 

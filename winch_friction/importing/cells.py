@@ -53,7 +53,7 @@ def number_pattern(decimal: str, thousands: str = "") -> re.Pattern[str]:
     """What a number looks like with this decimal mark and this mark of thousands ('' for none)."""
     mark, whole = re.escape(decimal), r"\d+"
     if thousands:
-        whole = rf"(?:\d{{1,3}}(?:{re.escape(thousands)}\d{{3}})+|\d+)"
+        whole = rf"(?:[1-9]\d{{0,2}}(?:{re.escape(thousands)}\d{{3}})+|\d+)"
     return re.compile(rf"^[+\-\u2212]?(?:{whole}(?:{mark}\d*)?|{mark}\d+)(?:[eE][+-]?\d+)?$")
 
 
@@ -131,6 +131,7 @@ def as_column(
     return LogColumn(name, values, unit, bad=tuple(bad), note=note)
 
 
+_GROUPED = re.compile(r"^\s*[+\-\u2212]?[1-9]\d{0,2}(?:\.\d{3})+\s*$")
 _VALUE_AND_UNIT = re.compile(r"^([+\-\u2212]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([^\d\s.,:;+\-][^\s]{0,11})$")
 
 
@@ -161,8 +162,13 @@ def _all_numbers(cells: Sequence[Any], decimal: str, thousands: str) -> FloatArr
 
 
 def plain_numbers(cells: Sequence[str], decimal: str, thousands: str) -> FloatArray | None:
-    """Texts as numbers, NaN where one is empty; None when one of them is none, or infinite."""
-    if thousands:
+    """Texts as numbers, NaN where one is empty; None when one of them is none, infinite, or holds what Python alone
+    reads past (`1_000`) or what may be a mark of thousands that was not found where the decimal mark was (`1.500`).
+    """
+    if thousands or any("_" in cell for cell in cells):
+        return None
+    dotted = [cell for cell in cells if "." in cell] if decimal != "." else []
+    if dotted and all(map(_GROUPED.match, dotted)):
         return None
     try:
         values = np.array([cell.replace(decimal, ".") or "nan" for cell in cells], dtype=float)

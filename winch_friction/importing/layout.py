@@ -46,6 +46,8 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
         units = next((k for k in reversed(head) if _is_labelled_unit_row(seen[k], width)), -1)
     texts = [k for k in above if k != units]
     names = _names_row(seen, texts)
+    if names < 0 and units in above:  # symbols that are units too (t, n, d, pa): a table without names is rarer
+        names, units = units, -1
     other = [k for k in texts if k != names and abs(k - names) <= 2]
     return Layout(names, units, first, width, other[-1] if other else -1)
 

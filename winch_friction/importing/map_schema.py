@@ -26,7 +26,8 @@ def map_schema() -> dict[str, Any]:
             "crane": _TEXT,
             "questions": _TEXTS,
             "log": _object({
-                **dict.fromkeys(("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace"), _TEXT),
+                **dict.fromkeys(("kind", "encoding", "thousands", "sheet", "namespace"), _TEXT),
+                **dict.fromkeys(("delimiter", "decimal"), {**_TEXT, "minLength": 1, "maxLength": 1}),
                 **dict.fromkeys(("names_row", "unit_row", "first_row"), _ROW),
             }),
             "time": _object({

@@ -123,9 +123,17 @@ def _time(section: Section) -> TimeBase:
         unit=section.text("unit", "s"),
         order=_choice(section, "order", ("", *ORDERS), ""),
         zone=section.text("zone", ""),
-        spread=section.get("spread", False) is True,
+        spread=_yes(section, "spread"),
         fraction=section.text("fraction", ""),
     )
+
+
+def _yes(section: Section, key: str) -> bool:
+    """Whether a switch is on; from the command line it comes as a word."""
+    value = {"true": True, "false": False}.get(str(section.get(key, False)).lower())
+    if value is None:
+        raise InputError(f"{section.where}: {key} must be true or false, found {section.get(key)!r}")
+    return value
 
 
 def _log(top: Section) -> dict[str, Any]:
@@ -133,6 +141,9 @@ def _log(top: Section) -> dict[str, Any]:
     found: dict[str, Any] = {key: section.text(key) for key in _TEXTS if key in section}
     found |= {key: int(section.number(key)) for key in _NUMBERS if key in section}
     section.close()
+    for key in ("delimiter", "decimal"):
+        if len(found.get(key, ".")) != 1:
+            raise InputError(f"{section.where}: {key} must be one character, found {found[key]!r}")
     return found
 
 

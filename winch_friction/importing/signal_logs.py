@@ -16,6 +16,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 
 TIME = "time"  # the name given to the times that a file keeps beside its signals
+_SILENT, _SHORT = 5.0, 1.0  # usual steps and s that a signal may say nothing without a word
 _PEEKED = 300  # cells of a column of text whose decimal mark is looked at
 _DEEPEST = 6  # structs within structs of a .mat file
 _OBJECTS = (
@@ -70,7 +71,20 @@ def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[s
         if others
         else []
     )
+    silent = [said for each in others if (said := _silence(each, float(base[-1])))]
+    notes += [f"signals that say nothing for long, their last value held: {'; '.join(silent)}"] if silent else []
     return columns, notes + ([f"signals without times left out: {listed(left)}"] if left else [])
+
+
+def _silence(signal: Signal, end: float) -> str:
+    """A signal's name with its longest silence up to the log's end, '' for one that goes on as it does."""
+    times = np.append(signal.times if signal.times is not None else [], end)
+    steps = np.diff(times)
+    longest = int(np.argmax(steps))
+    usual = float(np.median(steps[:-1])) if len(steps) > 1 else 0.0
+    if not steps[longest] > max(_SILENT * usual, _SHORT):
+        return ""
+    return f"{signal.name} for {steps[longest]:.4g} s, {times[longest] - times[0]:.4g} s after its first value"
 
 
 def _of_one_length(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:

@@ -36,7 +36,7 @@ def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     if "decimal" in given:
         marks = given["decimal"], given.get("thousands", "")
     else:
-        marks = decimal_mark((cell for row in rows.tail for cell in row), delimiter)
+        marks = decimal_mark((cell for row in (*rows.head, *rows.tail) for cell in row), delimiter)
     layout = _layout(given, rows, *marks)
     columns, body = read_columns(rows, layout, marks, delimiter, notes)
     found = {"kind": "text", "encoding": encoding, "delimiter": delimiter, "decimal": marks[0], "thousands": marks[1]}
@@ -115,7 +115,7 @@ def _encoding(path: Path, raw: bytes) -> str:
 
 def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     try:
-        text = raw.decode(encoding)
+        text = raw.decode(encoding).removeprefix("\ufeff")  # the map's encoding is that of another log
     except (UnicodeDecodeError, LookupError) as error:
         raise InputError(
             f"{path}: cannot be read as {encoding} ({str(error)[:80]}); set log.encoding in the map"
@@ -190,7 +190,7 @@ def _layout(given: Mapping[str, Any], rows: TextRows, decimal: str, thousands: s
     if found is None:
         first = "; ".join(" | ".join(row)[:60] for row in rows.head[:2])
         raise InputError(f"{rows.path}: no rows of numbers found in {len(rows)} lines; it begins with: {first}")
-    if not given:
+    if "first_row" not in given:  # nothing is known of this log's rows
         return found
     places = [rows.index_of_line(int(given.get(key, 0) or 0)) for key in ("names_row", "unit_row", "first_row")]
     return Layout(places[0], places[1], places[2] if places[2] >= 0 else found.first, found.width, found.notes_row)

@@ -152,10 +152,17 @@ def to_seconds(
     columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool = True
 ) -> FloatArray:
     """Seconds of every row; NaN where a cell is empty; raises `InputError` by row for a cell that is no time."""
+    if base.fraction and len(columns) < 2:
+        raise InputError(f"{where}: time.fraction is the unit of the last of several columns; time.from names one")
     if base.fraction:
         scale, _ = conversion_to_si(base.fraction, "s", where)
         *whole, beyond = columns
         return to_seconds(whole, replace(base, fraction=""), where, place, strict) + scale * beyond.values
+    if len(columns) > 1 and any(each.numeric for each in columns):
+        raise InputError(
+            f"{where}: time.from: a date and a time of day are joined where both are texts; column "
+            f"'{next(each.name for each in columns if each.numeric)}' holds plain numbers: name one column"
+        )
     if columns[0].numeric:
         seconds = _from_numbers(columns[0].values, base, where)
     else:
@@ -187,7 +194,7 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
     seconds = np.full(len(cells), np.nan)
     for row, cell in enumerate(cells):
         parts = time_parts(cell)
-        if parts is None:
+        if parts is None or (base.form == "datetime" and parts[0] is None):
             if strict and cell is not None and str(cell).strip():
                 raise InputError(f"{where}: {place(row)}: '{str(cell)[:40]}' is no time of the form '{base.form}'")
             continue
@@ -230,7 +237,9 @@ def _zone_shift(cells: Any, base: TimeBase, where: str) -> float:
         zone = ZoneInfo(base.zone)
     except (ZoneInfoNotFoundError, ValueError, OSError) as error:
         raise InputError(f"{where}: time.zone '{base.zone}' is not known; write e.g. UTC or Europe/Oslo") from error
-    parts = next(p for p in (time_parts(cell) for cell in cells) if p is not None)
+    parts = next((p for p in map(time_parts, cells) if p is not None and p[0] is not None), None)
+    if parts is None:  # no date at all: what the first cell says is told by its row
+        return 0.0
     local = datetime(1970, 1, 1) + timedelta(
         days=days_since_1970(parts[:3], base.order or "ymd", where), seconds=clock_seconds(parts)
     )

@@ -33,9 +33,8 @@ def read_workbook_log(path: Path, settings: Mapping[str, Any] | None = None) -> 
     if layout is None:
         raise InputError(f"{path}: sheet '{name}' has no rows of numbers; the sheets are {listed(sheets)}")
     if "first_row" in given:
-        layout = Layout(
-            int(given["names_row"]) - 1, int(given["unit_row"]) - 1, int(given["first_row"]) - 1, layout.width
-        )
+        names, units, first = (int(given.get(key, 0)) - 1 for key in ("names_row", "unit_row", "first_row"))
+        layout = Layout(names, units, first, layout.width)
     body = [(k + 1, row) for k, row in enumerate(rows) if k >= layout.first and not all(map(is_missing, row))]
     columns = _columns(rows, [row for _, row in body], layout, decimal, thousands)
     notes = (

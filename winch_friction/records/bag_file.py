@@ -13,6 +13,7 @@ from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
 NANOSECOND = 1e-9
+SPEED_TOPIC = "winch/joint_states"  # below a winch's namespace
 _PEEKED = 20  # messages looked at to tell a displacement's unit
 _LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a fraction
 _CLOCKS_APART = 60.0  # s; header stamps and receipt times that differ by more are of different clocks
@@ -95,8 +96,12 @@ class Bag:
         self.warnings += damage(self.name, connections, came)
 
     def topics_ending(self, suffix: str) -> list[str]:
-        """Topics of the bag by the end of their name, e.g. `/friction_torque`."""
-        return sorted({each.topic for each in self._reader.connections if each.topic.endswith(suffix)})
+        """Topics by the end of their name, e.g. `/friction_torque`; those of another winch in the bag are not ours."""
+        topics = {each.topic for each in self._reader.connections}
+        spaces = [each.removesuffix(SPEED_TOPIC) for each in topics if each.endswith(f"/{SPEED_TOPIC}")]
+        own = self.actual[self.topics.speed_topic].removesuffix(SPEED_TOPIC)
+        of = lambda topic: max((each for each in spaces if topic.startswith(each)), key=len, default=own)
+        return sorted(each for each in topics if each.endswith(suffix) and of(each) == own)
 
 
 def damage(name: str, connections: Sequence[Any], came: int) -> list[str]:

@@ -15,6 +15,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.records.bags import METADATA_KEY
 from winch_friction.records.topics import TopicMap
 
+LATEST = 2.0**31  # s; a stamp's seconds are a whole number of 32 bits
 STORAGES = {".mcap": "mcap", ".db3": "sqlite3"}
 
 
@@ -87,7 +88,12 @@ class BagWriter:
         return self
 
     def write(self, topic: str, message: Any, time: float) -> None:
-        """Write one message of `rosbags`, received at `time` s."""
+        """Write one message of `rosbags`, received at `time` s; raises `InputError` where no stamp says this time."""
+        if not 0.0 <= time < LATEST:
+            raise InputError(
+                f"{self.path}: a bag holds times from 0 to {LATEST:.4g} s (of 1970; the year 2038), not {time:.6g} s; "
+                "is the column 'time' in s? Shift it, or write .csv or .parquet"
+            )
         type_name = message.__msgtype__
         self.write_raw(topic, type_name, MESSAGES.store.serialize_cdr(message, type_name), round(time * 1e9))
 

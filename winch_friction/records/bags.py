@@ -1,6 +1,7 @@
 """A bag as a run: one row per speed message, every other input held as in the nodes."""
 
 import json
+import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from operator import attrgetter
@@ -19,6 +20,8 @@ from winch_friction.records.run_checks import Place, checked_run
 from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"
+_LEFT_OUT = "messages are left out"
+_ALL_LEFT_OUT = re.compile(rf"\b(\d+) of \1 {_LEFT_OUT}")
 
 
 def read_bag(
@@ -43,17 +46,33 @@ def read_bag(
         warnings, speed = list(bag.warnings), bag.actual[bag.topics.speed_topic]
     if not len(columns["time"]):
         raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint")
+    if len(columns["time"]) > 1 and not np.ptp(columns["time"]):
+        raise InputError(
+            f"{path}: every message on '{speed}' is stamped {columns['time'][0]:g} s: its sender knows no time; "
+            "winch-friction import takes the times of receipt"
+        )
     place: Place = lambda row: f"sample {row + 1} of '{speed}'"
-    return checked_run(
-        path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings, metadata=bag_metadata(path)
-    )
+    try:
+        return checked_run(
+            path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings,
+            metadata=bag_metadata(path),
+        )  # fmt: skip
+    except InputError as refused:  # a column that is missing may be one of which nothing was believed
+        raise InputError(*refused.problems, *filter(_ALL_LEFT_OUT.search, warnings)) from None
 
 
 def bag_samples(bag: Bag, hold: InputHold) -> Iterator[Sample]:
-    """The samples that a node would have made of a bag's messages."""
+    """The samples that a node would have made of a bag; its warnings tell at the end what was not believed."""
     stream = SampleStream(bag.topics, hold)
-    taken = (stream.take(each.source, each.message, each.receipt) for each in bag.inputs())
-    return (sample for sample in taken if sample is not None)
+    for each in bag.inputs():
+        sample = stream.take(each.source, each.message, each.receipt)
+        if sample is not None:
+            yield sample
+    bag.warnings += [
+        f"{bag.name}: topic '{bag.actual[topic]}': {count} of {stream.counts[topic]} {_LEFT_OUT}: without a finite "
+        "value of the winch's joint, out of order, or beyond what any sensor gives"
+        for topic, count in stream.rejected.items()
+    ]
 
 
 def _columns(samples: Iterable[Sample], groups: Sequence[str]) -> dict[str, FloatArray]:

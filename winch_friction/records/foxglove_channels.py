@@ -67,7 +67,8 @@ def foxglove_sdk() -> Any:
 class Relay:
     """Logs ROS messages, and what they say, to the sinks (server, MCAP file) of a Foxglove context.
 
-    `namespace` is that of the winch's nodes. Types that ROS 2 Jazzy's definitions lack raise `InputError`.
+    `namespace` is that of the winch's nodes. Topics whose types ROS 2 Jazzy's definitions lack are read past, and said
+    in `passed`.
     """
 
     def __init__(self, context: Any, namespace: str = "") -> None:
@@ -75,6 +76,7 @@ class Relay:
         self._prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
         self._contract = {t if t.startswith("/") else self._prefix + t: t for t in TOPICS}
         self._telemetry = Telemetry()
+        self.passed: dict[str, str] = {}  # topic -> why it is not shown
         self._channels: dict[str, Any] = {}
         for topic, schema in OWN_CHANNELS.items():
             content = self._foxglove.Schema(
@@ -87,8 +89,13 @@ class Relay:
     def advertise(self, topics: Mapping[str, str] | Iterable[tuple[str, str]]) -> None:
         """Channels for topics by their types; those that are there already stay."""
         for topic, type_name in dict(topics).items():
-            if topic not in self._channels:
-                schema = self._foxglove.Schema(name=type_name, encoding="ros2msg", data=definition(type_name).encode())
+            if topic not in self._channels and topic not in self.passed:
+                try:
+                    text = definition(type_name)
+                except InputError as error:
+                    self.passed[topic] = f"topic '{topic}': {error}"
+                    continue
+                schema = self._foxglove.Schema(name=type_name, encoding="ros2msg", data=text.encode())
                 self._channels[topic] = self._foxglove.Channel(
                     topic, schema=schema, message_encoding="cdr", context=self._context
                 )
@@ -96,12 +103,17 @@ class Relay:
     def take(self, message: RawMessage) -> None:
         """One message: out as it is, and what it says of the winch."""
         self.advertise({message.topic: message.type_name})
+        if message.topic in self.passed:
+            return
         self._channels[message.topic].log(message.data, log_time=message.receipt)
         if message.topic not in self._contract:
             return
         contract = self._contract[message.topic]
-        content = _read(message)
-        self._telemetry.take(contract, content)
+        try:
+            content = _read(message)
+            self._telemetry.take(contract, content, message.receipt * 1e-9)
+        except Exception:  # whatever the bytes of a broken message lead to; it went out as it is
+            return
         frame = self._telemetry.frame()
         for signal, points in frame["points"].items():
             for time, value in points:

@@ -15,6 +15,7 @@ from winch_friction.records.headers import Header, header_text, said_of_nameless
 from winch_friction.records.run_checks import Place, checked_run
 
 _METADATA = b"winch_friction"
+_DATES = ("timestamp", "duration")  # types of a column of dates, as pandas writes an index of times
 
 
 def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
@@ -26,7 +27,10 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
     columns, aside = {}, {}
     bare = [header.name for header in headers if header.known and not header.unit]
     for header, chunked in zip(headers, table.columns, strict=True):
-        if header.known:
+        if header.name == "time" and str(chunked.type).startswith(_DATES):
+            columns[header.name] = _seconds(chunked)
+            bare = [name for name in bare if name != "time"]
+        elif header.known:
             with problems:
                 columns[header.name] = _numbers(path, header, chunked)
                 columns[header.name] = header.to_si(columns[header.name], str(path))
@@ -74,9 +78,18 @@ def _numbers(path: Path, header: Header, chunked: Any) -> FloatArray:
     if str(chunked.type) == "double" and not chunked.null_count:
         return _doubles(chunked)
     try:
+        if str(chunked.type).startswith(_DATES):
+            raise TypeError("dates")  # NumPy would count their ticks
         return np.asarray(chunked.to_numpy(), dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{path}: column '{header.text}': {chunked.type} values are not numbers") from error
+
+
+def _seconds(chunked: Any) -> FloatArray:
+    """Dates as s since 1970, durations as s; NaN where there is none."""
+    values = np.asarray(chunked.to_numpy())
+    since = values - np.datetime64(0, "s") if values.dtype.kind == "M" else values
+    return np.asarray(since / np.timedelta64(1, "s"), dtype=np.float64)
 
 
 def _doubles(chunked: Any) -> FloatArray:

@@ -14,6 +14,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.strict_yaml import read_yaml
 from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
 
+NODES = ("compensator", "estimator")  # that have inputs, by the names of their sections in a parameter file
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
 
@@ -28,15 +29,16 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
+    suffix = path.suffix.lower()  # a logger under Windows writes LOG.CSV
     if path.is_dir() or path.suffix in BAG_SUFFIXES:
         from winch_friction.records.bags import read_bag
 
         return read_bag(path, crane, complete=complete, **bag_options)
-    if path.suffix == ".csv":
+    if suffix == ".csv":
         from winch_friction.records.csv_file import read_csv_run
 
         return read_csv_run(path, crane, complete)
-    if path.suffix in (".parquet", ".pq"):
+    if suffix in (".parquet", ".pq"):
         from winch_friction.records.parquet_file import read_parquet_run
 
         return read_parquet_run(path, crane, complete)
@@ -64,7 +66,7 @@ def refuse_same_names(runs: Sequence[Run]) -> None:
 
 def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
     """Write a run by suffix: .csv, .parquet, or a rosbag2 folder (.mcap or .db3 in the name choose the storage)."""
-    path = Path(path)
+    path = refuse_unknown_kind(Path(path))
     if path.suffix == ".csv":
         from winch_friction.records.csv_file import write_csv_run
 
@@ -73,11 +75,16 @@ def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
         from winch_friction.records.parquet_file import write_parquet_run
 
         return write_parquet_run(run, path)
-    if path.suffix in ("", ".bag", *BAG_SUFFIXES):
-        from winch_friction.records.bag_write import write_bag
+    from winch_friction.records.bag_write import write_bag
 
-        return write_bag(run, path, **bag_options)
-    raise InputError(f"{path}: cannot write this kind of file; use {KINDS}")
+    return write_bag(run, path, **bag_options)
+
+
+def refuse_unknown_kind(path: Path) -> Path:
+    """The path, when a run can be written under its name; else `InputError`."""
+    if path.suffix not in (".csv", ".parquet", ".pq", "", ".bag", *BAG_SUFFIXES):
+        raise InputError(f"{path}: cannot write this kind of file; use {KINDS}")
+    return path
 
 
 # -- how inputs travel
@@ -130,18 +137,35 @@ def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
         if str(name).rsplit("/", 1)[-1] in ("**", node):
             if not isinstance(section, Mapping) or "ros__parameters" not in section:
                 raise InputError(f"{where}: {name} has no ros__parameters; is this a ROS parameter file?")
-            merged |= section["ros__parameters"] or {}
+            own = section["ros__parameters"] or {}
+            if not isinstance(own, Mapping):
+                raise InputError(f"{where}: {name}: ros__parameters must hold names with values, found {own!r}")
+            merged |= own
     return merged
 
 
-def bag_options_of(params_file: Path | None, node: str = "compensator") -> dict[str, Any]:
+def refuse_without_nodes(content: Any, where: str) -> None:
+    """Raise `InputError` for a file none of whose sections is one of `NODES`: it would set nothing."""
+    found = [str(name) for name in content] if isinstance(content, Mapping) else []
+    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *NODES}:
+        raise InputError(
+            f"{where}: no parameters of {' or '.join(NODES)}: expected one of these names (or /**) with "
+            f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"
+        )
+
+
+def bag_options_of(params_file: Path | None) -> dict[str, Any]:
     """Options of `open_bag` from the nodes' ROS parameter file; none without one.
 
-    Raises `InputError` for what is no such file.
+    What only the estimator's section says holds, too: both nodes hear the same inputs. Raises `InputError` for what
+    is no such file.
     """
     if params_file is None:
         return {}
-    parameters = parameters_of(read_yaml(params_file), node, str(params_file))
+    content, parameters = read_yaml(params_file), dict[str, Any]()
+    refuse_without_nodes(content, str(params_file))
+    for node in reversed(NODES):
+        parameters |= parameters_of(content, node, str(params_file))
     names = {each.name for each in fields(InputMapping)}
     own = {key: tuple(filter(None, v)) if isinstance(v, list) else v for key, v in parameters.items() if key in names}
     mapping = from_mapping(InputMapping, own, str(params_file))

@@ -64,6 +64,10 @@ _CORRECTION = _object(
         "during": {"type": "array", "items": {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}},
     },
 )
+_GROUP: Schema = {
+    "type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_]*$",
+    "description": "a name of a motor group: letters, digits and _, a letter first",
+}  # fmt: skip
 _NAMES: Schema = {"type": "array", "items": TEXT}
 _CONSTANTS = {
     "max_displacement": quantity("m^3/rad"), "density": quantity("kg/m^3"), "viscosity": quantity("Pa*s"),
@@ -86,7 +90,9 @@ DECLARED: dict[str, Schema] = {
             "drive": {"anyOf": [{"enum": _DRIVES[:3]}, _DRIVE]},
             "gear_ratio": quantity("1", {"exclusiveMinimum": 0}),
             "drum": _object({"layer_radii": {"type": "array", "minItems": 1, "items": quantity("m")}}),
-            "groups": {**MAPPING_OF, "additionalProperties": {"type": "integer", "minimum": 1}},
+            "groups": {
+                **MAPPING_OF, "propertyNames": _GROUP, "additionalProperties": {"type": "integer", "minimum": 1},
+            },
             "inertia": quantity("kg*m^2", {"exclusiveMinimum": 0}),
             "absolute_torque_limit": quantity("N*m", {"exclusiveMinimum": 0}),
         },

@@ -32,8 +32,8 @@ class Telemetry:
         self._status: dict[str, dict[str, Any]] = {}
         self.time = float("nan")
 
-    def take(self, topic: str, message: Any) -> None:
-        """One message of a topic of `TOPICS`, from rclpy or from a bag."""
+    def take(self, topic: str, message: Any, receipt: float = float("nan")) -> None:
+        """One message of a topic of `TOPICS`, from rclpy or from a bag; `receipt` s dates one without a stamp."""
         if topic == "/diagnostics":
             for each in message.status:
                 self._status[each.name] = {
@@ -43,8 +43,8 @@ class Telemetry:
                     "values": {pair.key: pair.value for pair in each.values},
                 }  # fmt: skip
             return
-        stamp = message.header.stamp
-        self.time = stamp.sec + 1e-9 * stamp.nanosec
+        header = getattr(message, "header", None)  # none: a plain number of a simple bridge
+        self.time = receipt if header is None else header.stamp.sec + 1e-9 * header.stamp.nanosec
         for signal, value in _values(topic, message):
             self._add(signal, value)
 
@@ -62,6 +62,9 @@ class Telemetry:
 
 
 def _values(topic: str, message: Any) -> list[tuple[str, float]]:
+    if not hasattr(message, "header"):
+        plain = {"winch/joint_states": "speed", "winch/reference": "reference"}.get(topic)
+        return [(plain, float(message.data) / RPM)] if plain else []
     first = lambda values: float(values[0]) if len(values) else float("nan")
     if topic == "winch/joint_states":
         return [("speed", first(message.velocity) / RPM)]

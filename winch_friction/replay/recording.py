@@ -13,7 +13,6 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Other, open_bag
 from winch_friction.records.bags import bag_metadata
-from winch_friction.records.model_file import model_from_text
 from winch_friction.records.runs import BAG_SUFFIXES, read_run
 from winch_friction.records.topics import TopicMap
 from winch_friction.replay.clock import ReplayClock
@@ -91,7 +90,7 @@ def _replay_bag(
         recorded = bag.topics_ending(MODEL_TOPIC)
         for each in bag.events(*recorded):
             if isinstance(each, Other):
-                compensator.offer(model_from_text(each.message.data, each.topic))
+                compensator.offer_text(each.message.data, each.topic)
                 continue
             now = clock.read(each.stamp, each.receipt)
             compensator.take(each, now)

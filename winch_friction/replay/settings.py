@@ -12,10 +12,10 @@ from winch_friction.physics.errors import InputError, from_mapping, limits_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import load_file
 from winch_friction.records.model_file import load_model
-from winch_friction.records.runs import parameters_of
-from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.runs import NODES, parameters_of, refuse_without_nodes
+from winch_friction.records.strict_yaml import finite, read_yaml
 
-NODES = ("compensator", "estimator")
+OF_THE_ESTIMATOR = (("model_period", "model_period"), ("max_age", "estimator_max_age"))  # and what they are here
 OF_THE_COMPENSATOR = ("model_delay", "watchdog_timeout", "stamp_window")
 
 
@@ -92,28 +92,22 @@ def settings_from_file(path: Path) -> ReplaySettings:
     Terms of a `terms_file` are registered, so read the settings before the models.
     """
     content = read_yaml(path)
-    _refuse_without(NODES, content, path)
-    compensator, estimator = (parameters_of(content, node, str(path)) for node in ("compensator", "estimator"))
+    refuse_without_nodes(content, str(path))
+    compensator, estimator = (parameters_of(content, node, str(path)) for node in NODES)
     for each in (compensator, estimator):
         if terms_file := each.get("terms_file"):
             load_file(terms_file)
-    own = {key: float(value) for key, value in estimator.items() if key == "model_period"}
-    own |= {key: float(compensator[key]) for key in OF_THE_COMPENSATOR if key in compensator}
-    if "max_age" in estimator:
-        own["estimator_max_age"] = float(estimator["max_age"])
+    wanted = (*((compensator, key, key) for key in OF_THE_COMPENSATOR), *((estimator, *k) for k in OF_THE_ESTIMATOR))
+    own = {name: finite(of[key], f"{path}: {key}") for of, key, name in wanted if key in of}
+    for name in ("model_period", "estimator_max_age"):  # the others have their ranges where they are used
+        if own.get(name, 1.0) <= 0.0:
+            raise InputError(f"{path}: estimator: {name.removeprefix('estimator_')} must be above 0 s")
+    follow = compensator.get("follow_model_topic", True)
+    if not isinstance(follow, bool):
+        raise InputError(f"{path}: follow_model_topic must be true or false, found {follow!r}")
     config = from_mapping(ReplayConfig, _of(ReplayConfig, compensator), f"{path}: compensator")
-    phase = Phase(config=config, follow_models=bool(compensator.get("follow_model_topic", True)))
+    phase = Phase(config=config, follow_models=follow)
     return ReplaySettings((phase,), from_mapping(EstimatorConfig, _of(EstimatorConfig, estimator), str(path)), **own)
-
-
-def _refuse_without(nodes: tuple[str, ...], content: Any, path: Path) -> None:
-    """Raise `InputError` for a file none of whose sections is one of these nodes': it would set nothing."""
-    found = [str(name) for name in content] if isinstance(content, Mapping) else []
-    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *nodes}:
-        raise InputError(
-            f"{path}: no parameters of {' or '.join(nodes)}: expected one of these names (or /**) with "
-            f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"
-        )
 
 
 def _of(kind: type, parameters: Mapping[str, Any]) -> dict[str, Any]:

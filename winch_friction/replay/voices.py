@@ -3,9 +3,10 @@
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
-from winch_friction.online.compensator import CompensatorService
+from winch_friction.online.compensator import CompensatorService, parse
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
@@ -53,6 +54,13 @@ class CompensatorVoice:
         self._last_model = model
         if self._phase.follow_models:
             self.service.offer(model)
+
+    def offer_text(self, text: str, topic: str) -> None:
+        """A text has come on the model topic; one that is no model is refused with its reason, as by the node."""
+        try:
+            self.offer(parse(text, topic))
+        except InputError as error:
+            self.refused.append(str(error))
 
     def take(self, each: Message, now: float) -> None:
         """One input message, at `now` s on the replay's clock."""

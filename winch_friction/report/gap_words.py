@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from winch_friction.discrepancy.adequacy import told_apart
 from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
@@ -42,7 +43,11 @@ def facts(result: "GapResult") -> list[tuple[str, str]]:
     """Size, proof and certainty, each in a few words."""
     side, unit = result.holdout, shown_unit(result)
     if not side.blocks.y.size:
-        return [(each.what, f"{each.value:.3g}, needed {each.needed:g}") for each in result.adequacy if not each.met]
+        return [
+            (each.what, f"{told_apart(each.value, each.needed)}, needed {each.needed:g}")
+            for each in result.adequacy
+            if not each.met
+        ]
     found = [
         ("Gap on locked runs", f"{number(side.size_before.value, 3)} → {number(side.size_after.value, 3)} {unit} RMS"),
         ("Noise floor", f"{number(side.noise_floor, 3)} {unit}"),

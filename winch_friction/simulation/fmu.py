@@ -45,7 +45,8 @@ def load_fmu_map(path: Path | str) -> FmuMap:
     for link in outputs:
         if link.column.rpartition(".")[2] not in OUTPUTS:
             raise InputError(f"{path}: outputs: '{link.column}' is not a simulated column; use {', '.join(OUTPUTS)}")
-    parameters = {str(k): float(v) for k, v in (top.get("parameters") or {}).items()}
+    given = top.section("parameters") if top.get("parameters") else Section({}, f"{path}: parameters")
+    parameters = {str(name): given.number(name) for name in given.content}
     top.close()
     return FmuMap(inputs, outputs, parameters)
 
@@ -102,7 +103,7 @@ def _simulated(fmpy: Any, path: Path, links: FmuMap, signals: np.ndarray, name: 
             fmi_type="CoSimulation",
         )  # fmt: skip
     except Exception as error:  # whatever a foreign binary raises
-        raise InputError(f"{path}: the FMU failed on {name}: {str(error).splitlines()[0]}") from None
+        raise InputError(f"{path}: the FMU failed on {name}: {_words(error)}") from None
 
 
 def _described(fmpy: Any, path: Path) -> Any:
@@ -111,10 +112,15 @@ def _described(fmpy: Any, path: Path) -> Any:
     try:
         description = fmpy.read_model_description(str(path), validate=False)
     except Exception as error:  # a file that is no archive, or an archive that is no FMU
-        raise InputError(f"{path}: not an FMU that can be read ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path}: not an FMU that can be read ({_words(error)})") from None
     if description.coSimulation is None:
         raise InputError(f"{path}: an FMU for model exchange alone; export it for co-simulation")
     return description
+
+
+def _words(error: Exception) -> str:
+    """The first line of what a foreign program says; its kind where it says nothing."""
+    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def _fmpy() -> Any:

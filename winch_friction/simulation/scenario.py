@@ -1,6 +1,7 @@
 """Scenarios: what happens to the simulated winch, from YAML, checked by pydantic."""
 
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -37,7 +38,11 @@ def _steps(unit: str) -> Callable[[Any], Any]:
         )
         if not pairs:
             raise ValueError(f"must be a list of [time s, value in {unit}] pairs")
-        return tuple((as_quantity(t, "s", "time"), as_quantity(v, unit, "value")) for t, v in content)
+        points = tuple((as_quantity(t, "s", "time"), as_quantity(v, unit, "value")) for t, v in content)
+        back = next(((a[0], b[0]) for a, b in pairwise(points) if b[0] < a[0]), None)
+        if back:  # between them nobody could say what holds
+            raise ValueError(f"times must not go back: {back[1]:g} s stands behind {back[0]:g} s")
+        return points
 
     return read
 
@@ -200,6 +205,8 @@ class Scenario(Strict):
         ratio = 1.0 / (rate * period)
         if abs(ratio - round(ratio)) > 1e-6:
             raise ValueError("the sensors' period must be a whole number of control periods")
+        if values["duration"] * rate < 2.0:
+            raise ValueError(f"duration {values['duration']:g} s holds no two samples at {rate:g} Hz: no run")
         return values
 
     def override(self, changes: dict[str, Any]) -> "Scenario":

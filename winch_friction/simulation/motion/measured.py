@@ -9,6 +9,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.headers import conversion_to_si, parse_header
+from winch_friction.records.strict_yaml import utf_8_text
 
 SLOWEST = 2.0  # s between two heights; a wave of 6 s has three of them
 LARGEST = 20.0  # m about the mean: no crane tip heaves more
@@ -64,7 +65,7 @@ def load_heave(path: Path, start: float = 0.0) -> MeasuredHeave:
 
 
 def _columns(path: Path) -> tuple[FloatArray, FloatArray]:
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    lines = utf_8_text(path).splitlines()
     headers = [parse_header(cell.strip()) for cell in (lines[0].split(",") if lines else [])]
     names = [header.name for header in headers]
     missing = [name for name in COLUMNS if name not in names]
@@ -82,6 +83,6 @@ def _columns(path: Path) -> tuple[FloatArray, FloatArray]:
 
 def _number(row: list[str], at: int) -> float:
     try:
-        return float(row[at])
+        return float("nan" if "_" in row[at] else row[at])  # 1_000 is a number in Python alone
     except (ValueError, IndexError):
         return float("nan")

@@ -1,0 +1,55 @@
+"""A folder with somebody else's files of the same names is refused before the work; an earlier result is replaced."""
+
+import importlib
+
+import pytest
+
+from winch_friction.cli.console import refuse_foreign
+from winch_friction.cli.main import run
+from winch_friction.physics.errors import InputError
+from winch_friction.records.atomic import config_directory
+
+RUN = str(config_directory() / "examples" / "practice_150t" / "test_02.parquet")
+MACHINE = ["--crane", "crane_150t", "--model", "a6vm215_crane2"]
+# verb -> words, the work that must not have begun, a file that it would write, its mark
+VERBS = {
+    "gap": (["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "model.yaml", "gap.json"),
+    "gap, a law of one's own": (
+        ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "proposal_1.py", "gap.json",
+    ),
+    "check": (
+        ["check", RUN, *MACHINE], "winch_friction.commissioning.commissioning.check", "check.html", "check.json",
+    ),
+    "practice": (
+        ["identify", "practice", "practice_150t"], "winch_friction.identification.practice.run_practice", "motor.yaml",
+        "report.html",
+    ),
+    "fleet": (["fleet", "check", RUN, *MACHINE], "winch_friction.cli.fleet._done", "report.html", "fleet.jsonl"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_what_somebody_else_wrote_is_not_replaced(verb, tmp_path, monkeypatch, capsys):
+    words, work, name, _ = VERBS[verb]
+    module, _, function = work.rpartition(".")
+
+    def begun(*_, **__):
+        raise AssertionError("the work has begun")
+
+    monkeypatch.setattr(importlib.import_module(module), function, begun)
+    (tmp_path / name).write_text("mine")
+    assert run([*words, "--out", str(tmp_path)]) == 2
+    assert f"--out {tmp_path}: holds {name}, no result of this verb" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "mine"
+
+
+def test_an_earlier_result_and_a_folder_of_other_things_are_no_hindrance(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")
+    (tmp_path / "model.yaml").write_text("of an earlier call")
+    (tmp_path / "gap.json").write_text('{"schema": "other.gap/1"}')
+    with pytest.raises(InputError, match=r"model\.yaml"):
+        refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")
+    (tmp_path / "gap.json").write_text('{"schema": "winch_friction.gap/2"}')
+    refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")

@@ -247,8 +247,9 @@ def test_a_transducer_of_one_group_and_the_feedback_of_another_are_two_causes(
         for run in runs_with(seed, flavour, length=length)
     ]
     found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
-    assert [each.name for each in found.effects] == ["pressure_offset", "swivel_offset"]
+    named = {each.name: each.parameters for each in found.effects}
+    assert sorted(named) == ["pressure_offset", "swivel_offset"]
     assert at_the_floor(found.holdout)
-    zero, stroke = (each.parameters[name].value for each, name in zip(found.effects, ("p_0", "D_0"), strict=True))
+    zero, stroke = named["pressure_offset"]["p_0"].value, named["swivel_offset"]["D_0"].value
     assert zero == pytest.approx(-3e5, abs=0.3e5)
     assert stroke == pytest.approx(2.0 * CM3_PER_REV, abs=0.1 * CM3_PER_REV)

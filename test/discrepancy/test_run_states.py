@@ -37,7 +37,8 @@ def with_offset(runs, there):
     return found
 
 
-@pytest.mark.parametrize("pattern", ["since a date", pytest.param("in some runs", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("pattern", ["since a date", "in some runs"])
 def test_a_zero_that_is_off_in_some_runs_is_named_and_the_file_says_when(pattern, tmp_path):
     runs = runs_with(SEED, "quiet")
     order = np.argsort([run.time[0] for run in runs])

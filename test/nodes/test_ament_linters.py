@@ -41,6 +41,7 @@ def test_ament_flake8(tmp_path):
     )
 
 
+@pytest.mark.long
 def test_ament_pep257():
     assert "No problems found" in lint("ament_pep257", "--add-ignore", *OTHER_DOCSTRINGS, "--", *LINTED)
 

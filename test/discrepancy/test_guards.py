@@ -403,17 +403,19 @@ def test_a_small_second_name_is_dropped_and_a_second_law_of_the_same_cause_is_no
     assert len(proven.search.selection.final.slots) == stay
 
 
+@pytest.mark.parametrize("alone", [0.0, 2.0])  # what the other leaves of the locked runs by itself
 @pytest.mark.parametrize(("share", "name", "rivals"), [(0.3, "wave", {"other"}), (0.7, "other", {"wave"})])
-def test_what_did_as_well_alone_is_a_rival_of_what_stays(share, name, rivals):
+def test_what_did_as_well_alone_is_a_rival_of_what_stays(share, name, rivals, alone):
     """Two causes of nearly one trace share a gap; the locked runs need one of them, the closer one, which need not be
-    the first: the other is no less likely."""
+    the first: the other is no less likely, by the training runs too."""
     twin = WAVE + 0.2 * OTHER
     cross = crossfit(3.0 * WAVE + 3.0 * share * 0.2 * OTHER + noise(), other=twin)
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
     search = _Search(cross, Selection(cross.explain(()), cross.explain(SLOTS), found))
 
     def trial_of(own):
-        left = 3.0 * WAVE * (not own.selection.final.names) + noise(1)
+        names = own.selection.final.names
+        left = (3.0 * (not names) + alone * (set(names) == rivals)) * WAVE + noise(1)
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))

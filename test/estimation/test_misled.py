@@ -156,3 +156,15 @@ def test_another_load_that_nobody_shows_does_not_lock_the_gate(crane, seed, show
             each.step(sample)
         assert each.counts["rejected"] - rejected < 50  # of a thousand
         assert each.drum_torque == pytest.approx(crane.drum_torque(load), rel=0.02)
+
+
+def test_a_load_taken_anew_is_what_the_dead_cells_last_word_lacks(crane, seed):
+    """The estimator knows of 55 t; where 20 t are balanced, what hangs there beyond the 55 is -35."""
+    each = FrictionEstimator(crane, seed, CONFIG)
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=5.0):
+        each.step(sample)
+    lighter = list(rigid_samples(crane, seed, amplitude=150.0, duration=5.0, load=20e3))
+    steady = max(lighter, key=lambda sample: sample.motor_speed)  # where nothing accelerates
+    each._begin_load(replace(steady, hook_load=math.nan))
+    # of one sample, its friction reckoned under 55 t
+    assert each.drum_torque == pytest.approx(crane.drum_torque(20e3), rel=0.1)

@@ -14,10 +14,8 @@ from typing import Any
 import numpy as np
 
 from winch_friction.cli.console import progress, show_warnings
+from winch_friction.fleet.recordings import RUN_SUFFIXES, TRUTH
 from winch_friction.physics.errors import InputError, Problems
-
-RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
-TRUTH = "_truth"  # what simulate --truth appends to a run's name
 
 
 def run_paths(paths: Sequence[Path]) -> list[Path]:

@@ -227,7 +227,7 @@ def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:
     """Which runs have what a table of windows over time says, and how much of it."""
     found = []
     for term in model.terms:
-        if term.table is None or term.table.shape != "windows" or term.table.signals != ("time",):
+        if term.table is None or not term.table.in_times:
             continue
         level = model.value(term.parameters[0].name)
         own = [(run.name, in_windows(term.table, level, float(run.time[len(run) // 2]))) for run in runs]

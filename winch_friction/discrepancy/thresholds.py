@@ -19,7 +19,6 @@ class Thresholds:
     # s of one run of heave compensation in which no swing could be told: what it began with has died by then, three
     # decay times of a rope's lightest damping (ratio 0.02) at the slowest mode (2.5 rad/s)
     swing_told: float = 60.0
-    told_by_signal: float = 0.35  # of the variance of the runs' levels: a signal that leaves less tells them
     least_share_moving: float = 0.0  # said, not asked for: a long idle log may hold enough
     # -- blocks and segments
     block_time: float = 0.2  # s: the fast noise averages out, friction does not
@@ -95,6 +94,9 @@ class Thresholds:
     levels_surer: float = 0.35
     other_level: float = 0.2  # of what lies between two levels, above which the one nearer to zero counts as well
     fewest_levels: int = 6  # runs, for two levels to be told
+    # of the variance of the runs' levels: a signal, or the date, that leaves less tells them. Of amounts that are drawn
+    # at random 4 in a hundred seem to follow one of two; steps of a signal and laws of it leave a tenth
+    told_by_signal: float = 0.35
     # -- remainder
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves

@@ -69,7 +69,8 @@ def _effect(effect: Effect, result: GapResult) -> str:
     text = effect_text(effect.name)
     rivals = paragraph(f"These runs cannot tell it from {' or '.join(effect.rivals)}.") if effect.rivals else ""
     drawn, curve = _curve(effect, model)
-    drawn, curve = (drawn, curve) if drawn else _by_run(effect, result)
+    if not drawn:
+        drawn, curve = _by_run(effect, result)
     rows = [
         (name, value_for_people(e.value, e.unit), value_for_people(e.std, e.unit), for_people(e.unit))
         for name, e in effect.parameters.items()
@@ -127,9 +128,7 @@ def _curve(effect: Effect, model: FrictionModel) -> tuple[set[str], str]:
 def _by_run(effect: Effect, result: GapResult) -> tuple[set[str], str]:
     """The parameter of a table of windows over time that an effect's law is, and what it says of every run."""
     tables = [(term.table, term.parameters[0].name) for term in result.model.terms if term.table is not None]
-    own = [
-        (t, name) for t, name in tables if t.shape == "windows" and t.signals == ("time",) and name in effect.parameters
-    ]
+    own = [(table, name) for table, name in tables if table.in_times and name in effect.parameters]
     if len(own) != 1:
         return set(), ""
     table, name = own[0]

@@ -99,6 +99,11 @@ class Table:
         )
 
     @property
+    def in_times(self) -> bool:
+        """Whether it says what was there for a time: windows over the date."""
+        return self.shape == "windows" and self.signals == ("time",)
+
+    @property
     def signals(self) -> tuple[str, ...]:
         """Names of the signals that it is a table over."""
         return tuple(name for name, _ in self.knots)

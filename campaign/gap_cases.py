@@ -8,7 +8,7 @@ import numpy as np
 
 from campaign.rig import CATALOGUE, DRAWN, DRAWN_LAW, FLAVOURS, LAWS, OUTSIDE, suitable_flavours
 
-FAR = (2.0, 3.0)  # sigma
+NEAR, FAR = (0.0, 1.5), (2.0, 3.0)  # sigma
 # structurally the same trace (docs/physics.md §3), so not a pair of two
 _TIED = ({"gear_load_loss", "sheave_bending"}, {"pressure_offset", "tare_load"}, {"brake_drag", "wear_drift"})
 
@@ -22,7 +22,7 @@ class Case:
     effects: tuple[tuple[str, float], ...]
     flavour: str
     seed: int
-    sigma: tuple[float, float] = (0.0, 1.5)  # how far the base parameters lie from the seed model, least and most
+    sigma: tuple[float, float] = NEAR  # how far the base parameters lie from the seed model, least and most
 
     @property
     def key(self) -> str:

@@ -106,7 +106,9 @@ def test_halves_of_gram_matrices_are_the_whole():
     whole = np.array([z[blocks.segment == k].T @ z[blocks.segment == k] for k in np.unique(blocks.segment)])
     np.testing.assert_array_equal(kept.total(), whole.sum(axis=0))
     np.testing.assert_array_equal(kept.total(own), whole[own].sum(axis=0))
-    np.testing.assert_array_equal(kept.part(own, index), whole[np.ix_(own, index, index)])
+    beta = np.arange(2.0 * len(whole)).reshape(-1, 2) - 3.0
+    squares = [b @ part[np.ix_(index, index)] @ b for part, b in zip(whole, beta, strict=True)]
+    np.testing.assert_allclose(kept.squares(index, beta), squares, rtol=1e-12)
 
 
 def test_segments_need_not_stand_in_order():

@@ -93,9 +93,12 @@ class Grams:
         upper = self.upper if own is None else self.upper[own]
         return np.asarray(upper.sum(axis=0)[self._place])
 
-    def part(self, own: np.ndarray, index: np.ndarray) -> FloatArray:
-        """The matrices of these segments and columns, (own, index, index)."""
-        return np.asarray(self.upper[own[:, None, None], self._place[np.ix_(index, index)]])
+    def squares(self, index: np.ndarray, beta: FloatArray) -> FloatArray:
+        """What these columns by coefficients (s, index), of every segment its own, add up to, squared: (s,)."""
+        rows, columns = np.triu_indices(len(index))
+        twice = np.where(rows == columns, 1.0, 2.0)
+        half = self.upper[:, self._place[index[rows], index[columns]]]
+        return np.asarray(np.einsum("sh,h,sh,sh->s", half, twice, beta[:, rows], beta[:, columns]))
 
 
 def segment_length(total: float) -> float:

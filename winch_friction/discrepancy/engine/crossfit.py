@@ -46,14 +46,14 @@ class CrossFit:
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         g = problem.grams
-        self.fold = _folds(g.run)
+        self.fold = np.unique(_folds(g.run), return_inverse=True)[1]  # numbered from 0
         self.total_g, self.total_b = g.total(), g.b.sum(axis=0)
         self.total_y2 = float(g.y2.sum())
         self.unresolved = float(problem.unresolved.sum())
         self.sums = []
-        for k in np.unique(self.fold):
+        for k in range(self.fold.max(initial=-1) + 1):
             own = np.flatnonzero(self.fold == k)
-            self.sums.append((own, self.total_g - g.total(own), self.total_b - g.b[own].sum(axis=0)))
+            self.sums.append((self.total_g - g.total(own), self.total_b - g.b[own].sum(axis=0)))
         # a search asks for most sets three times; each answer keeps its slots alive, so that an id stays one slot's
         self._fits: dict[tuple[int, ...], tuple[float, FloatArray]] = {}
         self._explained: dict[tuple[int, ...], Explanation] = {}
@@ -95,13 +95,12 @@ class CrossFit:
     def _explain(self, slots: Sequence[Slot]) -> Explanation:
         columns = self.problem.columns(slots)
         index = np.asarray(columns)
-        losses, left_out = np.empty(len(self.fold)), np.empty((len(self.sums), len(columns)))
         g = self.problem.grams
         loss, beta = self.train_loss(slots)
-        for k, (own, sum_g, sum_b) in enumerate(self.sums):
-            left_out[k] = without = self.problem.fit(sum_g, sum_b, columns, beta)
-            part = g.part(own, index)
-            losses[own] = g.y2[own] - 2.0 * g.b[np.ix_(own, index)] @ without + (part @ without) @ without
+        fits = [self.problem.fit(sum_g, sum_b, columns, beta) for sum_g, sum_b in self.sums]
+        left_out = np.reshape(fits, (-1, len(columns)))
+        without = left_out[self.fold]
+        losses = g.y2 - 2.0 * np.einsum("sc,sc->s", g.b[:, index], without) + g.squares(index, without)
         return Explanation(tuple(slots), losses, beta, loss, left_out)
 
     def at_bound(self, explanation: Explanation, slot: Slot) -> bool:

@@ -92,8 +92,7 @@ def _wire_weight(mass: FloatArray, paid_out: FloatArray, acceleration: FloatArra
 
     A cell that feels the load accelerate goes with the length as well, for in a cycle the one follows the other.
     """
-    beside = [np.ones(len(mass)), acceleration]
-    left = [_left(beside, each) for each in (mass, paid_out)]
+    left = [_left(acceleration, each) for each in (mass, paid_out)]
     spread = float(left[1] @ left[1])
     slope = float(left[1] @ left[0]) / spread if spread > 1e-12 * float(paid_out @ paid_out) else 0.0
     heaviest = HEAVIEST_WIRE * crane.wire_mass if crane.wire_mass > 0.0 else HEAVIEST_UNKNOWN
@@ -101,10 +100,11 @@ def _wire_weight(mass: FloatArray, paid_out: FloatArray, acceleration: FloatArra
     return slope * paid_out if follows and 0.0 < slope <= heaviest else np.zeros(len(mass))
 
 
-def _left(columns: list[FloatArray], values: FloatArray) -> FloatArray:
-    """Values without what a sum of the columns makes of them."""
-    matrix = np.column_stack(columns)
-    return np.asarray(values - matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0])
+def _left(beside: FloatArray, values: FloatArray) -> FloatArray:
+    """Values without their mean and without what a multiple of the other signal makes of them."""
+    along, own = beside - np.mean(beside), values - np.mean(values)
+    square = float(along @ along)
+    return np.asarray(own - along * (float(along @ own) / square) if square > 0.0 else own)
 
 
 def _tension(grid: Grid, radius: FloatArray, crane: Crane) -> FloatArray | None:

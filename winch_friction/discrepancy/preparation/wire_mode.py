@@ -213,17 +213,18 @@ class _Judge:
         return max(square - float(np.sum(along[: self._widths[parts]] ** 2)), 0.0) / len(self._samples) + 1e-12
 
     def _components(self, values: FloatArray) -> tuple[float, FloatArray]:
-        return float(values @ values), values @ self._axes
+        return float(values @ values), self._axes @ values
 
     def _orthonormal(self, columns: Sequence[FloatArray]) -> FloatArray:
-        """A unit axis for each column, at right angles to those before; nothing for one that they make up."""
+        """A unit axis for each column, at right angles to those before; nothing for one that they make up. (axes,
+        samples)"""
         if not columns:
-            return np.empty((len(self._samples), 0))
+            return np.empty((0, len(self._samples)))
         levelled = np.column_stack([self._levelled(each) for each in columns])
         axes, upper = np.linalg.qr(levelled)
         sizes = np.array([np.linalg.norm(each[self._samples]) for each in columns])
         axes[:, np.abs(np.diag(upper)) <= NOTHING_OWN * sizes] = 0.0
-        return np.asarray(axes)
+        return np.ascontiguousarray(axes.T)
 
     def _levelled(self, values: FloatArray) -> FloatArray:
         own = values[self._samples]

@@ -1,6 +1,6 @@
 """The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
 STEP = LIMITS.step * LIMITS.least_noise
+HELD = 1e-6  # of a tolerance: so little that it is none
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
@@ -32,10 +33,12 @@ TOLERANCES = (
 )
 
 
-def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, float] | None = None) -> Base:
+def base_of(
+    model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, float] | None = None, held: Collection[str] = ()
+) -> Base:
     """Prior scale and box of the base parameters around the point of expansion, the measurement's tolerances, and what
-    the model's corrections may be off by. `loose` gives parameters and
-    corrections another deviation than the model's.
+    the model's corrections may be off by. `loose` gives parameters and corrections another deviation than the model's;
+    the tolerances in `held` are left no room.
     """
     seed, at = np.array(model.values), np.array(expanded.values)
     std = np.array([(loose or {}).get(n, s) for n, s in zip(model.parameter_names, model.std, strict=True)])
@@ -45,7 +48,9 @@ def base_of(model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, f
     shift = (at - seed) / scale
     lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
     upper = np.minimum(LIMITS.prior_bound - shift, (bounds[:, 1] - at) / scale)
-    more = [(sigma, low / sigma, high / sigma) for _, sigma, low, high in TOLERANCES]
+    more = [
+        (sigma * (HELD if name in held else 1.0), low / sigma, high / sigma) for name, sigma, low, high in TOLERANCES
+    ]
     more += [
         ((loose or {}).get(key_of(each)) or correction_std(each), -LIMITS.prior_bound, LIMITS.prior_bound)
         for each in expanded.corrections

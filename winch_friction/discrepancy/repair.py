@@ -26,7 +26,7 @@ from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Term, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
-from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.correction import Action, Correction
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
@@ -234,7 +234,10 @@ def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[st
 
 def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Change of parameters and corrections, the parameters' covariance and the corrections' deviations."""
-    base = base_of(prior, now.model, loose)
+    # a delay that is in the model is all that the signals are out of step by: the tolerance beside it would keep a part
+    # of it, and the file does not carry tolerances
+    delayed = any(each.declared.action is Action.DELAY and not each.during for each in now.model.corrections)
+    base = base_of(prior, now.model, loose, held=("timing",) if delayed else ())
     cross = CrossFit(build_problem(now.prepared, layout_of(base, (), now.prepared, prior)))
     fitted = cross.explain(())
     count, corrections = base.parameters, len(now.model.corrections)

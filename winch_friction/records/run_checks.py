@@ -7,6 +7,7 @@ shorter than a second, columns that are not of the contract (kept aside), and wh
 another unit by a column without one, which is SI.
 """
 
+import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -52,6 +53,20 @@ def remarks_on_bare_columns(name: str, columns: Mapping[str, FloatArray], bare: 
             f"{name}: no sensor gives this: {'; '.join(impossible + [s.partition(': ')[2] for s in said])}"
         )
     return said
+
+
+# -- what is kept beside the columns
+
+
+def own_metadata(text: Any, name: str) -> tuple[dict[str, Any], list[str]]:
+    """What this package wrote about a run, from its JSON; nothing where it is none, and then a warning of the run."""
+    try:
+        found = json.loads(text)
+    except (TypeError, ValueError, RecursionError):
+        found = None
+    if isinstance(found, dict):
+        return found, []
+    return {}, [f"{name}: what it keeps of itself (crane, settings) is not the JSON that was written: left out"]
 
 
 # -- the checks

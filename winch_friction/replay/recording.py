@@ -82,7 +82,8 @@ def replay_run(
 def _replay_bag(
     path: Path, crane: Crane, seed: FrictionModel, settings: ReplaySettings | None, learn: bool, options: dict[str, Any]
 ) -> Replayed:
-    settings = settings or settings_from_metadata(bag_metadata(path), str(path)) or ReplaySettings()
+    metadata, spoilt = bag_metadata(path)
+    settings = settings or settings_from_metadata(metadata, str(path)) or ReplaySettings()
     with open_bag(path, crane, **options) as bag:
         begin = next((each.stamp for each in bag.inputs()), -inf)
         compensator = CompensatorVoice(crane, seed, bag.topics, settings, begin)
@@ -97,7 +98,7 @@ def _replay_bag(
             learned = estimator.take(each, now)
             if learned is not None and learn and not recorded:
                 compensator.offer(learned)
-        warnings = tuple(bag.warnings)
+        warnings = (*spoilt, *bag.warnings)
     if not len(compensator.steps):
         raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
     replayed = _replayed(path.name, compensator, estimator, warnings)

@@ -7,6 +7,9 @@ import pytest
 import yaml
 from run_strategies import make_run
 
+from winch_friction.cli.inputs import run_paths
+from winch_friction.cli.live import bag_frames
+from winch_friction.importing.reading import read_log
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.runs import read_run, write_run
@@ -34,6 +37,20 @@ def test_dates_of_a_parquet_file_are_seconds(tmp_path, unit):
 def test_a_logger_under_windows_writes_capitals(tmp_path):
     run = write_run(make_run(rows=3), tmp_path / "log.csv")
     assert len(read_run(run.rename(tmp_path / "LOG.CSV"))) == 3
+
+
+@pytest.mark.parametrize("kind", ["mcap", "db3"])
+def test_a_bag_in_capitals_is_a_bag(tmp_path, kind, crane_150t, crane2_model):
+    """It was listed as a run of the folder and refused as no kind of run file."""
+    written = write_run(make_run(groups=("active", "passive"), rows=100), tmp_path / f"run.{kind}")
+    path = written.rename(tmp_path / f"RUN.{kind.upper()}")
+    assert len(read_run(path)) == 100
+    (found,) = run_paths([tmp_path])
+    assert len(read_run(found)) == 100
+    assert len(replay_recording(path, crane_150t, crane2_model).compensator)
+    assert len(read_log(path)) == 100
+    for bag in (path, tmp_path):
+        assert sum(len(frame["points"].get("speed", ())) for frame in bag_frames(bag, "", 0.0))
 
 
 SPOILT = ("{'crane': 'x'}", "[1, 2]", "")

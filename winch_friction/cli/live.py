@@ -130,11 +130,15 @@ def _opened(path: Path) -> Iterator[Any]:
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
+    from winch_friction.records.bag_file import storage_of
+
     if not path.exists():
         raise InputError(f"{path}: no such bag")
     try:
-        reader: Any = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
+        reader: Any = AnyReader([storage_of(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY))
         reader.open()
+    except InputError:
+        raise
     except Exception as error:  # rosbags raises its own kinds for what is no bag
         raise InputError(f"{path}: not a bag that can be read ({error})") from error
     try:

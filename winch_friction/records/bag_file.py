@@ -158,7 +158,7 @@ def _reader(path: Path) -> Iterator[Any]:
     from rosbags.rosbag2 import Reader
 
     try:
-        reader = Reader(_storage(path))
+        reader = Reader(storage_of(path))
         reader.open()
     except Exception as error:  # rosbags raises its own errors, sqlite's, struct's and assertions for broken files
         said = (str(error) or type(error).__name__).splitlines()[0][:120]
@@ -169,11 +169,19 @@ def _reader(path: Path) -> Iterator[Any]:
         reader.close()
 
 
-def _storage(path: Path) -> Path:
-    """The folder, or its only storage file when the recorder was killed before it wrote metadata.yaml."""
+class _Storage(type(Path())):  # type: ignore[misc]
+    """A path whose ending is small: rosbags tells by it what a file is, and a logger under Windows writes RUN.MCAP."""
+
+    @property
+    def suffix(self) -> str:
+        return str(super().suffix.lower())
+
+
+def storage_of(path: Path) -> Path:
+    """What rosbags opens: the folder, or its only storage file when the recorder was killed before metadata.yaml."""
     if not path.is_dir() or (path / "metadata.yaml").is_file():
-        return path
-    files = sorted(each for each in path.iterdir() if each.suffix in (".mcap", ".db3"))
+        return _Storage(path)
+    files = sorted(each for each in map(_Storage, path.iterdir()) if each.suffix in (".mcap", ".db3"))
     if len(files) != 1:
         raise InputError(f"{path}: not a rosbag2 folder: no metadata.yaml and {len(files)} storage files")
     return files[0]

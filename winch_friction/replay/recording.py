@@ -13,7 +13,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Other, open_bag
 from winch_friction.records.bags import bag_metadata
-from winch_friction.records.runs import BAG_SUFFIXES, read_run
+from winch_friction.records.runs import is_bag, read_run
 from winch_friction.records.topics import TopicMap
 from winch_friction.replay.clock import ReplayClock
 from winch_friction.replay.live import Comparison, compare_live
@@ -58,7 +58,7 @@ def replay_recording(
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
-    if path.is_dir() or path.suffix in BAG_SUFFIXES:
+    if is_bag(path):
         return _replay_bag(path, crane, seed, settings, learn, bag_options)
     return replay_run(read_run(path, crane), crane, seed, settings or ReplaySettings(), learn=learn)
 

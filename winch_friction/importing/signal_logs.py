@@ -4,7 +4,7 @@ Signals of rates of their own are put on the densest signal's times, each held a
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -37,20 +37,34 @@ class Signal:
     note: str = ""
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a file holds: its signals, what it says of itself, and what is to be said of it."""
+
+    signals: list[Signal]
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
 def read_signal_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     """A log of signals by the file's ending; raises `InputError` in one line for what cannot be read."""
     kind = "bag" if path.is_dir() else path.suffix.lower()
     try:
-        signals, metadata = _READERS[kind](path)
+        found = _READERS[kind](path)
     except InputError:
         raise
     except Exception as error:  # every one of these libraries raises what its parser meets
         said = (str(error) or type(error).__name__).splitlines()[0][:100]
         raise InputError(f"{path}: not a readable {kind} file ({said})") from error
-    columns, notes = _aligned(path, [each for each in signals if np.ndim(each.values) == 1 and len(each.values) > 1])
+    signals = [each for each in found.signals if np.ndim(each.values) == 1 and len(each.values) > 1]
+    try:
+        columns, notes = _aligned(path, signals)
+    except InputError as error:  # what is lost may be why
+        raise InputError(*error.problems, *(f"{path}: {note}" for note in found.notes)) from None
     return Log(
-        path, tuple(columns), {"kind": kind.lstrip(".")}, lambda row: f"sample {row + 1}", tuple(notes), metadata
-    )
+        path, tuple(columns), {"kind": kind.lstrip(".")}, lambda row: f"sample {row + 1}", (*found.notes, *notes),
+        found.metadata,
+    )  # fmt: skip
 
 
 def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:
@@ -115,23 +129,23 @@ def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
     return as_column(name, cells, decimal, thousands, signal.unit, signal.note)
 
 
-def _parquet(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _parquet(path: Path) -> Found:
     table = library("pyarrow.parquet", "Parquet logs").ParquetFile(path).read()
-    return [Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names], {}
+    return Found([Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names])
 
 
-def _mat(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _mat(path: Path) -> Found:
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
     try:
         content = loadmat(path, squeeze_me=True, struct_as_record=False, simplify_cells=True)
     except NotImplementedError:  # version 7.3 is HDF5
-        return list(_hdf5(path)), {}
+        return Found(list(_hdf5(path)))
     found = [each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)]
     if not found and any(isinstance(value, MatlabOpaque) for value in content.values()):
         raise InputError(f"{path}: {_OBJECTS.format('a timetable, table or other object')}")
-    return found, {}
+    return Found(found)
 
 
 def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
@@ -177,7 +191,7 @@ def _hdf5(path: Path) -> Iterator[Signal]:
         yield from _arrays(name, array, 0)
 
 
-def _tdms(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _tdms(path: Path) -> Found:
     tdms = library("nptdms", "LabVIEW .tdms logs").TdmsFile.read(path)
     channels = [channel for group in tdms.groups() for channel in group.channels() if len(channel)]
     signals = []
@@ -189,10 +203,10 @@ def _tdms(path: Path) -> tuple[list[Signal], dict[str, Any]]:
             start = float(channel.properties.get("wf_start_offset", 0.0))
             times = np.asarray(start + float(step) * np.arange(len(channel)), dtype=np.float64)
         signals.append(Signal(channel.name, channel[:], unit, times))
-    return signals, {key: str(value) for key, value in tdms.properties.items()}
+    return Found(signals, {key: str(value) for key, value in tdms.properties.items()})
 
 
-def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _mdf(path: Path) -> Found:
     mdf = library("asammdf", "ASAM .mf4 logs").MDF(path)
     try:
         start = mdf.header.start_time.timestamp()
@@ -205,13 +219,13 @@ def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
         ]
     finally:
         mdf.close()
-    return signals, {"start": start}
+    return Found(signals, {"start": start})
 
 
-def _bag(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _bag(path: Path) -> Found:
     from winch_friction.importing.bag_log import bag_signals
 
-    return bag_signals(path), {}
+    return bag_signals(path)
 
 
 _READERS = {

@@ -1,14 +1,15 @@
 """A rosbag2 recording opened for reading: its topics matched to the winch's, its messages in the order of arrival."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bag_storage import readable, refused, storage_of
 from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
@@ -80,9 +81,7 @@ class Bag:
         connections = [each for each in self._reader.connections if each.topic in topics]
         if not connections:
             return
-        came = 0
-        for connection, receipt, raw in self._reader.messages(connections):
-            came += 1
+        for connection, receipt, raw in readable(self._reader, connections, self.name, self.warnings):
             reader = READERS.get(connection.msgtype)
             try:
                 if reader is not None and raw[:2] == LITTLE_ENDIAN:
@@ -93,7 +92,6 @@ class Bag:
                 self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
                 continue
             yield connection.topic, receipt * NANOSECOND, message
-        self.warnings += damage(self.name, connections, came)
 
     def topics_ending(self, suffix: str) -> list[str]:
         """Topics by the end of their name, e.g. `/friction_torque`; those of another winch in the bag are not ours."""
@@ -102,14 +100,6 @@ class Bag:
         own = self.actual[self.topics.speed_topic].removesuffix(SPEED_TOPIC)
         of = lambda topic: max((each for each in spaces if topic.startswith(each)), key=len, default=own)
         return sorted(each for each in topics if each.endswith(suffix) and of(each) == own)
-
-
-def damage(name: str, connections: Sequence[Any], came: int) -> list[str]:
-    """What is said when of rosbags' `connections` fewer messages came than the bag's index counts; else nothing."""
-    counted = sum(each.msgcount or 0 for each in connections)
-    if came >= counted:
-        return []
-    return [f"{name}: the file is damaged: of {counted} messages {came} can be read, the rest is lost; copy it anew"]
 
 
 @contextmanager
@@ -139,7 +129,7 @@ def open_bag(
         bag = Bag(path.name, topics, actual, [], reader, typestore)
         _check_types(path, reader, bag)
         bag.warnings += _passed_over(path.name, reader, typestore, set(actual.values()))
-        bag._offset = _clock_offset(bag)
+        bag._offset = _clock_offset(replace(bag, warnings=[], _broken={}))  # what is lost is said of the reading
         yield bag
 
 
@@ -157,34 +147,16 @@ def open_reader(path: Path) -> Iterator[tuple[Any, Any]]:
 def _reader(path: Path) -> Iterator[Any]:
     from rosbags.rosbag2 import Reader
 
+    storage = storage_of(path)
     try:
-        reader = Reader(storage_of(path))
+        reader = Reader(storage)
         reader.open()
     except Exception as error:  # rosbags raises its own errors, sqlite's, struct's and assertions for broken files
-        said = (str(error) or type(error).__name__).splitlines()[0][:120]
-        raise InputError(f"{path}: not a readable rosbag2 recording ({said})") from error
+        raise refused(path, error) from error
     try:
         yield reader
     finally:
         reader.close()
-
-
-class _Storage(type(Path())):  # type: ignore[misc]
-    """A path whose ending is small: rosbags tells by it what a file is, and a logger under Windows writes RUN.MCAP."""
-
-    @property
-    def suffix(self) -> str:
-        return str(super().suffix.lower())
-
-
-def storage_of(path: Path) -> Path:
-    """What rosbags opens: the folder, or its only storage file when the recorder was killed before metadata.yaml."""
-    if not path.is_dir() or (path / "metadata.yaml").is_file():
-        return _Storage(path)
-    files = sorted(each for each in map(_Storage, path.iterdir()) if each.suffix in (".mcap", ".db3"))
-    if len(files) != 1:
-        raise InputError(f"{path}: not a rosbag2 folder: no metadata.yaml and {len(files)} storage files")
-    return files[0]
 
 
 def _typestore() -> Any:
@@ -252,7 +224,7 @@ def _displacement_unit(reader: Any, typestore: Any, topics: list[str]) -> str:
     connections = [c for c in reader.connections if c.topic in topics]
     if not connections:
         return "m3_per_rad"
-    for count, (connection, _, raw) in enumerate(reader.messages(connections)):
+    for count, (connection, _, raw) in enumerate(readable(reader, connections, "", [])):
         message = typestore.deserialize_cdr(raw, connection.msgtype)
         positions = [message.data] if connection.msgtype == FLOAT64 else getattr(message, "position", ())
         if any(abs(value) > _LARGEST_DISPLACEMENT for value in positions):

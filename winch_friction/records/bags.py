@@ -15,6 +15,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Bag, open_bag
+from winch_friction.records.bag_storage import lost_of
 from winch_friction.records.run_checks import Place, checked_run, own_metadata
 from winch_friction.records.sample_stream import InputHold, SampleStream
 
@@ -44,7 +45,7 @@ def read_bag(
         columns = _columns(bag_samples(bag, hold), groups)
         warnings, speed = list(bag.warnings), bag.actual[bag.topics.speed_topic]
     if not len(columns["time"]):
-        raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint")
+        raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint", *lost_of(warnings))
     if len(columns["time"]) > 1 and not np.ptp(columns["time"]):
         raise InputError(
             f"{path}: every message on '{speed}' is stamped {columns['time'][0]:g} s: its sender knows no time; "

@@ -12,6 +12,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Other, open_bag
+from winch_friction.records.bag_storage import lost_of
 from winch_friction.records.bags import bag_metadata
 from winch_friction.records.runs import is_bag, read_run
 from winch_friction.records.topics import TopicMap
@@ -100,7 +101,7 @@ def _replay_bag(
                 compensator.offer(learned)
         warnings = (*spoilt, *bag.warnings)
     if not len(compensator.steps):
-        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
+        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay", *lost_of(warnings))
     replayed = _replayed(path.name, compensator, estimator, warnings)
     runs = {name: getattr(replayed, name) for name in ("compensator", "estimator", "watchdog")}
     return replace(replayed, live=tuple(compare_live(path, runs, crane=crane, **options)))

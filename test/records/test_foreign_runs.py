@@ -53,6 +53,19 @@ def test_a_bag_in_capitals_is_a_bag(tmp_path, kind, crane_150t, crane2_model):
         assert sum(len(frame["points"].get("speed", ())) for frame in bag_frames(bag, "", 0.0))
 
 
+@pytest.mark.parametrize("start", [500.0, 1.7e9])
+def test_rows_before_the_clock_was_set_are_left_out(tmp_path, start):
+    """A run that began at 0 and went on in 1970 or 2023 was one with a gap of years."""
+    run = make_run(rows=100)
+    times = np.where(np.arange(100) < 5, 0.0, start + run.time)
+    back = read_run(write_run(Run("x", {**run.columns, "time": times}), tmp_path / "x.csv"))
+    assert np.array_equal(back.time, times[5:])
+    (said,) = back.warnings
+    assert "5 rows of time 0" in said
+    assert "line 2, line 3, line 4 and 2 more" in said
+    assert len(read_run(write_run(run, tmp_path / "from_zero.csv"))) == 100
+
+
 SPOILT = ("{'crane': 'x'}", "[1, 2]", "")
 
 

@@ -1,5 +1,6 @@
 """A rosbag2 recording opened for reading: its topics matched to the winch's, its messages in the order of arrival."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -17,6 +18,7 @@ NANOSECOND = 1e-9
 SPEED_TOPIC = "winch/joint_states"  # below a winch's namespace
 _PEEKED = 20  # messages looked at to tell a displacement's unit
 _LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a fraction
+_NO_TIME_YET = 1.0  # s after the stamps' zero beyond which a stamp of 0 is of a sender that knows no time yet
 _CLOCKS_APART = 60.0  # s; header stamps and receipt times that differ by more are of different clocks
 
 
@@ -57,6 +59,7 @@ class Bag:
     _reader: Any
     _typestore: Any
     _offset: float = 0.0
+    _timed: bool = False  # whether the speed's stamps tell a time
     _broken: dict[str, int] = field(default_factory=dict)
 
     def inputs(self) -> Iterator[Message]:
@@ -66,9 +69,20 @@ class Bag:
     def events(self, *others: str) -> Iterator[Message | Other]:
         """The winch's input messages and those on other topics of the bag, in the order of their receipt."""
         sources = {actual: self.topics.inputs[contract] for contract, actual in self.actual.items()}
+        came, timeless = Counter[str](), Counter[str]()
         for topic, receipt, message in self.messages(*sources, *others):
             time = receipt - self._offset
-            yield Message(sources[topic], message, time) if topic in sources else Other(topic, message, time)
+            if topic not in sources:
+                yield Other(topic, message, time)
+                continue
+            came[topic] += 1
+            if self._timed and sources[topic].stamped and abs(time) > _NO_TIME_YET and not stamp_time(message):
+                timeless[topic] += 1
+                continue
+            yield Message(sources[topic], message, time)
+        if timeless:
+            said = ", ".join(f"topic '{t}': {n} of {came[t]} messages are left out" for t, n in timeless.items())
+            self.warnings.append(f"{self.name}: stamped 0, as by a sender that knows no time yet: {said}")
         self.warnings += [f"{self.name}: topic '{t}': {n} messages cannot be read" for t, n in self._broken.items()]
         self._broken.clear()
 
@@ -129,7 +143,8 @@ def open_bag(
         bag = Bag(path.name, topics, actual, [], reader, typestore)
         _check_types(path, reader, bag)
         bag.warnings += _passed_over(path.name, reader, typestore, set(actual.values()))
-        bag._offset = _clock_offset(replace(bag, warnings=[], _broken={}))  # what is lost is said of the reading
+        unread = replace(bag, warnings=[], _broken={})  # what is lost is said of the reading
+        bag._offset, bag._timed = _clock_offset(unread)
         yield bag
 
 
@@ -256,12 +271,15 @@ def _passed_over(name: str, reader: Any, typestore: Any, used: set[str]) -> list
     return said + ([f"{name}: topics that are not the winch's, read past: {', '.join(known)}"] if known else [])
 
 
-def _clock_offset(bag: Bag) -> float:
-    """Receipt minus stamp in s when the recorder's clock and the stamps' are different ones, else zero."""
-    speed = bag.topics.inputs[bag.topics.speed_topic]
+def _clock_offset(bag: Bag) -> tuple[float, bool]:
+    """Receipt minus stamp in s when the recorder's clock and the stamps' are different ones, else zero; and whether
+    the stamps tell a time at all. Told from the first that is not 0: before a simulation's clock runs, all are."""
+    speed, first = bag.topics.inputs[bag.topics.speed_topic], 0.0
     if not speed.stamped:
-        return 0.0
+        return 0.0, False
     for _, receipt, message in bag.messages(bag.actual[speed.topic]):
-        offset = receipt - stamp_time(message)
-        return offset if abs(offset) > _CLOCKS_APART else 0.0
-    return 0.0
+        stamp, first = stamp_time(message), first or receipt
+        if stamp:
+            offset = receipt - stamp
+            return (offset if abs(offset) > _CLOCKS_APART else 0.0), True
+    return (first if abs(first) > _CLOCKS_APART else 0.0), False

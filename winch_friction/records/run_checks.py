@@ -72,6 +72,7 @@ def own_metadata(text: Any, name: str) -> tuple[dict[str, Any], list[str]]:
 # -- the checks
 GAP = 5.0  # times the median step counts as a gap
 SHORT = 1.0  # s
+NO_TIME_YET = 10.0  # s; rows of time 0 so long before the next are of a clock that was not set: no recorder pauses then
 _SHOWN = 3  # places named in one warning
 
 Columns = dict[str, FloatArray]
@@ -154,12 +155,21 @@ def _check_time(name: str, columns: Columns, place: Place) -> None:
 
 def _rows_of_new_time(name: str, time: FloatArray, place: Place, said: list[str]) -> Any:
     keep = np.concatenate(([True], np.diff(time) > 0.0))
+    timeless = int(np.argmax(time != 0.0))  # 0 also where all are
+    if timeless and time[timeless] > NO_TIME_YET:
+        said.append(
+            f"{name}: column 'time': {timeless} rows of time 0, {time[timeless]:.4g} s before the next, left out: the "
+            f"clock was not set yet, {_places(np.arange(timeless), place)}"
+        )
+        keep[:timeless] = True
+    else:
+        timeless = 0
     repeated = np.flatnonzero(~keep)
     if repeated.size:
         said.append(f"{name}: column 'time': {repeated.size} repeated times left out, {_places(repeated, place)}")
     if keep.sum() < 2:
         raise InputError(f"{name}: column 'time': all rows have the same time")
-    return np.flatnonzero(keep)
+    return np.flatnonzero(keep)[timeless:]
 
 
 def _place_after(rows: Any, place: Place) -> Place:

@@ -19,16 +19,19 @@ from winch_friction.records.raw import RawMessage
 BAG_PERIOD = 0.2  # s of the bag per frame
 
 
-def frames(bag: Path | None, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
-    """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes."""
+def frames(bag: Path | None, namespace: str, rate: float, joint: str = "") -> Iterator[dict[str, Any]]:
+    """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes.
+
+    `joint` carries the winch's speed; '' stands for winch_motor, else the first there is.
+    """
     if bag is not None and not bag.exists():
         raise InputError(f"{bag}: no such bag")
-    return bag_frames(bag, namespace, rate) if bag is not None else live_frames(namespace)
+    return bag_frames(bag, namespace, rate, joint) if bag is not None else live_frames(namespace, joint)
 
 
-def live_frames(namespace: str) -> Iterator[dict[str, Any]]:
+def live_frames(namespace: str, joint: str = "") -> Iterator[dict[str, Any]]:
     """Frames of the running nodes, from a listener in a process of its own; ends with it."""
-    listener = Listener(namespace)
+    listener = Listener(namespace, "--joint", joint)
     try:
         yield from listener
     finally:
@@ -78,14 +81,14 @@ class Listener:
         self._process.wait()
 
 
-def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
+def bag_frames(path: Path, namespace: str, rate: float, joint: str = "") -> Iterator[dict[str, Any]]:
     """Frames of a bag, one per 0.2 s of its time."""
     from winch_friction.records.bag_storage import readable
     from winch_friction.records.telemetry import TOPICS, Telemetry
 
     prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
     names = {topic if topic.startswith("/") else prefix + topic: topic for topic in TOPICS}
-    telemetry = Telemetry()
+    telemetry = Telemetry(joint)
     with _opened(path) as reader:
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:

@@ -91,6 +91,31 @@ KINDS = {
 }  # fmt: skip
 
 
+def test_waveforms_of_a_tdms_file_begin_when_they_say(tmp_path):
+    """What began 3 s later was 3 s too early, and the run had no date."""
+    nptdms = pytest.importorskip("nptdms")
+    began = np.datetime64("2026-03-01T10:00:00.5", "us")
+
+    def written(*starts):
+        with nptdms.TdmsWriter(tmp_path / "log.tdms") as writer:
+            writer.write_segment([
+                nptdms.ChannelObject(f"group {k}", f"signal {k}", np.arange(500.0 - 100 * k),
+                                     {"wf_increment": 0.02, **({"wf_start_time": start} if start else {})})
+                for k, start in enumerate(starts)
+            ])  # fmt: skip
+        return read_log(tmp_path / "log.tdms")
+
+    log = written(began, began + np.timedelta64(3, "s"))
+    assert log.column("time").values[:2] == pytest.approx([1_772_359_200.5, 1_772_359_200.52], abs=1e-6)
+    assert np.isnan(log.column("signal 1").values[149])
+    assert log.column("signal 1").values[150:153] == pytest.approx([0.0, 1.0, 2.0], abs=1.0)
+    unset = np.datetime64("1904-01-01T00:00:00", "us")
+    for other, notes in ((began, 1), (None, 0), (unset, 0)):
+        log = written(other, None)
+        assert log.column("time").values[0] == log.column("signal 1").values[0] == 0.0
+        assert sum("wf_start_time" in note for note in log.notes) == notes
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_a_log_of_this_kind(tmp_path, crane_150t, name):
     run = example(RUN)

@@ -194,6 +194,8 @@ def _hdf5(path: Path) -> Iterator[Signal]:
 def _tdms(path: Path) -> Found:
     tdms = library("nptdms", "LabVIEW .tdms logs").TdmsFile.read(path)
     channels = [channel for group in tdms.groups() for channel in group.channels() if len(channel)]
+    begins = [_begin(channel.properties) for channel in channels if channel.properties.get("wf_increment")]
+    dated = all(each is not None for each in begins)
     signals = []
     for channel in channels:
         unit = str(channel.properties.get("unit_string", ""))
@@ -201,9 +203,22 @@ def _tdms(path: Path) -> Found:
         times = None
         if step:
             start = float(channel.properties.get("wf_start_offset", 0.0))
+            start += (_begin(channel.properties) or 0.0) if dated else 0.0
             times = np.asarray(start + float(step) * np.arange(len(channel)), dtype=np.float64)
         signals.append(Signal(channel.name, channel[:], unit, times))
-    return Found(signals, {key: str(value) for key, value in tdms.properties.items()})
+    apart = not dated and len(set(begins)) > 1
+    notes = ("not every channel says when it began (wf_start_time): all are taken to begin together",) * apart
+    return Found(signals, {key: str(value) for key, value in tdms.properties.items()}, notes)
+
+
+def _begin(properties: Mapping[str, Any]) -> float | None:
+    """When a channel's waveform begins, s since 1970; None where it does not say, as LabVIEW's own 1904."""
+    said = properties.get("wf_start_time")
+    try:
+        began = float((np.datetime64(said) - np.datetime64(0, "s")) / np.timedelta64(1, "s"))
+    except (TypeError, ValueError):
+        return None
+    return began if began > 0.0 else None
 
 
 def _mdf(path: Path) -> Found:

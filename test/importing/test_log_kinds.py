@@ -1,5 +1,6 @@
 """Every kind of log that the import reads, written here by the library that reads it, comes back as the run it was."""
 
+import gc
 import gzip
 import zipfile
 
@@ -89,6 +90,19 @@ KINDS = {
     "v5.mat": write_mat, "v73.mat": write_mat73, "log.tdms": write_tdms, "log.mf4": write_mf4,
     "log.parquet": write_parquet, "log.csv.gz": write_gz, "log.zip": write_zip,
 }  # fmt: skip
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("name", ["log.csv.gz", "log.zip", "log.mf4"])
+def test_a_log_with_other_bytes_in_it_is_refused_in_one_line(tmp_path, name):
+    """zlib has an error of its own, and asammdf wrote a traceback of what it had begun."""
+    KINDS[name](tmp_path / name, example(RUN))
+    content, place = bytearray((tmp_path / name).read_bytes()), 16 if name == "log.mf4" else 200
+    content[place : place + 400] = bytes(400)
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{name}: not a readable \.(gz|zip|mf4) file"):
+        read_log(tmp_path / name)
+    gc.collect()
 
 
 def test_waveforms_of_a_tdms_file_begin_when_they_say(tmp_path):

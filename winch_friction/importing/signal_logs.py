@@ -3,6 +3,9 @@
 Signals of rates of their own are put on the densest signal's times, each held at its latest value, as a node sees it.
 """
 
+import gc
+import sys
+import traceback
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -222,7 +225,7 @@ def _begin(properties: Mapping[str, Any]) -> float | None:
 
 
 def _mdf(path: Path) -> Found:
-    mdf = library("asammdf", "ASAM .mf4 logs").MDF(path)
+    mdf = _opened_mdf(path)
     try:
         start = mdf.header.start_time.timestamp()
         signals = [
@@ -235,6 +238,22 @@ def _mdf(path: Path) -> Found:
     finally:
         mdf.close()
     return Found(signals, {"start": start})
+
+
+def _opened_mdf(path: Path) -> Any:
+    """A file's object; where there is none, what was made of it goes at once: at its end it stumbles, and that is
+    written out as a traceback."""
+    made, said, hook = library("asammdf", "ASAM .mf4 logs").MDF, "", sys.unraisablehook
+    try:
+        return made(path)
+    except Exception as error:  # whatever its parser meets
+        said = (str(error) or type(error).__name__).splitlines()[0][:100]
+        sys.unraisablehook = lambda _: None
+        traceback.clear_frames(error.__traceback__)
+        gc.collect()
+    finally:
+        sys.unraisablehook = hook
+    raise InputError(f"{path}: not a readable {path.suffix.lower()} file ({said})")
 
 
 def _bag(path: Path) -> Found:

@@ -246,7 +246,7 @@ def _run(path: Path) -> None:
         spec.loader.exec_module(importlib.util.module_from_spec(spec))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # a script that ends would end the verb, as if all were done
         raise InputError(f"{path}: {type(error).__name__}: {' '.join(str(error).split())}") from error
 
 

@@ -1,6 +1,10 @@
 """A folder with somebody else's files of the same names is refused before the work; an earlier result is replaced."""
 
 import importlib
+import json
+import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -16,6 +20,9 @@ VERBS = {
     "gap": (["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "model.yaml", "gap.json"),
     "gap, a law of one's own": (
         ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "proposal_1.py", "gap.json",
+    ),
+    "gap, a next experiment": (
+        ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "experiment_loads.yaml", "gap.json",
     ),
     "check": (
         ["check", RUN, *MACHINE], "winch_friction.commissioning.commissioning.check", "check.html", "check.json",
@@ -53,3 +60,32 @@ def test_an_earlier_result_and_a_folder_of_other_things_are_no_hindrance(tmp_pat
         refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")
     (tmp_path / "gap.json").write_text('{"schema": "winch_friction.gap/2"}')
     refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")
+
+
+DYING = """
+import os, signal, sys
+from winch_friction.cli import main
+replace = os.replace
+
+
+def dying(source, target):
+    replace(source, target)
+    if os.path.dirname(target) == sys.argv[1]:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+os.replace = dying
+main.run(sys.argv[2:])
+"""
+
+
+def test_what_a_killed_search_has_left_is_its_own(tmp_path):
+    """A model.yaml without its gap.json was refused by the next call as somebody else's."""
+    words = ["gap", RUN, *MACHINE, "--out", str(tmp_path), "--no-report"]
+    died = subprocess.run([sys.executable, "-c", DYING, str(tmp_path), *words], capture_output=True, check=False)
+    assert died.returncode == -signal.SIGKILL
+    assert [each.name for each in tmp_path.iterdir() if each.name[0] != "."] == ["gap.json"]
+    (tmp_path / "proposal_7.py").write_text("of an earlier call")
+    assert run(words) == 0
+    found = json.loads((tmp_path / "gap.json").read_text())["next_experiment"]
+    assert {each.name for each in tmp_path.iterdir()} == {"gap.json", "model.yaml", found["scenario"]}

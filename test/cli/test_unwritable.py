@@ -71,3 +71,16 @@ def test_a_picture_of_no_kind_is_refused_before_the_work(tmp_path, monkeypatch, 
     assert said.startswith("winch-friction: --picture x.foo: a report is written as .html, a still picture as .png")
     assert said.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_map_that_cannot_be_written_is_refused_before_the_logs_are_read(tmp_path, monkeypatch, capsys):
+    """They were read first, and what was said then was `file: File exists`."""
+
+    def begun(*_, **__):
+        raise AssertionError("the work has begun")
+
+    monkeypatch.setattr("winch_friction.importing.propose.propose", begun)
+    (tmp_path / "file").write_text("x")
+    place = tmp_path / "file" / "map.yaml"
+    assert run(["import", RUN, "--propose", "--map", str(place)]) == 2
+    assert f"--map {place}: {tmp_path / 'file'} is a file, no folder" in capsys.readouterr().err

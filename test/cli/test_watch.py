@@ -25,6 +25,13 @@ def test_a_bag_is_watched_as_tables_and_as_json(bag, capsys):
     )  # 50 Hz thinned to every third
 
 
+def test_a_joint_that_is_not_there_is_said(bag, capsys):
+    assert run(["watch", "--bag", str(bag), "--rate", "0", "--joint", "moon"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "no joint 'moon'" in said
+    assert "motor speed" not in said
+
+
 @pytest.mark.parametrize("name", ["nothing", "pyproject.toml"])
 def test_what_is_no_bag_is_one_line(name, capsys):
     assert run(["watch", "--bag", name]) == 2

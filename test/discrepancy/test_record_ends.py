@@ -5,6 +5,7 @@ import pytest
 
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.seen import motion_of
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 PERIOD, SPEED = 6.2, 150.0  # s, rad/s
@@ -36,6 +37,14 @@ def test_no_sample_is_used_whose_acceleration_is_guessed(crane_150t, rate, begin
     hole = (columns["time"] > begin + 20.0) & (columns["time"] < begin + 21.5)
     error, _ = off({name: values[~hole] for name, values in columns.items()}, crane_150t)
     assert error < inside
+
+
+def test_a_record_of_two_years_is_to_be_split(crane_150t):
+    """Two logs in one file: the grid of all the time between them took 600 GB."""
+    columns = sea(50.0)
+    columns["time"] = np.where(np.arange(len(columns["time"])) < 500, 0.0, 3.2e7) + columns["time"]
+    with pytest.raises(InputError, match=r"leaps by 3\.2e\+07 s at .* split the file there"):
+        uniform(Run("sea", columns))
 
 
 def test_a_sample_that_is_missing_here_and_there_costs_none_of_its_neighbours(crane_150t):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from winch_friction.cli import main
+from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import write_run
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
@@ -71,6 +72,20 @@ def test_what_is_done_is_not_done_again(cranes, tmp_path, capsys, monkeypatch):
     assert len(again["outcomes"]) == 3
     fleet(capsys, "replay", one, "--out", tmp_path, "--workers", 0, "--anew")
     assert len((tmp_path / "fleet.jsonl").read_text().splitlines()) == 6
+
+
+def test_what_was_refused_is_asked_again(cranes, tmp_path, capsys, monkeypatch):
+    """A full disk or a library that was missing is mended, and the recordings are what they were."""
+
+    def lacking():
+        raise InputError("Parquet files need pyarrow")
+
+    call = ("check", cranes / "north" / "month_0.parquet", "--out", tmp_path, "--workers", 0)
+    with monkeypatch.context() as then:
+        then.setattr("winch_friction.records.parquet_file._pyarrow", lacking)
+        status, found = fleet(capsys, *call)
+        assert (status, found["outcomes"][0]["message"][-26:]) == (2, "Parquet files need pyarrow")
+    assert fleet(capsys, *call)[0] == 0
 
 
 def test_object_storage_gives_what_the_disk_gives(cranes, tmp_path, capsys, monkeypatch):

@@ -1,5 +1,6 @@
 """Every kind of log that the import reads, written here by the library that reads it, comes back as the run it was."""
 
+import gc
 import gzip
 import zipfile
 
@@ -89,6 +90,44 @@ KINDS = {
     "v5.mat": write_mat, "v73.mat": write_mat73, "log.tdms": write_tdms, "log.mf4": write_mf4,
     "log.parquet": write_parquet, "log.csv.gz": write_gz, "log.zip": write_zip,
 }  # fmt: skip
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("name", ["log.csv.gz", "log.zip", "log.mf4"])
+def test_a_log_with_other_bytes_in_it_is_refused_in_one_line(tmp_path, name):
+    """zlib has an error of its own, and asammdf wrote a traceback of what it had begun."""
+    KINDS[name](tmp_path / name, example(RUN))
+    content, place = bytearray((tmp_path / name).read_bytes()), 16 if name == "log.mf4" else 200
+    content[place : place + 400] = bytes(400)
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{name}: not a readable \.(gz|zip|mf4) file"):
+        read_log(tmp_path / name)
+    gc.collect()
+
+
+def test_waveforms_of_a_tdms_file_begin_when_they_say(tmp_path):
+    """What began 3 s later was 3 s too early, and the run had no date."""
+    nptdms = pytest.importorskip("nptdms")
+    began = np.datetime64("2026-03-01T10:00:00.5", "us")
+
+    def written(*starts):
+        with nptdms.TdmsWriter(tmp_path / "log.tdms") as writer:
+            writer.write_segment([
+                nptdms.ChannelObject(f"group {k}", f"signal {k}", np.arange(500.0 - 100 * k),
+                                     {"wf_increment": 0.02, **({"wf_start_time": start} if start else {})})
+                for k, start in enumerate(starts)
+            ])  # fmt: skip
+        return read_log(tmp_path / "log.tdms")
+
+    log = written(began, began + np.timedelta64(3, "s"))
+    assert log.column("time").values[:2] == pytest.approx([1_772_359_200.5, 1_772_359_200.52], abs=1e-6)
+    assert np.isnan(log.column("signal 1").values[149])
+    assert log.column("signal 1").values[150:153] == pytest.approx([0.0, 1.0, 2.0], abs=1.0)
+    unset = np.datetime64("1904-01-01T00:00:00", "us")
+    for other, notes in ((began, 1), (None, 0), (unset, 0)):
+        log = written(other, None)
+        assert log.column("time").values[0] == log.column("signal 1").values[0] == 0.0
+        assert sum("wf_start_time" in note for note in log.notes) == notes
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -3,9 +3,12 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
+from winch_friction.importing.carry_out import convert
+from winch_friction.importing.log import Log, number_column
 from winch_friction.importing.map_schema import map_schema
 from winch_friction.importing.map_text import map_text
 from winch_friction.importing.mapping import Entry, LogMap, load_map, map_from_content, with_settings
@@ -79,6 +82,49 @@ def test_settings_change_a_map_and_answer_its_questions():
     changed = with_settings(MAP, ["hook_load.from=Last", "hook_load.unit=t", "time.zone=UTC", "motor_speed.sign=1"])
     assert changed.columns["hook_load"] == Entry("Last", "t")
     assert (changed.time.zone, changed.columns["motor_speed"].sign, changed.questions) == ("UTC", 1, ())
+
+
+def converted(entry, time, values, channel="motor_speed", crane=None):
+    """A channel of a log of one column in SI, and what is wrong with it."""
+    log = Log(Path("log.csv"), (number_column("t", time), number_column("x", values)), {}, str)
+    done = convert(log, LogMap({channel: entry}, ("t",), TimeBase("seconds")), crane)
+    return done.columns.get(channel), done.problems
+
+
+@pytest.mark.parametrize(
+    ("time", "said"),
+    [
+        (0.02 * np.arange(10), "needs 16 rows or more"),
+        (np.repeat(0.04 * np.arange(100), 2), "set time.spread"),
+        (np.zeros(200), "set time.spread"),
+        (0.02 * np.arange(200) + 5.0 * (np.arange(200) > 100), "a gapless position"),
+    ],
+    ids=["short", "ticks", "no time", "gap"],
+)
+def test_a_position_that_gives_no_speed_is_refused_in_one_line(time, said):
+    """The filter's own errors came as tracebacks, and a gap was smoothed over."""
+    entry = Entry("x", "rad", differentiate=2.0)
+    _, problems = converted(entry, time, np.sin(time))
+    assert [said in each for each in problems] == [True]
+    speed, problems = converted(entry, 0.02 * np.arange(500), np.sin(0.02 * np.arange(500)))
+    assert problems == ()
+    assert np.abs(speed - np.cos(0.02 * np.arange(500)))[50:-50].max() < 0.01
+
+
+def test_what_is_measured_at_the_drum_is_taken_to_the_motors(crane_150t):
+    """A load's torque at the drum was taken for one at the motor: 250 times too much, without a word."""
+    values, time = np.array([2500.0, 5000.0]), np.array([0.0, 1.0])
+    found, problems = converted(Entry("x", "N*m", at="drum"), time, values, "load_torque", crane_150t)
+    assert (found.tolist(), problems) == ([10.0, 20.0], ())
+    _, (said,) = converted(Entry("x", "t", at="drum"), time, values / 1e3, "hook_load", crane_150t)
+    assert "at: drum is for motor_speed" in said
+    _, (said,) = converted(Entry("x", "%", of="0 cm^3/rev"), time, values, "main.displacement", crane_150t)
+    assert "a share is of something above 0" in said
+
+
+def test_how_a_log_is_read_is_not_set_from_the_command_line():
+    with pytest.raises(InputError, match="stands in the map file"):
+        with_settings(MAP, ["log.delimiter=;"])
 
 
 @pytest.mark.parametrize("setting", ["hook_load", "hook_load.unit", "motor_speed.colour=red", "motor_speed.sign=3"])

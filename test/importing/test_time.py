@@ -113,3 +113,15 @@ def test_a_gap_in_a_log_of_whole_seconds_stays_a_gap():
 def test_ticks_that_come_now_and_then_keep_their_rows_between_them():
     found = spread_ticks(np.repeat([0.0, 1.0, 2.0, 5.0, 6.0], 5))
     assert found[10:16] == pytest.approx([2.0, 2.6, 3.2, 3.8, 4.4, 5.0])
+
+
+def test_milliseconds_behind_a_colon_are_counted():
+    """12:00:05:7 is 7 ms behind, where other rows say 12:00:05:107: it was read as 0.7 s, and the time went back."""
+    millis = 7 + 50 * np.arange(100)
+    for form, width in (("{}", 0), ("{:03}", 3)):
+        cells = [f"12:00:{10 + each // 1000}:{form.format(each % 1000)}" for each in millis]
+        guess = guess_time([texts(*cells)], "")
+        assert guess is not None, width
+        assert seconds(texts(*cells), guess.base) == pytest.approx(43_210.0 + 1e-3 * millis)
+    hundredths = texts("12:00:05:07", "12:00:05:12", "12:00:06:02")
+    assert seconds(hundredths, TimeBase("clock")) == pytest.approx([43_205.07, 43_205.12, 43_206.02])

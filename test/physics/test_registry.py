@@ -53,6 +53,7 @@ def test_a_users_file_adds_a_term(tmp_path):
         ("1/0\n", "wrong.py: ZeroDivisionError"),
         ("register = None\n", "wrong.py: declares no term"),
         ("def\n", "wrong.py: SyntaxError"),
+        ("raise SystemExit\n", "wrong.py: SystemExit"),
         ("import no_such_module\n", "wrong.py: ModuleNotFoundError"),
         ("from winch_friction.physics.friction import *\nregister(term_named('coulomb'))\n", "wrong.py: .*twice"),
     ],

@@ -220,6 +220,19 @@ def test_windows_may_have_so_many_times_the_level_each():
             Table("drags", (windows,), shape=shape, weights=weights)
 
 
+def test_windows_are_told_in_words():
+    """Two dozen of them were as many nested steps."""
+    knots = tuple(1.7e9 + 100.0 * k for k in range(47))
+    long = Table("drags", (("time", (*knots, float("inf"))),), scope=Scope.SYSTEM, shape="windows",
+                 weights=(0.0, 0.25, *(1.0,) * 22))  # fmt: skip
+    told = tabulated(long).latex
+    assert told.startswith(r"drags_{0} s m{\left(t \right)},\quad m{\left(t \right)} = \text{0.25 from 1700000200 to ")
+    assert told.endswith("1 from 1700004400 to 1700004500 s, 1 after 1700004600 s, 0 elsewhere}")
+    assert "cases" not in told
+    assert tabulated(replace(WEIGHED, times=("wire_out",), unit="N")).latex.startswith("L s weighed_{0} m{")
+    assert "cases" in tabulated(WARM).latex
+
+
 HINGES = Table(
     "hinges", (("speed_magnitude", (5.0, 40.0, 90.0)),), scope=Scope.SYSTEM, shape="convex_rising", anchor="low"
 )

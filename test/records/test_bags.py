@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from run_strategies import make_run, runs, same
 
-from winch_friction.cli.live import bag_frames
+from winch_friction.cli.live import bag_frames, bag_messages
 from winch_friction.importing.reading import read_log
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
@@ -17,6 +17,7 @@ from winch_friction.records.bags import bag_samples
 from winch_friction.records.runs import read_run, write_run
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import TopicMap, crane_topics, joint_state, stamp_header
+from winch_friction.replay.recording import replay_recording
 
 FEW = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 STORAGES = ("mcap", "sqlite3")
@@ -163,27 +164,41 @@ def test_broken_messages_are_counted_not_fatal(tmp_path):
     shown = []
     with pytest.raises(InputError, match="3 messages cannot be read"):
         shown.extend(bag_frames(tmp_path / "x", "", 0.0))  # a list keeps what came before an error
+    assert any("3 messages cannot be read" in each for each in read_log(tmp_path / "x").notes)
     assert sum(len(frame["points"].get("speed", [])) for frame in shown) > 10
 
 
-def damaged_in_the_middle(path):
-    """A bag whose file has 4000 bytes of another content behind its first third; its index is whole."""
+def damaged_in_the_middle(path, spoil):
+    """A bag whose file has 4000 bytes of another content in its middle; its index is whole."""
     storage = next(path.glob("*.mcap"))
     content = bytearray(storage.read_bytes())
-    third = len(content) // 3
-    content[third : third + 4000] = bytes(each ^ 0x5A for each in content[third : third + 4000])
+    place = len(content) // 2
+    content[place : place + 4000] = bytes(map(spoil, content[place : place + 4000]))
     storage.write_bytes(content)
 
 
-def test_what_a_damaged_file_has_lost_is_said(tmp_path):
-    path = write_run(make_run(rows=1000), tmp_path / "x")
+@pytest.mark.parametrize("spoil", [lambda byte: byte ^ 0x5A, lambda byte: 0xFF], ids=["skipped", "stumbled over"])
+def test_what_a_damaged_file_has_lost_is_said(tmp_path, spoil, crane_150t, crane2_model):
+    path = write_run(make_run(rows=3000), tmp_path / "x")
     assert not any("damaged" in each for each in read_run(path).warnings)
-    damaged_in_the_middle(path)
-    run = read_run(path, complete=False)
-    assert len(run) < 1000
-    assert sum("the file is damaged: of " in each for each in run.warnings) == 1
+    damaged_in_the_middle(path, spoil)
+    run, log = read_run(path, complete=False), read_log(path)
+    assert 500 < len(run) <= len(log) < 3000
+    replayed = replay_recording(path, crane_150t, crane2_model)
+    for said in (run.warnings, log.notes, replayed.warnings):
+        assert sum("the file is damaged: of " in each for each in said) == 1
     with pytest.raises(InputError, match="the file is damaged"):
         list(bag_frames(path, "", 0.0))
+    assert len(run) <= len(list(bag_messages(path, 0.0)))
+
+
+@pytest.mark.parametrize(("kind", "repair"), [("mcap", "mcap recover run.mcap"), ("db3", "sqlite3 run.db3 .recover")])
+def test_of_a_file_that_was_cut_it_is_said_what_saves_it(tmp_path, kind, repair):
+    path = write_run(make_run(rows=400), tmp_path / f"run.{kind}")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    for read in (read_run, read_log, lambda path: list(bag_frames(path, "", 0.0))):
+        with pytest.raises(InputError, match=f"nothing is read .*{repair}"):
+            read(path)
 
 
 def test_fractions_need_the_crane(tmp_path, crane_150t):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from winch_friction.records.atomic import atomic_path, write_text
+from winch_friction.records.atomic import atomic_path, together, write_text
 from winch_friction.records.checkpoint import read_checkpoint
 
 WRITER = """
@@ -42,6 +42,27 @@ def test_what_a_dead_process_left_is_removed_by_the_next_writer(tmp_path: Path) 
     with atomic_path(tmp_path / "run.csv") as temporary:
         temporary.write_text("whole")
     assert sorted(each.name for each in tmp_path.iterdir()) == [".run.other", "run.csv"]
+
+
+def test_files_that_belong_together_come_at_once(tmp_path: Path) -> None:
+    killed = "import os, sys; from pathlib import Path; from winch_friction.records.atomic import together\n"
+    killed += "with together(Path(sys.argv[1]), 'a.json') as place:\n"
+    killed += "    (place / 'b.yaml').write_text('new'); os.kill(os.getpid(), 9)"
+    subprocess.run([sys.executable, "-c", killed, str(tmp_path)], check=False)
+    assert [each.name.split(".")[:2] for each in tmp_path.iterdir()] == [["", "a"]]  # hidden
+    (tmp_path / "b.yaml").write_text("mine")
+
+    def broken(place: Path) -> None:
+        (place / "b.yaml").write_text("half")
+        raise ValueError
+
+    with pytest.raises(ValueError), together(tmp_path, "a.json") as place:
+        broken(place)
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("b.yaml", "mine")]
+    with together(tmp_path, "a.json") as place:
+        for name in ("b.yaml", "a.json"):
+            (place / name).write_text("new")
+    assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"a.json": "new", "b.yaml": "new"}
 
 
 def test_an_error_leaves_the_old_file_alone(tmp_path: Path) -> None:

@@ -36,6 +36,25 @@ def test_a_plain_number_of_a_bridge_is_dated_by_its_receipt():
     assert points["reference"] == [[7.0, pytest.approx(-1000.0, rel=1e-4)]]
 
 
+def test_the_speed_is_the_joints_that_is_asked_for():
+    """A JointState of the whole crane: the first joint was shown as the motor's speed."""
+    crane = {"name": ["boom", "winch_motor", "winch_7"], "velocity": [1.0, 2.0, 3.0]}
+    for wanted, shown in (("", 2.0), ("winch_7", 3.0), ("boom", 1.0), ("moon", None)):
+        telemetry = Telemetry(wanted)
+        for topic in ("winch/joint_states", "winch/reference"):
+            telemetry.take(topic, joint(1.0, **crane))
+        frame = telemetry.frame()
+        rpm = [[1.0, pytest.approx(60.0 * shown / 6.2831853, rel=1e-4)]] if shown else None
+        assert frame["points"] == ({"speed": rpm, "reference": rpm} if shown else {})
+        assert [said for _, said in frame["notes"]] == (
+            [] if shown else ["no joint 'moon', and no speed of it, among 'boom', 'winch_motor', 'winch_7'"] * 2
+        )
+    telemetry = Telemetry()
+    telemetry.take("winch/joint_states", joint(1.0, name=["boom", "winch_7"], velocity=[1.0, 3.0]))
+    ((topic, said),) = telemetry.frame()["notes"]
+    assert (topic, said[:55]) == ("winch/joint_states", "the speed is of joint 'boom' of 'boom', 'winch_7': name")
+
+
 def test_the_truth_carries_friction_and_tracking_error():
     telemetry = Telemetry()
     message = joint(1.0, name=["winch_motor", "load"], position=[0.0, 0.004], velocity=[0.0, 0.0], effort=[350.0, 1.0])

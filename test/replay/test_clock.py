@@ -2,9 +2,17 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from winch_friction.records.bag_file import open_bag
+from winch_friction.records.bag_write import MESSAGES, BagWriter
+from winch_friction.records.runs import read_run
+from winch_friction.records.topics import crane_topics
 from winch_friction.replay.clock import JITTER, ReplayClock
+from winch_friction.replay.recording import replay_recording
+from winch_friction.simulation.scenario import load_scenario
+from winch_friction.simulation.simulator import simulate
 
 
 @pytest.mark.parametrize(
@@ -19,6 +27,27 @@ from winch_friction.replay.clock import JITTER, ReplayClock
 )
 def test_the_stamps_are_believed_as_far_as_a_recorder_may_be_late(stamp, receipt, now):
     assert ReplayClock().read(stamp, receipt) == pytest.approx(now)
+
+
+def test_stamps_of_0_before_a_simulations_clock_do_not_set_it(tmp_path, crane_150t, crane2_model):
+    """The recorder's clock was brought to the stamps' by the first of them, which was none."""
+    run = simulate(load_scenario("ahc_55t_215").override({"duration": 6.0}), crane_150t, crane2_model).run
+    topics = crane_topics(crane_150t, run.groups)
+    for name, timeless in (("set", 0), ("unset", 20)):
+        with BagWriter(tmp_path / name) as writer:
+            for k, sample in enumerate(run.samples()):
+                sample.time = 500.0 + 0.02 * k if k >= 20 else 0.0
+                for topic, message in topics.encode(sample, MESSAGES) if k >= 20 - timeless else ():
+                    writer.write(f"/{topic}", message, 1.7e9 + 0.02 * k)
+    read, unset = (read_run(tmp_path / name, crane_150t) for name in ("set", "unset"))
+    assert unset.time[0] == pytest.approx(500.4)
+    assert np.array_equal(unset.time, read.time)
+    (said,) = unset.warnings
+    assert f"topic '/winch/joint_states': 20 of {len(run)} messages are left out" in said
+    with open_bag(tmp_path / "unset", crane_150t) as bag:
+        assert all(each.receipt == pytest.approx(each.stamp, abs=1e-3) for each in bag.inputs() if each.source.stamped)
+    there, here = (replay_recording(tmp_path / n, crane_150t, crane2_model).compensator for n in ("set", "unset"))
+    assert np.array_equal(there["friction_torque"], here["friction_torque"])
 
 
 def test_the_clock_never_goes_back():

@@ -177,19 +177,19 @@ def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: st
         )
 
 
-def refuse_unwritable(*places: Path | None) -> None:
-    """Raise `InputError` where one of these files cannot be written: before the work, not behind it."""
+def refuse_unwritable(*places: Path | None, option: str = "--out") -> None:
+    """Raise `InputError` where one of these files, given by `option`, cannot be written: before the work, not after."""
     for place in places:
         if place is None:
             continue
         folder = next(each for each in (place.absolute().parent, *place.absolute().parents) if each.exists())
         if not folder.is_dir():
-            raise InputError(f"--out {place}: {folder} is a file, no folder; give another place")
+            raise InputError(f"{option} {place}: {folder} is a file, no folder; give another place")
         try:
             with TemporaryFile(dir=folder):
                 pass
         except OSError as error:
-            raise InputError(f"--out {place}: cannot be written ({error.strerror}); give another place") from None
+            raise InputError(f"{option} {place}: cannot be written ({error.strerror}); give another place") from None
 
 
 # -- how their process keeps house

@@ -20,6 +20,7 @@ KEEP_ALIVE = 5.0  # s; a comment on the stream, so that a dead connection is not
 def command(
     bag: Annotated[OptionalPath, typer.Option(help="Show a bag instead of running nodes.")] = None,
     namespace: Annotated[str, typer.Option(help="Namespace of the winch's nodes.")] = "",
+    joint: Annotated[str, typer.Option(help="Joint of the speed; none: winch_motor, else the first.")] = "",
     rate: Annotated[float, typer.Option(min=0.0, help="Pace of a bag: 1 as it was, 0 at once.")] = 1.0,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0: a free one.")] = 8765,
 ) -> None:
@@ -35,7 +36,7 @@ def command(
     """
     from winch_friction.cli.live import frames
 
-    with serving(frames(bag, namespace, rate), port) as address:
+    with serving(frames(bag, namespace, rate, joint), port) as address:
         print(f"open {address}", flush=True)
         threading.Event().wait()
 
@@ -142,9 +143,9 @@ def _pump(frames: Iterator[dict[str, Any]], broadcast: Broadcast) -> None:
     said = ""
     try:
         for frame in frames:
-            status = frame.pop("status")
-            broadcast.send({**frame, "state": state(status), "estimates": estimates(status), "inputs": inputs(status),
-                            "faults": faults(status)})  # fmt: skip
+            status, notes = frame.pop("status"), frame.pop("notes", ())
+            broadcast.send({**frame, "state": [*state(status), *notes], "estimates": estimates(status),
+                            "inputs": inputs(status), "faults": faults(status)})  # fmt: skip
     except InputError as error:
         said = str(error)
     finally:  # a page that waits for ever would look like a winch that stands still

@@ -78,11 +78,14 @@ def command(
 
 
 def _done(tasks: list[Task], ledger: Ledger, workers: int | None, scheduler: str, anew: bool) -> list[Outcome]:
-    """Every task's outcome: from the ledger where it is there, else worked out now and put there at once."""
+    """Every task's outcome: from the ledger where it ended well, else worked out now and put there at once.
+
+    A refusal may have been a full disk's or a missing library's, which no name of the work tells.
+    """
     from winch_friction.fleet.schedule import on_dask, on_this_process
 
     known = {} if anew else ledger.latest()
-    waiting = [task for task in tasks if known.get(task.key) is None or known[task.key].status == 1]
+    waiting = [task for task in tasks if known.get(task.key) is None or known[task.key].status != 0]
     pieces = [(task,) for task in waiting]
     local = workers == 0 and not scheduler
     stream = on_this_process(carry_out, pieces) if local else on_dask(carry_out, pieces, workers, scheduler)

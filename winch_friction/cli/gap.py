@@ -27,7 +27,8 @@ Examples:
 """
 
 MODEL = "a6vm215_crane2"  # of the 150 t crane, where none is named
-WRITTEN = ("gap.json", "model.yaml", "report.html", "addition.csv", "proposal_*.py", "proposal_*.yaml")
+REPLACED = ("model.yaml", "report.html", "addition.csv", "proposal_*.py", "proposal_*.yaml")
+WRITTEN = ("gap.json", *REPLACED, "experiment_*.yaml", "ahc_55t_160.yaml")  # the last: a next experiment
 app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
 
@@ -95,8 +96,7 @@ def run_gap(
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.model import unstated
     from winch_friction.physics.friction.term import load_file
-    from winch_friction.records.atomic import write_text
-    from winch_friction.records.model_file import load_model, save_model
+    from winch_friction.records.model_file import load_model
     from winch_friction.records.runs import bag_options_of
 
     if not paths:
@@ -133,19 +133,29 @@ def run_gap(
     noted = replace(result.model, provenance={**result.model.provenance, **forced})
     result = replace(result, provenance=made, model=noted)
     content = result.content()
-    _write_addition(out, result, read)
-    save_model(result.model, out / "model.yaml")
-    if content["next_experiment"] and result.next_scenario:
-        write_text(out / content["next_experiment"]["scenario"], result.next_scenario)
-    _write_proposals(out, result)
-    write_text(out / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
+    _write(out, result, content, read)
     if report:
         from winch_friction.report.gap import write_gap_report
 
         write_gap_report(out / "report.html", result)
-    else:
-        (out / "report.html").unlink(missing_ok=True)  # an old page beside new results would be read as theirs
     return content
+
+
+def _write(out: Path, result: Any, content: dict[str, Any], runs: list[Any]) -> None:
+    """All files but the page, at once; those of an earlier call go: beside new ones they would be read as theirs."""
+    from winch_friction.records.atomic import together, write_text
+    from winch_friction.records.model_file import save_model
+
+    with together(out, "gap.json") as place:
+        _write_addition(place, result, runs)
+        save_model(result.model, place / "model.yaml")
+        if content["next_experiment"] and result.next_scenario:
+            write_text(place / content["next_experiment"]["scenario"], result.next_scenario)
+        _write_proposals(place, result)
+        write_text(place / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
+        new = {each.name for each in place.iterdir()}
+    for old in (each for name in REPLACED for each in out.glob(name) if each.name not in new):
+        old.unlink()
 
 
 def _usual_model(crane: str, paths: list[Path]) -> str:
@@ -167,12 +177,10 @@ def _usual_model(crane: str, paths: list[Path]) -> str:
 
 
 def _write_proposals(out: Path, result: Any) -> None:
-    """Of each proposed law its file of terms and the model with it; those of an earlier call go."""
+    """Of each proposed law its file of terms and the model with it."""
     from winch_friction.records.atomic import write_text
     from winch_friction.records.model_file import save_model
 
-    for old in (*out.glob("proposal_*.py"), *out.glob("proposal_*.yaml")):
-        old.unlink()
     for number, proposal in enumerate(result.proposals, start=1):
         write_text(out / f"proposal_{number}.py", proposal.text)
         save_model(proposal.model, out / f"proposal_{number}.yaml")

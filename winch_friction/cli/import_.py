@@ -79,6 +79,7 @@ def propose_map(
     logs: list[Path], map_file: Path, crane: str, settings: list[str], overwrite: bool, as_json: bool
 ) -> None:
     """Write the proposed map; what keeps it from being imported is an `InputError` after it was written."""
+    from winch_friction.cli.console import refuse_unwritable
     from winch_friction.importing.map_text import map_text
     from winch_friction.importing.propose import propose
     from winch_friction.records.atomic import write_text
@@ -86,6 +87,7 @@ def propose_map(
 
     if map_file.exists() and not overwrite:
         raise InputError(f"{map_file}: exists; give another name, or --overwrite")
+    refuse_unwritable(map_file, option="--map")
     watched = lambda paths: progress(paths, "reading logs")
     proposal = propose(logs, load_crane(crane) if crane else None, crane, settings, watched)
     log_map, problems = proposal.log_map, list(proposal.problems)

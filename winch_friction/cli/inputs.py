@@ -32,7 +32,7 @@ def run_paths(paths: Sequence[Path]) -> list[Path]:
 def _runs_in(folder: Path) -> list[Path]:
     """A folder's runs; a folder of bag files whose recorder was killed before it wrote metadata.yaml is one bag."""
     inside = [each for each in sorted(folder.iterdir()) if _is_run(each)]
-    storage = [each for each in inside if each.suffix in (".mcap", ".db3")]
+    storage = [each for each in inside if each.suffix.lower() in (".mcap", ".db3")]
     return [folder] if len(storage) == len(inside) == 1 else inside
 
 

@@ -12,22 +12,26 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from winch_friction.cli.console import show_warnings
 from winch_friction.physics.errors import InputError
 from winch_friction.records.raw import RawMessage
 
 BAG_PERIOD = 0.2  # s of the bag per frame
 
 
-def frames(bag: Path | None, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
-    """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes."""
+def frames(bag: Path | None, namespace: str, rate: float, joint: str = "") -> Iterator[dict[str, Any]]:
+    """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes.
+
+    `joint` carries the winch's speed; '' stands for winch_motor, else the first there is.
+    """
     if bag is not None and not bag.exists():
         raise InputError(f"{bag}: no such bag")
-    return bag_frames(bag, namespace, rate) if bag is not None else live_frames(namespace)
+    return bag_frames(bag, namespace, rate, joint) if bag is not None else live_frames(namespace, joint)
 
 
-def live_frames(namespace: str) -> Iterator[dict[str, Any]]:
+def live_frames(namespace: str, joint: str = "") -> Iterator[dict[str, Any]]:
     """Frames of the running nodes, from a listener in a process of its own; ends with it."""
-    listener = Listener(namespace)
+    listener = Listener(namespace, "--joint", joint)
     try:
         yield from listener
     finally:
@@ -77,21 +81,20 @@ class Listener:
         self._process.wait()
 
 
-def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, Any]]:
+def bag_frames(path: Path, namespace: str, rate: float, joint: str = "") -> Iterator[dict[str, Any]]:
     """Frames of a bag, one per 0.2 s of its time."""
-    from winch_friction.records.bag_file import damage
+    from winch_friction.records.bag_storage import readable
     from winch_friction.records.telemetry import TOPICS, Telemetry
 
     prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
     names = {topic if topic.startswith("/") else prefix + topic: topic for topic in TOPICS}
-    telemetry = Telemetry()
+    telemetry = Telemetry(joint)
     with _opened(path) as reader:
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:
             raise InputError(f"{path}: none of the winch's topics is in it ({', '.join(names)})")
-        last = came = broken = 0
-        for connection, stamp, raw in reader.messages(chosen):
-            came += 1
+        last, broken, said = 0, 0, list[str]()
+        for connection, stamp, raw in readable(reader, chosen, str(path), said):
             try:
                 message = reader.deserialize(raw, connection.msgtype)
                 telemetry.take(names[connection.topic], message, stamp * 1e-9)
@@ -104,7 +107,8 @@ def bag_frames(path: Path, namespace: str, rate: float) -> Iterator[dict[str, An
                 last = stamp
                 yield telemetry.frame()
         yield telemetry.frame()
-        if said := [*damage(str(path), chosen, came), *([f"{path}: {broken} messages cannot be read"] * bool(broken))]:
+        said += [f"{path}: {broken} messages cannot be read"] * bool(broken)
+        if said:
             raise InputError(*said)
 
 
@@ -116,13 +120,16 @@ def bag_topics(path: Path) -> dict[str, str]:
 
 def bag_messages(path: Path, rate: float) -> Iterator[RawMessage]:
     """Every message of a bag, serialised as it is there, at its own pace (`rate` times as fast; 0: at once)."""
+    from winch_friction.records.bag_storage import readable
+
     with _opened(path) as reader:
-        began, first = time.monotonic(), None
-        for connection, stamp, raw in reader.messages():
+        began, first, said = time.monotonic(), None, list[str]()
+        for connection, stamp, raw in readable(reader, reader.connections, str(path), said):
             first = stamp if first is None else first
             if rate > 0.0:
                 time.sleep(max(0.0, began + (stamp - first) * 1e-9 / rate - time.monotonic()))
             yield RawMessage(connection.topic, connection.msgtype, stamp, bytes(raw))
+    show_warnings(said)
 
 
 @contextlib.contextmanager
@@ -130,13 +137,16 @@ def _opened(path: Path) -> Iterator[Any]:
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
+    from winch_friction.records.bag_storage import refused, storage_of
+
     if not path.exists():
         raise InputError(f"{path}: no such bag")
+    storage = storage_of(path)
     try:
-        reader: Any = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
+        reader: Any = AnyReader([storage], default_typestore=get_typestore(Stores.ROS2_JAZZY))
         reader.open()
     except Exception as error:  # rosbags raises its own kinds for what is no bag
-        raise InputError(f"{path}: not a bag that can be read ({error})") from error
+        raise refused(path, error) from error
     try:
         yield reader
     finally:

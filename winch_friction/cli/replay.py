@@ -57,7 +57,7 @@ def command(
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
 
-    if recording.is_dir() and any(each.suffix in (".csv", ".parquet", ".pq") for each in recording.iterdir()):
+    if recording.is_dir() and any(each.suffix.lower() in (".csv", ".parquet", ".pq") for each in recording.iterdir()):
         raise InputError(f"{recording}: a folder of runs; replay takes one recording: name one file of it, or a bag")
     if picture is not None and picture.suffix.lower() not in PICTURES:
         raise InputError(
@@ -111,10 +111,9 @@ def _run_of(recording: Path, crane: Any, options: dict[str, Any]) -> Any:
 
 
 def _read(recording: Path, crane: Any, options: Mapping[str, Any], complete: bool = True) -> Any:
-    from winch_friction.records.runs import read_run
+    from winch_friction.records.runs import is_bag, read_run
 
-    is_bag = recording.is_dir() or recording.suffix in (".mcap", ".db3")
-    return read_run(recording, crane, complete=complete, **(options if is_bag else {}))
+    return read_run(recording, crane, complete=complete, **(options if is_bag(recording) else {}))
 
 
 def _settings_for(recording: Path, run: Any, settings: Any) -> Any:

@@ -13,6 +13,7 @@ from winch_friction.cli.optional import OptionalPath
 def command(
     bag: Annotated[OptionalPath, typer.Option(help="Watch a bag instead of running nodes.")] = None,
     namespace: Annotated[str, typer.Option(help="Namespace of the winch's nodes.")] = "",
+    joint: Annotated[str, typer.Option(help="Joint of the speed; none: winch_motor, else the first.")] = "",
     rate: Annotated[float, typer.Option(min=0.0, help="Pace of a bag: 1 as it was, 0 at once.")] = 1.0,
     frames: Annotated[int, typer.Option(min=0, help="End after this many frames (5 a second); 0: never.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Frames as JSON lines.")] = False,
@@ -29,7 +30,7 @@ def command(
 
     from winch_friction.cli.live import frames as source
 
-    found = source(bag, namespace, rate)
+    found = source(bag, namespace, rate, joint)
     chosen = itertools.islice(found, frames) if frames else found
     if as_json:
         for frame in chosen:
@@ -57,7 +58,7 @@ def view(frame: dict[str, Any], latest: dict[str, float]) -> Any:
     return Group(
         f"time {frame['time']:.1f} s" if frame["time"] is not None else "no samples yet",
         said,
-        _table("state", ("part", "says"), state(status)),
+        _table("state", ("part", "says"), [*state(status), *frame.get("notes", ())]),
         _table("now", ("signal", "value"), [(text, f"{latest[n]:.4g}") for n, text in SIGNALS.items() if n in latest]),
         _table("estimates, SI", ("parameter", "value", "sigma", "status"),
                [(e["parameter"], f"{e['value']:.5g}", f"{e['std']:.2g}", e["status"]) for e in estimates(status)]),

@@ -4,15 +4,16 @@ A signal is named `topic:field`, of a JointState `topic:velocity[joint]`; its un
 header stamps where there are any, else the receipts; all are put on the densest signal's, held at their latest value.
 """
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from winch_friction.importing.signal_logs import Signal
+from winch_friction.importing.signal_logs import Found, Signal
 from winch_friction.records.bag_file import open_reader
+from winch_friction.records.bag_storage import readable
 
 _UNITS = {
     "sensor_msgs/msg/JointState": {"position": "rad", "velocity": "rad/s", "effort": "N*m"},
@@ -23,17 +24,19 @@ _MOST_FIELDS = 64  # numbers of one message: an image or a point cloud is no sig
 _CLOCKS_APART = 60.0  # s; stamps farther from the receipt are of another clock, or zero
 
 
-def bag_signals(path: Path) -> list[Signal]:
-    """The signals of a recording; raises `InputError` for what is no bag or holds no message."""
+def bag_signals(path: Path) -> Found:
+    """A recording's signals, and what of it is lost; raises `InputError` for what is no bag or holds no message."""
     times: dict[str, list[float]] = defaultdict(list)
     values: dict[str, list[float]] = defaultdict(list)
     units: dict[str, str] = {}
+    broken, said = Counter[str](), list[str]()
     with open_reader(path) as (reader, typestore):
         known = [each for each in reader.connections if each.msgtype in typestore.types]
-        for connection, receipt, raw in reader.messages(known) if known else ():
+        for connection, receipt, raw in readable(reader, known, path.name, said) if known else ():
             try:
                 message = typestore.deserialize_cdr(raw, connection.msgtype)
             except Exception:  # whatever the bytes of a broken message lead to
+                broken[connection.topic] += 1
                 continue
             time = _stamp(message, receipt * 1e-9)
             for field, value in _numbers(message):
@@ -41,7 +44,9 @@ def bag_signals(path: Path) -> list[Signal]:
                 times[name].append(time)
                 values[name].append(value)
                 units[name] = _UNITS.get(connection.msgtype, {}).get(field.partition("[")[0], "")
-    return [_ordered(name, times[name], values[name], units[name]) for name in values]
+    said = [each.removeprefix(f"{path.name}: ") for each in said]
+    said += [f"topic '{topic}': {count} messages cannot be read" for topic, count in broken.items()]
+    return Found([_ordered(name, times[name], values[name], units[name]) for name in values], notes=tuple(said))
 
 
 def _ordered(name: str, times: list[float], values: list[float], unit: str) -> Signal:

@@ -17,15 +17,18 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
-from winch_friction.records.run_checks import checked_run
+from winch_friction.records.run_checks import GAP, checked_run
 
 STRAY = 0.01  # share of cells that are no numbers, or that no sensor can give, up to which they are strays
 _SPARSE, _LONGEST_HELD, _FEWEST_HELD = 0.67, 5.0, 10  # share of rows; usual steps; values: a slower channel
+_ORDER = 4  # of the low-pass before a derivative
+_FEWEST_SMOOTHED = 3 * (_ORDER + 1) + 1  # rows, beyond what the filter takes at either end
 _SHOWN = 5  # cells named in one message
 _AT = {
     "motor_speed": 1.0,
     "speed_reference": 1.0,
     "motor_torque": -1.0,
+    "load_torque": -1.0,
     "shaft_angle": 1.0,
 }  # power of the gear ratio at the drum
 
@@ -181,7 +184,9 @@ def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None)
     gear = crane.gear_ratio if crane is not None else 1.0
     unit = f"{entry.unit or 'rad'}/s" if entry.differentiate else entry.unit or own
     found = conversion(channel, unit, name, of=of, rope_radius=radius, gear_ratio=gear)
-    if entry.at == "drum" and channel in _AT:
+    if entry.at == "drum" and channel != "drum_speed":
+        if channel not in _AT:
+            raise InputError(f"{name}: at: drum is for {', '.join(_AT)}; take it out")
         if crane is None:
             raise InputError(f"{name}: at: drum needs the crane's gear ratio; give the crane")
         found = type(found)(found.scale * gear ** _AT[channel], found.offset)
@@ -190,18 +195,25 @@ def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None)
 
 
 def _rate(name: str, values: FloatArray, time: FloatArray, cutoff: float) -> FloatArray:
-    """Time derivative behind a zero-phase Butterworth low-pass of order 4.
+    """Time derivative behind a zero-phase Butterworth low-pass.
 
-    Raises `InputError` for gaps and for a cut-off beyond half the sampling rate.
+    Raises `InputError` for gaps, for times that do not rise, for too few rows and for a cut-off beyond half the
+    sampling rate.
     """
     from scipy.signal import butter, filtfilt
 
-    period = float(np.median(np.diff(time)))
-    if not np.isfinite(values).all() or cutoff * period >= 0.5:
+    steps = np.diff(time)
+    if len(time) < _FEWEST_SMOOTHED or not steps.min() > 0.0:  # NaN too
+        raise InputError(
+            f"{name}: differentiate: needs {_FEWEST_SMOOTHED} rows or more whose times rise; where several share a "
+            "tick, set time.spread"
+        )
+    period = float(np.median(steps))
+    if not np.isfinite(values).all() or steps.max() > GAP * period or cutoff * period >= 0.5:
         raise InputError(
             f"{name}: differentiate: {cutoff:g} Hz needs a gapless position and more than {2 * cutoff:g} samples/s"
         )
-    smooth = filtfilt(*butter(4, 2.0 * cutoff * period), values)
+    smooth = filtfilt(*butter(_ORDER, 2.0 * cutoff * period), values)
     return np.asarray(np.gradient(smooth, time - time[0]), dtype=np.float64)
 
 
@@ -212,6 +224,8 @@ def _share_of(text: str, si_unit: str, name: str) -> float:
     except ValueError:
         raise InputError(f"{name}: of: '{text}' must be a number and its unit, e.g. 215 cm^3/rev") from None
     scale, _ = conversion_to_si(unit.strip() or si_unit, si_unit, f"{name}: of")
+    if not 0.0 < number < float("inf"):
+        raise InputError(f"{name}: of: '{text}': a share is of something above 0")
     return number * scale
 
 

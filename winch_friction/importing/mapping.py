@@ -173,6 +173,8 @@ def with_settings(log_map: LogMap, settings: list[str]) -> LogMap:
         name, dot, attribute = key.strip().rpartition(".")
         if not equals or not dot:
             raise InputError(f"--set '{setting}': write CHANNEL.FIELD=VALUE, e.g. hook_load.unit=t or time.zone=UTC")
+        if name == "log":
+            raise InputError(f"--set '{setting}': how a log is read stands in the map file: write it under log: there")
         log_map = _changed(log_map, name, attribute, value.strip(), setting)
         kept = tuple(each for each in log_map.questions if not each.startswith(f"{name}:"))
         log_map = replace(log_map, questions=kept)

@@ -6,16 +6,11 @@ from typing import Any
 
 from winch_friction.importing.log import Log
 from winch_friction.physics.errors import InputError
+from winch_friction.records.runs import BAG_SUFFIXES, is_bag
 
 TEXT = (".csv", ".txt", ".tsv", ".asc", ".log", ".gz", ".zip", ".prn", ".lvm")
 WORKBOOK = (".xlsx", ".xlsm")
 SIGNALS = (".parquet", ".pq", ".mat", ".tdms", ".mf4", ".mdf")
-BAGS = (".mcap", ".db3")
-
-
-def is_bag(path: Path) -> bool:
-    """Whether a log is a recording of ROS 2."""
-    return path.is_dir() or path.suffix in BAGS
 
 
 def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
@@ -24,7 +19,7 @@ def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     if not path.exists():
         raise InputError(f"{path}: no such file")
     suffix = path.suffix.lower()
-    if path.is_dir() and not any(each.suffix in (*BAGS, ".yaml") for each in path.iterdir()):
+    if path.is_dir() and not any(each.suffix.lower() in (*BAG_SUFFIXES, ".yaml") for each in path.iterdir()):
         raise InputError(f"{path}: a folder, and no rosbag2 recording; give the logs themselves, as {path}/*.csv")
     if path.is_file() and path.stat().st_size == 0:
         raise InputError(f"{path}: the file is empty")

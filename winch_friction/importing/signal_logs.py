@@ -3,8 +3,11 @@
 Signals of rates of their own are put on the densest signal's times, each held at its latest value, as a node sees it.
 """
 
+import gc
+import sys
+import traceback
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -37,20 +40,34 @@ class Signal:
     note: str = ""
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a file holds: its signals, what it says of itself, and what is to be said of it."""
+
+    signals: list[Signal]
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
 def read_signal_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
     """A log of signals by the file's ending; raises `InputError` in one line for what cannot be read."""
     kind = "bag" if path.is_dir() else path.suffix.lower()
     try:
-        signals, metadata = _READERS[kind](path)
+        found = _READERS[kind](path)
     except InputError:
         raise
     except Exception as error:  # every one of these libraries raises what its parser meets
         said = (str(error) or type(error).__name__).splitlines()[0][:100]
         raise InputError(f"{path}: not a readable {kind} file ({said})") from error
-    columns, notes = _aligned(path, [each for each in signals if np.ndim(each.values) == 1 and len(each.values) > 1])
+    signals = [each for each in found.signals if np.ndim(each.values) == 1 and len(each.values) > 1]
+    try:
+        columns, notes = _aligned(path, signals)
+    except InputError as error:  # what is lost may be why
+        raise InputError(*error.problems, *(f"{path}: {note}" for note in found.notes)) from None
     return Log(
-        path, tuple(columns), {"kind": kind.lstrip(".")}, lambda row: f"sample {row + 1}", tuple(notes), metadata
-    )
+        path, tuple(columns), {"kind": kind.lstrip(".")}, lambda row: f"sample {row + 1}", (*found.notes, *notes),
+        found.metadata,
+    )  # fmt: skip
 
 
 def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:
@@ -115,23 +132,23 @@ def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
     return as_column(name, cells, decimal, thousands, signal.unit, signal.note)
 
 
-def _parquet(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _parquet(path: Path) -> Found:
     table = library("pyarrow.parquet", "Parquet logs").ParquetFile(path).read()
-    return [Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names], {}
+    return Found([Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names])
 
 
-def _mat(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _mat(path: Path) -> Found:
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
     try:
         content = loadmat(path, squeeze_me=True, struct_as_record=False, simplify_cells=True)
     except NotImplementedError:  # version 7.3 is HDF5
-        return list(_hdf5(path)), {}
+        return Found(list(_hdf5(path)))
     found = [each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)]
     if not found and any(isinstance(value, MatlabOpaque) for value in content.values()):
         raise InputError(f"{path}: {_OBJECTS.format('a timetable, table or other object')}")
-    return found, {}
+    return Found(found)
 
 
 def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
@@ -177,9 +194,11 @@ def _hdf5(path: Path) -> Iterator[Signal]:
         yield from _arrays(name, array, 0)
 
 
-def _tdms(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _tdms(path: Path) -> Found:
     tdms = library("nptdms", "LabVIEW .tdms logs").TdmsFile.read(path)
     channels = [channel for group in tdms.groups() for channel in group.channels() if len(channel)]
+    begins = [_begin(channel.properties) for channel in channels if channel.properties.get("wf_increment")]
+    dated = all(each is not None for each in begins)
     signals = []
     for channel in channels:
         unit = str(channel.properties.get("unit_string", ""))
@@ -187,13 +206,26 @@ def _tdms(path: Path) -> tuple[list[Signal], dict[str, Any]]:
         times = None
         if step:
             start = float(channel.properties.get("wf_start_offset", 0.0))
+            start += (_begin(channel.properties) or 0.0) if dated else 0.0
             times = np.asarray(start + float(step) * np.arange(len(channel)), dtype=np.float64)
         signals.append(Signal(channel.name, channel[:], unit, times))
-    return signals, {key: str(value) for key, value in tdms.properties.items()}
+    apart = not dated and len(set(begins)) > 1
+    notes = ("not every channel says when it began (wf_start_time): all are taken to begin together",) * apart
+    return Found(signals, {key: str(value) for key, value in tdms.properties.items()}, notes)
 
 
-def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
-    mdf = library("asammdf", "ASAM .mf4 logs").MDF(path)
+def _begin(properties: Mapping[str, Any]) -> float | None:
+    """When a channel's waveform begins, s since 1970; None where it does not say, as LabVIEW's own 1904."""
+    said = properties.get("wf_start_time")
+    try:
+        began = float((np.datetime64(said) - np.datetime64(0, "s")) / np.timedelta64(1, "s"))
+    except (TypeError, ValueError):
+        return None
+    return began if began > 0.0 else None
+
+
+def _mdf(path: Path) -> Found:
+    mdf = _opened_mdf(path)
     try:
         start = mdf.header.start_time.timestamp()
         signals = [
@@ -205,13 +237,29 @@ def _mdf(path: Path) -> tuple[list[Signal], dict[str, Any]]:
         ]
     finally:
         mdf.close()
-    return signals, {"start": start}
+    return Found(signals, {"start": start})
 
 
-def _bag(path: Path) -> tuple[list[Signal], dict[str, Any]]:
+def _opened_mdf(path: Path) -> Any:
+    """A file's object; where there is none, what was made of it goes at once: at its end it stumbles, and that is
+    written out as a traceback."""
+    made, said, hook = library("asammdf", "ASAM .mf4 logs").MDF, "", sys.unraisablehook
+    try:
+        return made(path)
+    except Exception as error:  # whatever its parser meets
+        said = (str(error) or type(error).__name__).splitlines()[0][:100]
+        sys.unraisablehook = lambda _: None
+        traceback.clear_frames(error.__traceback__)
+        gc.collect()
+    finally:
+        sys.unraisablehook = hook
+    raise InputError(f"{path}: not a readable {path.suffix.lower()} file ({said})")
+
+
+def _bag(path: Path) -> Found:
     from winch_friction.importing.bag_log import bag_signals
 
-    return bag_signals(path), {}
+    return bag_signals(path)
 
 
 _READERS = {

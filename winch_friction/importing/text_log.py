@@ -3,6 +3,7 @@
 import csv
 import gzip
 import zipfile
+import zlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -72,7 +73,7 @@ def _gunzipped(path: Path) -> bytes:
     try:
         with gzip.open(path) as stream:
             content = stream.read(min(limit, LARGEST) + 1)
-    except (OSError, EOFError, ValueError) as error:
+    except (OSError, EOFError, ValueError, zlib.error) as error:
         raise InputError(f"{path}: not a readable .gz file ({str(error)[:80]})") from error
     if len(content) > min(limit, LARGEST):
         raise InputError(f"{path}: unpacks to more than {min(limit, LARGEST) >> 20} MB, which no log does; not read")
@@ -91,7 +92,7 @@ def _unzipped(path: Path) -> bytes:
             if members[0].file_size > min(LARGEST, max(_PACKED, _RATIO * path.stat().st_size)):
                 raise InputError(f"{path}: unpacks to {members[0].file_size >> 20} MB, which no log does; not read")
             return archive.read(members[0])
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as error:
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError, EOFError, zlib.error) as error:
         raise InputError(f"{path}: not a readable .zip file ({str(error)[:80]})") from error
 
 

@@ -26,6 +26,7 @@ _DAY = 86_400.0
 _EXCEL_EPOCH = 25_569.0  # days from 1899-12-30 to 1970-01-01
 _MATLAB_EPOCH = 719_529.0  # days from year 0 to 1970-01-01
 _TICK = 1e-7  # s
+_MILLI = 3  # digits of a count of ms
 _EPOCHS = {"filetime": 11_644_473_600.0, "dotnet": 62_135_596_800.0}  # s from their origin to 1970
 _TICK_YEARS = (9.4e8, 2.6e9)  # s: 2000 to 2052; before that nobody's log counts so
 _UNIX_YEARS = (6.3e8, 2.6e9)  # s: 1990 to 2052
@@ -189,7 +190,7 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
     cells = _joined(columns)
     if isinstance(columns[0].text, np.ndarray) and np.issubdtype(columns[0].text.dtype, np.datetime64):
         return np.asarray(columns[0].text.astype("datetime64[ns]").astype(np.int64) * 1e-9, dtype=np.float64)
-    shift = _zone_shift(cells, base, where)
+    shift, counted = _zone_shift(cells, base, where), _counts_milliseconds(cells)
     known: dict[tuple[Any, ...], float] = {}
     seconds = np.full(len(cells), np.nan)
     for row, cell in enumerate(cells):
@@ -198,11 +199,26 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
             if strict and cell is not None and str(cell).strip():
                 raise InputError(f"{where}: {place(row)}: '{str(cell)[:40]}' is no time of the form '{base.form}'")
             continue
+        if counted:
+            parts = (*parts[:5], _with_zeros(parts[5]), *parts[6:])
         key = parts[:3]
         if key not in known:
             known[key] = days_since_1970(key, base.order or "ymd", where) * _DAY if parts[0] is not None else 0.0
         seconds[row] = known[key] + clock_seconds(parts) - (zone_seconds(parts[7]) if parts[7] else shift)
     return _over_midnight(seconds) if base.form == "clock" else seconds
+
+
+def _counts_milliseconds(cells: Any) -> bool:
+    """Whether what stands behind a third colon is a count without zeros before it: 12:00:05:7 is 7 ms behind 5 s."""
+    if str(_first(cells)).count(":") != 3:
+        return False
+    behind = {len(str(cell).strip().rpartition(":")[2]) for cell in cells if str(cell).count(":") == 3}
+    return len(behind) > 1 and max(behind) == _MILLI
+
+
+def _with_zeros(second: Any) -> Any:
+    whole, colon, count = str(second).partition(":")
+    return f"{whole}:{count:0>{_MILLI}}" if colon else second
 
 
 def _over_midnight(seconds: FloatArray) -> FloatArray:

@@ -30,6 +30,7 @@ def main() -> int:
     """Print until the reader goes away."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--namespace", default="")
+    parser.add_argument("--joint", default="")
     parser.add_argument("--raw", action="store_true")
     # said by the reader itself: one that is killed while this process still starts is nobody's parent any more
     parser.add_argument("--reader", type=int, default=os.getppid())
@@ -42,7 +43,7 @@ def main() -> int:
     if options.raw:
         Raw(node)
     else:
-        _frames(node)
+        _frames(node, options.joint)
     node.create_timer(LOOK_AROUND, partial(_orphaned, options.reader))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -62,8 +63,8 @@ def _orphaned(reader: int) -> None:
         raise KeyboardInterrupt
 
 
-def _frames(node: Node) -> None:
-    telemetry = Telemetry()
+def _frames(node: Node, joint: str) -> None:
+    telemetry = Telemetry(joint)
     for topic, type_name in TOPICS.items():
         node.create_subscription(
             message_type(type_name), topic, partial(telemetry.take, topic), qos_profile_sensor_data

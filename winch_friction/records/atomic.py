@@ -5,6 +5,7 @@ What a kill in the moment of renaming leaves beside a file is removed by the nex
 
 import glob
 import os
+import shutil
 import sys
 import threading
 from collections.abc import Iterator
@@ -35,6 +36,26 @@ def atomic_path(path: Path) -> Iterator[Path]:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def together(folder: Path, mark: str) -> Iterator[Path]:
+    """A hidden folder within `folder`, whose files move there when the block ends without an error, `mark` first.
+
+    The mark says whose `folder` is: a process that is killed before has left none of its files there, and one that is
+    killed between them has left the mark. What it left of the hidden folder is removed by the next one.
+    """
+    own = Path(folder) / Path(mark).stem
+    own.parent.mkdir(parents=True, exist_ok=True)
+    remove_stale(own)
+    temporary = _beside(own)
+    temporary.mkdir()
+    try:
+        yield temporary
+        for each in sorted(temporary.iterdir(), key=lambda path: (path.name != mark, path.name)):
+            os.replace(each, own.parent / each.name)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def write_text(path: Path, text: str) -> Path:
@@ -84,7 +105,7 @@ def remove_stale(path: Path) -> None:
     for each in path.parent.glob(f".{_literal(path.stem)}.*-*.tmp{_literal(path.suffix)}"):
         owner = each.name.removeprefix(f".{path.stem}.").partition("-")[0]
         if owner.isdigit() and not _alive(int(owner)):
-            each.unlink(missing_ok=True)
+            shutil.rmtree(each) if each.is_dir() else each.unlink(missing_ok=True)
 
 
 def _literal(text: str) -> str:

@@ -1,14 +1,16 @@
 """A rosbag2 recording opened for reading: its topics matched to the winch's, its messages in the order of arrival."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bag_storage import readable, refused, storage_of
 from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
@@ -16,6 +18,7 @@ NANOSECOND = 1e-9
 SPEED_TOPIC = "winch/joint_states"  # below a winch's namespace
 _PEEKED = 20  # messages looked at to tell a displacement's unit
 _LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a fraction
+_NO_TIME_YET = 1.0  # s after the stamps' zero beyond which a stamp of 0 is of a sender that knows no time yet
 _CLOCKS_APART = 60.0  # s; header stamps and receipt times that differ by more are of different clocks
 
 
@@ -56,6 +59,7 @@ class Bag:
     _reader: Any
     _typestore: Any
     _offset: float = 0.0
+    _timed: bool = False  # whether the speed's stamps tell a time
     _broken: dict[str, int] = field(default_factory=dict)
 
     def inputs(self) -> Iterator[Message]:
@@ -65,9 +69,20 @@ class Bag:
     def events(self, *others: str) -> Iterator[Message | Other]:
         """The winch's input messages and those on other topics of the bag, in the order of their receipt."""
         sources = {actual: self.topics.inputs[contract] for contract, actual in self.actual.items()}
+        came, timeless = Counter[str](), Counter[str]()
         for topic, receipt, message in self.messages(*sources, *others):
             time = receipt - self._offset
-            yield Message(sources[topic], message, time) if topic in sources else Other(topic, message, time)
+            if topic not in sources:
+                yield Other(topic, message, time)
+                continue
+            came[topic] += 1
+            if self._timed and sources[topic].stamped and abs(time) > _NO_TIME_YET and not stamp_time(message):
+                timeless[topic] += 1
+                continue
+            yield Message(sources[topic], message, time)
+        if timeless:
+            said = ", ".join(f"topic '{t}': {n} of {came[t]} messages are left out" for t, n in timeless.items())
+            self.warnings.append(f"{self.name}: stamped 0, as by a sender that knows no time yet: {said}")
         self.warnings += [f"{self.name}: topic '{t}': {n} messages cannot be read" for t, n in self._broken.items()]
         self._broken.clear()
 
@@ -80,9 +95,7 @@ class Bag:
         connections = [each for each in self._reader.connections if each.topic in topics]
         if not connections:
             return
-        came = 0
-        for connection, receipt, raw in self._reader.messages(connections):
-            came += 1
+        for connection, receipt, raw in readable(self._reader, connections, self.name, self.warnings):
             reader = READERS.get(connection.msgtype)
             try:
                 if reader is not None and raw[:2] == LITTLE_ENDIAN:
@@ -93,7 +106,6 @@ class Bag:
                 self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
                 continue
             yield connection.topic, receipt * NANOSECOND, message
-        self.warnings += damage(self.name, connections, came)
 
     def topics_ending(self, suffix: str) -> list[str]:
         """Topics by the end of their name, e.g. `/friction_torque`; those of another winch in the bag are not ours."""
@@ -102,14 +114,6 @@ class Bag:
         own = self.actual[self.topics.speed_topic].removesuffix(SPEED_TOPIC)
         of = lambda topic: max((each for each in spaces if topic.startswith(each)), key=len, default=own)
         return sorted(each for each in topics if each.endswith(suffix) and of(each) == own)
-
-
-def damage(name: str, connections: Sequence[Any], came: int) -> list[str]:
-    """What is said when of rosbags' `connections` fewer messages came than the bag's index counts; else nothing."""
-    counted = sum(each.msgcount or 0 for each in connections)
-    if came >= counted:
-        return []
-    return [f"{name}: the file is damaged: of {counted} messages {came} can be read, the rest is lost; copy it anew"]
 
 
 @contextmanager
@@ -139,7 +143,8 @@ def open_bag(
         bag = Bag(path.name, topics, actual, [], reader, typestore)
         _check_types(path, reader, bag)
         bag.warnings += _passed_over(path.name, reader, typestore, set(actual.values()))
-        bag._offset = _clock_offset(bag)
+        unread = replace(bag, warnings=[], _broken={})  # what is lost is said of the reading
+        bag._offset, bag._timed = _clock_offset(unread)
         yield bag
 
 
@@ -157,26 +162,16 @@ def open_reader(path: Path) -> Iterator[tuple[Any, Any]]:
 def _reader(path: Path) -> Iterator[Any]:
     from rosbags.rosbag2 import Reader
 
+    storage = storage_of(path)
     try:
-        reader = Reader(_storage(path))
+        reader = Reader(storage)
         reader.open()
     except Exception as error:  # rosbags raises its own errors, sqlite's, struct's and assertions for broken files
-        said = (str(error) or type(error).__name__).splitlines()[0][:120]
-        raise InputError(f"{path}: not a readable rosbag2 recording ({said})") from error
+        raise refused(path, error) from error
     try:
         yield reader
     finally:
         reader.close()
-
-
-def _storage(path: Path) -> Path:
-    """The folder, or its only storage file when the recorder was killed before it wrote metadata.yaml."""
-    if not path.is_dir() or (path / "metadata.yaml").is_file():
-        return path
-    files = sorted(each for each in path.iterdir() if each.suffix in (".mcap", ".db3"))
-    if len(files) != 1:
-        raise InputError(f"{path}: not a rosbag2 folder: no metadata.yaml and {len(files)} storage files")
-    return files[0]
 
 
 def _typestore() -> Any:
@@ -244,7 +239,7 @@ def _displacement_unit(reader: Any, typestore: Any, topics: list[str]) -> str:
     connections = [c for c in reader.connections if c.topic in topics]
     if not connections:
         return "m3_per_rad"
-    for count, (connection, _, raw) in enumerate(reader.messages(connections)):
+    for count, (connection, _, raw) in enumerate(readable(reader, connections, "", [])):
         message = typestore.deserialize_cdr(raw, connection.msgtype)
         positions = [message.data] if connection.msgtype == FLOAT64 else getattr(message, "position", ())
         if any(abs(value) > _LARGEST_DISPLACEMENT for value in positions):
@@ -276,12 +271,15 @@ def _passed_over(name: str, reader: Any, typestore: Any, used: set[str]) -> list
     return said + ([f"{name}: topics that are not the winch's, read past: {', '.join(known)}"] if known else [])
 
 
-def _clock_offset(bag: Bag) -> float:
-    """Receipt minus stamp in s when the recorder's clock and the stamps' are different ones, else zero."""
-    speed = bag.topics.inputs[bag.topics.speed_topic]
+def _clock_offset(bag: Bag) -> tuple[float, bool]:
+    """Receipt minus stamp in s when the recorder's clock and the stamps' are different ones, else zero; and whether
+    the stamps tell a time at all. Told from the first that is not 0: before a simulation's clock runs, all are."""
+    speed, first = bag.topics.inputs[bag.topics.speed_topic], 0.0
     if not speed.stamped:
-        return 0.0
+        return 0.0, False
     for _, receipt, message in bag.messages(bag.actual[speed.topic]):
-        offset = receipt - stamp_time(message)
-        return offset if abs(offset) > _CLOCKS_APART else 0.0
-    return 0.0
+        stamp, first = stamp_time(message), first or receipt
+        if stamp:
+            offset = receipt - stamp
+            return (offset if abs(offset) > _CLOCKS_APART else 0.0), True
+    return (first if abs(first) > _CLOCKS_APART else 0.0), False

@@ -1,6 +1,5 @@
 """A bag as a run: one row per speed message, every other input held as in the nodes."""
 
-import json
 import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,7 +15,8 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Bag, open_bag
-from winch_friction.records.run_checks import Place, checked_run
+from winch_friction.records.bag_storage import lost_of
+from winch_friction.records.run_checks import Place, checked_run, own_metadata
 from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"
@@ -45,17 +45,18 @@ def read_bag(
         columns = _columns(bag_samples(bag, hold), groups)
         warnings, speed = list(bag.warnings), bag.actual[bag.topics.speed_topic]
     if not len(columns["time"]):
-        raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint")
+        raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint", *lost_of(warnings))
     if len(columns["time"]) > 1 and not np.ptp(columns["time"]):
         raise InputError(
             f"{path}: every message on '{speed}' is stamped {columns['time'][0]:g} s: its sender knows no time; "
             "winch-friction import takes the times of receipt"
         )
     place: Place = lambda row: f"sample {row + 1} of '{speed}'"
+    metadata, spoilt = bag_metadata(path)
     try:
         return checked_run(
-            path.name, columns, place=place, crane=crane, complete=complete, warnings=warnings,
-            metadata=bag_metadata(path),
+            path.name, columns, place=place, crane=crane, complete=complete, warnings=[*warnings, *spoilt],
+            metadata=metadata,
         )  # fmt: skip
     except InputError as refused:  # a column that is missing may be one of which nothing was believed
         raise InputError(*refused.problems, *filter(_ALL_LEFT_OUT.search, warnings)) from None
@@ -90,10 +91,17 @@ def _columns(samples: Iterable[Sample], groups: Sequence[str]) -> dict[str, Floa
     return {names[k]: table[:, k].copy() for k in kept}
 
 
-def bag_metadata(path: Path) -> dict[str, Any]:
-    """What this package wrote about a recording beside its messages; empty for a recording of another origin."""
+def bag_metadata(path: Path) -> tuple[dict[str, Any], list[str]]:
+    """What this package wrote about a recording beside its messages, and what is to be said where it cannot be read.
+
+    Empty for a recording of another origin, and for a metadata.yaml that is none: whoever opens the bag says that.
+    """
     file = path / "metadata.yaml"
     if not file.is_file():
-        return {}
-    custom = (yaml.safe_load(file.read_text(encoding="utf-8")) or {}).get("rosbag2_bagfile_information", {})
-    return dict(json.loads((custom.get("custom_data") or {}).get(METADATA_KEY, "{}")))
+        return {}, []
+    try:
+        written = yaml.safe_load(file.read_text(encoding="utf-8"))
+        own = written["rosbag2_bagfile_information"]["custom_data"][METADATA_KEY]
+    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError):
+        return {}, []
+    return own_metadata(own, path.name)

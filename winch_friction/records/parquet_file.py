@@ -12,7 +12,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.csv_file import read_headers
 from winch_friction.records.headers import Header, header_text, said_of_nameless
-from winch_friction.records.run_checks import Place, checked_run
+from winch_friction.records.run_checks import Place, checked_run, own_metadata
 
 _METADATA = b"winch_friction"
 _DATES = ("timestamp", "duration")  # types of a column of dates, as pandas writes an index of times
@@ -36,11 +36,11 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
                 columns[header.name] = header.to_si(columns[header.name], str(path))
         else:
             aside[header.text] = chunked.to_numpy()
-    metadata = json.loads((table.schema.metadata or {}).get(_METADATA, b"{}"))
+    metadata, spoilt = own_metadata((table.schema.metadata or {}).get(_METADATA, b"{}"), path.name)
     with problems:
         run = checked_run(
             path.name, columns, place=place, crane=crane, complete=complete, aside=aside, metadata=metadata, bare=bare,
-            warnings=said_of_nameless(headers, path.name),
+            warnings=[*said_of_nameless(headers, path.name), *spoilt],
         )  # fmt: skip
     problems.say()
     return run

@@ -7,6 +7,7 @@ shorter than a second, columns that are not of the contract (kept aside), and wh
 another unit by a column without one, which is SI.
 """
 
+import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -54,9 +55,24 @@ def remarks_on_bare_columns(name: str, columns: Mapping[str, FloatArray], bare: 
     return said
 
 
+# -- what is kept beside the columns
+
+
+def own_metadata(text: Any, name: str) -> tuple[dict[str, Any], list[str]]:
+    """What this package wrote about a run, from its JSON; nothing where it is none, and then a warning of the run."""
+    try:
+        found = json.loads(text)
+    except (TypeError, ValueError, RecursionError):
+        found = None
+    if isinstance(found, dict):
+        return found, []
+    return {}, [f"{name}: what it keeps of itself (crane, settings) is not the JSON that was written: left out"]
+
+
 # -- the checks
 GAP = 5.0  # times the median step counts as a gap
 SHORT = 1.0  # s
+NO_TIME_YET = 10.0  # s; rows of time 0 so long before the next are of a clock that was not set: no recorder pauses then
 _SHOWN = 3  # places named in one warning
 
 Columns = dict[str, FloatArray]
@@ -139,12 +155,21 @@ def _check_time(name: str, columns: Columns, place: Place) -> None:
 
 def _rows_of_new_time(name: str, time: FloatArray, place: Place, said: list[str]) -> Any:
     keep = np.concatenate(([True], np.diff(time) > 0.0))
+    timeless = int(np.argmax(time != 0.0))  # 0 also where all are
+    if timeless and time[timeless] > NO_TIME_YET:
+        said.append(
+            f"{name}: column 'time': {timeless} rows of time 0, {time[timeless]:.4g} s before the next, left out: the "
+            f"clock was not set yet, {_places(np.arange(timeless), place)}"
+        )
+        keep[:timeless] = True
+    else:
+        timeless = 0
     repeated = np.flatnonzero(~keep)
     if repeated.size:
         said.append(f"{name}: column 'time': {repeated.size} repeated times left out, {_places(repeated, place)}")
     if keep.sum() < 2:
         raise InputError(f"{name}: column 'time': all rows have the same time")
-    return np.flatnonzero(keep)
+    return np.flatnonzero(keep)[timeless:]
 
 
 def _place_after(rows: Any, place: Place) -> Place:

@@ -19,6 +19,11 @@ BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
 
 
+def is_bag(path: Path) -> bool:
+    """Whether a recording is one of ROS 2; a logger under Windows writes RUN.MCAP."""
+    return path.is_dir() or path.suffix.lower() in BAG_SUFFIXES
+
+
 def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = True, **bag_options: Any) -> Run:
     """A run in SI from a CSV, a Parquet file or a bag.
 
@@ -30,7 +35,7 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
     suffix = path.suffix.lower()  # a logger under Windows writes LOG.CSV
-    if path.is_dir() or path.suffix in BAG_SUFFIXES:
+    if is_bag(path):
         from winch_friction.records.bags import read_bag
 
         return read_bag(path, crane, complete=complete, **bag_options)

@@ -20,13 +20,19 @@ SIGNALS = {
     "learned": "friction by the learned model [N·m]", "truth": "true friction, simulated [N·m]",
     "error": "position error of the load [mm]",
 }  # fmt: skip
+SPEEDS = {"winch/joint_states": "speed", "winch/reference": "reference"}  # topic of joints -> signal
+MOTOR = "winch_motor"  # the joint's usual name
 SPACING = 0.05  # s between the points of a signal: 20 Hz is more than an eye follows
 
 
 class Telemetry:
-    """Takes messages as they come, gives frames."""
+    """Takes messages as they come, gives frames.
 
-    def __init__(self) -> None:
+    `joint` carries the speed; '' stands for the motor's usual name, else the first there is, and that is said.
+    """
+
+    def __init__(self, joint: str = "") -> None:
+        self._joint, self._notes = joint, dict[str, str]()
         self._points: dict[str, list[list[float]]] = {name: [] for name in SIGNALS}
         self._last: dict[str, float] = {}
         self._status: dict[str, dict[str, Any]] = {}
@@ -45,8 +51,25 @@ class Telemetry:
             return
         header = getattr(message, "header", None)  # none: a plain number of a simple bridge
         self.time = receipt if header is None else header.stamp.sec + 1e-9 * header.stamp.nanosec
+        if topic in SPEEDS and header is not None:
+            self._add(SPEEDS[topic], self._speed(topic, message) / RPM)
+            return
         for signal, value in _values(topic, message):
             self._add(signal, value)
+
+    def _speed(self, topic: str, message: Any) -> float:
+        """The speed of the joint that is asked for, rad/s; NaN without it."""
+        names, wanted = list(message.name), self._joint or MOTOR
+        there = ", ".join(f"'{name}'" for name in names)
+        self._notes.pop(topic, None)
+        if wanted in names:
+            return _entry(message.velocity, names.index(wanted))
+        if self._joint:
+            self._notes[topic] = f"no joint '{wanted}', and no speed of it, among {there or 'none'}"
+            return float("nan")
+        if names:
+            self._notes[topic] = f"the speed is of joint '{names[0]}' of {there}: name the motor's with --joint"
+        return _entry(message.velocity, 0)
 
     def _add(self, signal: str, value: float) -> None:
         last = self._last.get(signal, float("-inf"))
@@ -55,26 +78,25 @@ class Telemetry:
             self._points[signal].append([round(self.time, 4), float(f"{value:.6g}")])
 
     def frame(self) -> dict[str, Any]:
-        """What came since the last frame, and the latest diagnostics."""
+        """What came since the last frame, the latest diagnostics, and what is to be said of a topic."""
         points = {name: values for name, values in self._points.items() if values}
         self._points = {name: [] for name in SIGNALS}
-        return {"time": self.time if self.time == self.time else None, "points": points, "status": self._status}
+        return {"time": self.time if self.time == self.time else None, "points": points, "status": self._status,
+                "notes": list(self._notes.items())}  # fmt: skip
 
 
 def _values(topic: str, message: Any) -> list[tuple[str, float]]:
     if not hasattr(message, "header"):
-        plain = {"winch/joint_states": "speed", "winch/reference": "reference"}.get(topic)
-        return [(plain, float(message.data) / RPM)] if plain else []
-    first = lambda values: float(values[0]) if len(values) else float("nan")
-    if topic == "winch/joint_states":
-        return [("speed", first(message.velocity) / RPM)]
-    if topic == "winch/reference":
-        return [("reference", first(message.velocity) / RPM)]
+        return [(SPEEDS[topic], float(message.data) / RPM)] if topic in SPEEDS else []
     if topic == "simulator/truth":
         load = list(message.name).index("load") if "load" in message.name else None
         error = [("error", 1e3 * float(message.position[load]))] if load is not None else []
-        return [("truth", first(message.effort)), *error]
-    return [("feedforward" if topic.startswith("compensator") else "learned", first(message.effort))]
+        return [("truth", _entry(message.effort, 0)), *error]
+    return [("feedforward" if topic.startswith("compensator") else "learned", _entry(message.effort, 0))]
+
+
+def _entry(values: Any, index: int) -> float:
+    return float(values[index]) if index < len(values) else float("nan")
 
 
 def estimates(status: dict[str, Any]) -> list[dict[str, Any]]:

@@ -12,8 +12,9 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Other, open_bag
+from winch_friction.records.bag_storage import lost_of
 from winch_friction.records.bags import bag_metadata
-from winch_friction.records.runs import BAG_SUFFIXES, read_run
+from winch_friction.records.runs import is_bag, read_run
 from winch_friction.records.topics import TopicMap
 from winch_friction.replay.clock import ReplayClock
 from winch_friction.replay.live import Comparison, compare_live
@@ -58,7 +59,7 @@ def replay_recording(
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
-    if path.is_dir() or path.suffix in BAG_SUFFIXES:
+    if is_bag(path):
         return _replay_bag(path, crane, seed, settings, learn, bag_options)
     return replay_run(read_run(path, crane), crane, seed, settings or ReplaySettings(), learn=learn)
 
@@ -82,7 +83,8 @@ def replay_run(
 def _replay_bag(
     path: Path, crane: Crane, seed: FrictionModel, settings: ReplaySettings | None, learn: bool, options: dict[str, Any]
 ) -> Replayed:
-    settings = settings or settings_from_metadata(bag_metadata(path), str(path)) or ReplaySettings()
+    metadata, spoilt = bag_metadata(path)
+    settings = settings or settings_from_metadata(metadata, str(path)) or ReplaySettings()
     with open_bag(path, crane, **options) as bag:
         begin = next((each.stamp for each in bag.inputs()), -inf)
         compensator = CompensatorVoice(crane, seed, bag.topics, settings, begin)
@@ -97,9 +99,9 @@ def _replay_bag(
             learned = estimator.take(each, now)
             if learned is not None and learn and not recorded:
                 compensator.offer(learned)
-        warnings = tuple(bag.warnings)
+        warnings = (*spoilt, *bag.warnings)
     if not len(compensator.steps):
-        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay")
+        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay", *lost_of(warnings))
     replayed = _replayed(path.name, compensator, estimator, warnings)
     runs = {name: getattr(replayed, name) for name in ("compensator", "estimator", "watchdog")}
     return replace(replayed, live=tuple(compare_live(path, runs, crane=crane, **options)))

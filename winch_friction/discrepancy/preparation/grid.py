@@ -16,6 +16,7 @@ from winch_friction.physics.signals import FloatArray, Run
 
 MIN_SAMPLES = 10  # below it not even a speed can be smoothed
 LONG_RECORD, FASTEST_PERIOD = 60_000, 0.01  # samples; s
+MOST_EMPTY = 5_000_000  # samples of a grid most of which nobody logged; a day of 50 Hz
 HOLE = 5.0  # sampling periods without a sample
 SMOOTHING_TIME = 0.3  # s: short against a wave, long against an encoder's step
 FEWEST_SMOOTHED = 5  # samples: a parabola through fewer smooths nothing
@@ -53,6 +54,12 @@ def uniform(run: Run) -> Grid:
     if not np.isfinite(time).all() or steps.min() <= 0.0:
         raise InputError(f"{run.name}: column 'time' is not increasing; sort or repair the file")
     dt = float(np.median(steps))
+    if time[-1] / dt > max(MOST_EMPTY, 10 * len(time)):
+        leap = int(np.argmax(steps))
+        raise InputError(
+            f"{run.name}: column 'time' leaps by {steps[leap]:.4g} s at {run.time[leap]:.14g} s, and there are "
+            f"{len(time)} samples of {time[-1]:.4g} s: split the file there"
+        )
     grid = np.arange(0.0, time[-1] + 0.5 * dt, dt)
     even = len(grid) == len(time) and np.abs(grid - time).max() < 1e-3 * dt
     valid = np.ones(len(grid), bool)

@@ -6,7 +6,7 @@ linear in them, and it is a term like any other.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -102,6 +102,18 @@ class Table:
     def in_times(self) -> bool:
         """Whether it says what was there for a time: windows over the date."""
         return self.shape == "windows" and self.signals == ("time",)
+
+    @property
+    def latex(self) -> str:
+        """Of windows their law with m, so many times the level, and what m is in words; '' of what bends."""
+        if self.shape != "windows":
+            return ""
+        signal, unit = FACTORS[self.signals[0]]
+        many = sp.Function("m")(signal)
+        told = [f"{w:.4g} {_between(a, b, unit)}" for w, a, b in _each_window(self) if w > 0.0]
+        law = _term(self, _level(self).symbol * many, [_level(self)], "")
+        words = ", ".join([*told, "0 elsewhere"])
+        return rf"{replace(law, table=None).latex},\quad {sp.latex(many)} = \text{{{words}}}"
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -207,8 +219,26 @@ def _in_windows(table: Table, axis: _Axis, shapes: Sequence[Parameter]) -> Term:
     steps = [sp.Piecewise((0.0, signal <= at), (1.0, True)) for at in knots]
     weights = _weights(table)
     inside = sp.Add(*(weights[k // 2] * (step if k % 2 == 0 else -step) for k, step in enumerate(steps)))
-    level = Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=f"level in windows of {name}")
+    level = _level(table)
     return _term(table, level.symbol * inside, [level, *shapes], f"in {len(knots) // 2} windows of {name}")
+
+
+def _level(table: Table) -> Parameter:
+    doc = f"level in windows of {table.signals[0]}"
+    return Parameter(f"{table.name}_0", table.unit, abs(table.typical), lower=0.0, doc=doc)
+
+
+def _each_window(table: Table) -> Iterator[tuple[float, float, float]]:
+    """Weight, begin and end of every window."""
+    knots = table.knots[0][1]
+    return zip(_weights(table), knots[::2], knots[1::2], strict=True)
+
+
+def _between(begin: float, end: float, unit: str) -> str:
+    unit = unit.replace("^", r"\^{}")  # within a text
+    if end == float("inf"):
+        return f"after {begin:.12g} {unit}"
+    return f"up to {end:.12g} {unit}" if begin == float("-inf") else f"from {begin:.12g} to {end:.12g} {unit}"
 
 
 def _weights(table: Table) -> tuple[float, ...]:
@@ -217,10 +247,7 @@ def _weights(table: Table) -> tuple[float, ...]:
 
 def in_windows(table: Table, level: float, at: float) -> float:
     """What a table of windows is at one value of its signal, in the unit of its `level`: 0 outside of them."""
-    knots = table.knots[0][1]
-    weights = _weights(table)
-    own = (w for w, a, b in zip(weights, knots[::2], knots[1::2], strict=True) if a < at <= b)
-    return level * next(own, 0.0)
+    return level * next((w for w, a, b in _each_window(table) if a < at <= b), 0.0)
 
 
 def at_knots(table: Table) -> FloatArray:

@@ -138,8 +138,8 @@ class Term:
 
     @property
     def latex(self) -> str:
-        """The equation in LaTeX, from the same declaration."""
-        return str(sp.latex(self.torque))
+        """The equation in LaTeX, from the same declaration; a table of windows is told in words behind it."""
+        return (self.table.latex if self.table is not None else "") or str(sp.latex(self.torque))
 
 
 # channels that a term may read and in whose place nothing can stand: a layer that is not said is the outer one
@@ -246,7 +246,7 @@ def _run(path: Path) -> None:
         spec.loader.exec_module(importlib.util.module_from_spec(spec))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # a script that ends would end the verb, as if all were done
         raise InputError(f"{path}: {type(error).__name__}: {' '.join(str(error).split())}") from error
 
 

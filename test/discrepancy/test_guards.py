@@ -1010,3 +1010,24 @@ def test_what_a_set_has_no_room_for_is_said(monkeypatch):
     own = Company(("second", "third"), (), found.no_room)
     assert own.note("first") == "first: as well on these runs, but without room in a set: fourth, fifth"
     assert Company((), ()).note("first") == ""
+
+
+@pytest.mark.parametrize(("left_out", "told"), [(3, True), (4, False)])
+def test_a_set_that_leaves_out_more_names_than_it_has_room_for_is_no_answer(monkeypatch, left_out, told):
+    """Neither of the search nor, where others are dropped after it, of the proof."""
+    cross = crossfit(3.0 * WAVE + noise())
+    final = cross.explain(SLOTS[:1])
+    names = tuple(f"name {k}" for k in range(left_out))
+    found = (Finding(SLOTS[0], (SLOTS[1],), 0.0, 0.1, 1.0, names),)
+    selection = Selection(cross.explain(()), final, found)
+    assert (decide(cross, selection, []).kind == AMBIGUOUS) is told
+    trial = Trial(_Whole(cross, selection, Verdict(AMBIGUOUS)), None, None, side(3.0 * WAVE + noise(), noise(1)))
+    refit = side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1))
+    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
+    monkeypatch.setattr(standing_module, "_stands", lambda *_: (trial, ""))
+    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
+    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
+    result = standing_module.standing(None, None, None, trial.search, np.random.default_rng(0))
+    assert (result is trial) is told
+    assert (f"wave is not told from other, {', '.join(names)}" in result.search.verdict.refused) is not told

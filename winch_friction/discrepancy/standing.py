@@ -44,7 +44,7 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
         full, why = _stands(each, refit, trial_of, rng)
         if full is not None:
             proven = _each_proven(full, refit, trial_of, rng)
-            why = several_leave_more_than_noise(proven)
+            why = proven.search.selection.untold or several_leave_more_than_noise(proven)
             if not why:
                 return proven
         whys.append(why)

@@ -59,6 +59,13 @@ class Selection:
     found: tuple[Finding, ...]
     considered: tuple[Considered, ...] = field(default_factory=tuple)
 
+    @property
+    def untold(self) -> str:
+        """Why it is no answer: a set that leaves out more names than it has room for; empty where none does."""
+        others = [(f, [*(each.name for each in f.rivals), *f.no_room]) for f in self.found]
+        crowded = [(f.slot.name, ", ".join(names)) for f, names in others if len(f.no_room) > LIMITS.most_names]
+        return "; ".join(f"{name} is not told from {names}" for name, names in crowded)
+
 
 def select(
     cross: CrossFit, rng: np.random.Generator, most: int = LIMITS.most_effects, apart: bool = False
@@ -257,10 +264,8 @@ def _pruned(cross: CrossFit, current: Explanation, rng: np.random.Generator) -> 
         weakest, last = smaller[k], cross.explain((*smaller[k].slots, current.slots[k]))
         p = _evidence(cross, [last], (weakest.losses - current.losses)[None], rng)[0]
         gain = cross.gain(weakest, current)
-        if (
-            _significant(np.asarray(p), np.asarray(gain))
-            and min(gain, cross.inside_gain(weakest, current)) >= LEAST_GAIN
-        ):
+        useful = min(gain, cross.inside_gain(weakest, current)) >= LEAST_GAIN
+        if useful and _significant(np.asarray(p), np.asarray(gain)):
             break
         current = weakest
     return current
@@ -291,6 +296,5 @@ def _found(
     rivals, frequency = rivals_of(cross, current, without, k, rng, same=bool(bringers))
     name = own.name
     p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
-    room = LIMITS.most_names - 1
-    more = tuple(slot.name for slot in rivals[room:])
-    return Finding(own, rivals[:room], p, float(cross.gain(without, current)), frequency, more)
+    sets = rivals[: LIMITS.most_names - 1], tuple(slot.name for slot in rivals[LIMITS.most_names - 1 :])
+    return Finding(own, sets[0], p, float(cross.gain(without, current)), frequency, sets[1])

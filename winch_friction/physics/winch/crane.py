@@ -247,6 +247,12 @@ def sample_drive_torque(sample: Sample, crane: Crane) -> float:
     return crane.drive.of_sample(sample, crane)
 
 
+def sample_load(sample: Sample) -> float:
+    """The hanging mass that is shown in kg: hook load, else what the rope force carries; NaN where a sample has
+    neither."""
+    return sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
+
+
 def run_drive_torque(run: Run, crane: Crane) -> Any:
     """`sample_drive_torque` along a run, N m."""
     return crane.drive.of_run(run, crane)

@@ -18,7 +18,7 @@ SMOOTHING = 0.1  # s, twice: of all signals alike, so that noise and the encoder
 MEMORY = 40.0  # s: some waves
 FIRST = 60.0  # s of motion after which what is seen is what the rest is compared with
 EVERY = 1.0  # s between looks
-LONGEST_STEP = 0.2  # s; a longer gap begins the smoothing anew
+LONGEST_STEP = 0.3  # s, a log of 5 Hz with its jitter; a longer gap begins the smoothing anew
 # what accelerates the shaft and is like nothing else, over what the regression leaves (friction's true shape at
 # reversals, the wire): 0.06 in a swell and 0.2 with a joystick tell too little; in the shipped seas it is 0.6 to 3.9
 TELLING = 0.6

@@ -14,9 +14,11 @@ from winch_friction.identification.plateaus import refuse_gaps
 from winch_friction.physics.channels import GROUP_CHANNELS, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
-from winch_friction.physics.winch.crane import run_drum_torque, run_rope_radius
+from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
+from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
@@ -111,9 +113,11 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
     winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
     relative error of the displacement feedback that a joint fit found for these motors. A record with long holes
-    is predicted piece by piece. Raises `InputError` for a missing column, NaN, and a winch that never turns.
+    is predicted piece by piece. Raises `InputError` for a missing column, NaN, also in what the model's terms read, and
+    for a winch that never turns.
     """
     refuse_unusable(run)
+    refuse_gaps(run, needed(model.terms))
     run = _with_true_displacement(run, displacement_scale)
     group = "active" if "active" in run.groups else run.groups[0]
     pieces = _pieces(run)
@@ -197,10 +201,16 @@ def _points(
     run: Run, crane: Crane, drop: dict[str, FloatArray], drum_torque: FloatArray, acceleration: FloatArray
 ) -> tuple[Any, ...]:
     speed = _smooth(run, run["motor_speed"], 0)
+    lower = {name: np.minimum(run[f"{name}.pressure_a"], run[f"{name}.pressure_b"]) for name in drop}
     groups = [
-        group_point(np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"])
+        group_point(
+            np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"],
+            np.abs(p) + 2.0 * lower[name],
+        )
         for name, p in drop.items()
-    ]
+    ]  # fmt: skip
+    outer = np.full(len(run), float(len(crane.drum.layer_radii)))
+    shown = {name: held(run[name]) for name in CHANNEL_SIGNALS if name in run}
     return operating_point(
         direction=np.sign(speed),
         speed=speed,
@@ -208,6 +218,7 @@ def _points(
         groups=groups,
         motor_total=np.full(len(run), float(crane.motor_total(run.groups))),
         acceleration=acceleration,
+        **{"wire_layer": outer, **{name: values for name, values in shown.items() if np.isfinite(values).all()}},
     )
 
 

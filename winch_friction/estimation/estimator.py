@@ -28,7 +28,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
+from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
@@ -85,7 +85,7 @@ class FrictionEstimator:
     ) -> None:
         # refuses by name what only a whole run can be rid of, unless it was over at `since` s
         self._correct = SampleCorrector(crane, seed_model, since=since)
-        self.config = config or EstimatorConfig()
+        self.config = at_its_speeds(config or EstimatorConfig(), crane, "stick_speed", "excitation_speed")
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
         self._ranges, self._needed = ChannelRanges(self.crane), needed(self.seed.terms)

@@ -247,7 +247,7 @@ class Agreement:
         self._time, self._now = sample.time, now
         self._turns.patience = self.lead + LONGEST_LAG
         found = {
-            "speed_reference turns against motor_speed": self._turns.step(_turns_against(sample), dt),
+            "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
             self._load.contradiction(sample, dt): True,
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
@@ -269,8 +269,8 @@ class Agreement:
         self._jumps = [each for each in self._jumps if 0.0 <= sample.time - each < CHATTER_TIME]
         return len(self._jumps) >= CHATTER_COUNT
 
-
-def _turns_against(sample: Sample) -> bool | None:
-    if not (abs(sample.motor_speed) > AGAINST_SPEED and abs(sample.speed_reference) > 0.0):  # NaN as well
-        return None
-    return sample.motor_speed * sample.speed_reference < 0.0
+    def _turns_against(self, sample: Sample) -> bool | None:
+        least = AGAINST_SPEED * self._crane.speed_scale
+        if not (abs(sample.motor_speed) > least and abs(sample.speed_reference) > 0.0):  # NaN as well
+            return None
+        return sample.motor_speed * sample.speed_reference < 0.0

@@ -204,6 +204,14 @@ def test_a_winch_that_never_turns(truth, crane):
         pressure_check(still, crane, truth)
 
 
+def test_a_slow_motor_turns_where_a_fast_one_creeps(truth, crane):
+    run, slow = ahc_run(truth, crane), replace(crane, rated_speed=5.0)
+    creeping = Run("slow", {**run.columns, "motor_speed": run["motor_speed"] / 300.0})
+    assert np.isfinite(pressure_check(creeping, slow, truth).moving_rms)
+    with pytest.raises(InputError, match="never turns"):
+        pressure_check(creeping, crane, truth)
+
+
 def test_the_error_while_turning_leaves_standstill_out():
     speed, error = np.array([0.0, 0.5, -20.0, 30.0]), np.array([9.0, 9.0, 3.0, -4.0]) * BAR
     check = PressureCheck("r", "main", np.arange(4.0), speed, np.zeros(4), error)

@@ -75,6 +75,19 @@ def test_it_looks_at_a_log_of_5_hz_as_well():
     assert largest > 0.0
 
 
+@pytest.mark.parametrize("by", [-3600.0, 3600.0])
+def test_a_clock_that_is_set_makes_no_gain_true_again(by):
+    """The first minute after it had become the one to compare with, and the wrong displacement the right one."""
+    service, set_at = EstimatorService(CRANE, SEED, TOPICS), 0.85 * SECONDS
+    for sample in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)):
+        if set_at < sample.time <= set_at + PERIOD:
+            assert "displacement or pressures" in service.contradiction
+            service.forget()
+        sample.time += by * (sample.time > set_at)
+        service.take_row(sample)
+    assert "displacement or pressures" in service.contradiction
+
+
 @pytest.mark.parametrize("friction", [same, stepped(1.3), stepped(0.7), lambda time: 1.0 - 0.3 * time / SECONDS])
 def test_friction_that_changes_is_no_gain(friction):
     first, largest, _ = said(sailed(friction, same))

@@ -113,7 +113,7 @@ class EstimatorService:
 
     def _jumped(self) -> None:
         self._published = -math.inf
-        self._gain.forget()
+        self._gain.set_clock()
 
     def status(self, now: float) -> dict[str, Any]:
         """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""

@@ -58,14 +58,19 @@ class InertiaBalance:
         self.forget()
 
     def forget(self) -> None:
-        """Another machine, load or time begins."""
-        self._time = self._looked = self._mass = math.nan
+        """Another machine or load begins."""
+        self._mass = math.nan
         self._groups: frozenset[str] = frozenset()
-        self._signals = {name: _Smooth() for name in ("torque", "direction", "speed", "heave")}
+        self.set_clock()
         self._products, self._squares, self._known = np.zeros((4, 5)), 0.0, 0.0
         self._first: tuple[float, float, float] | None = None
         self._doubt = Doubt(PATIENCE, PATIENCE)
         self.change = math.nan
+
+    def set_clock(self) -> None:
+        """Another time begins with the same machine and load: a gain that was doubted is not believed for that."""
+        self._time = self._looked = math.nan
+        self._signals = {name: _Smooth() for name in ("torque", "direction", "speed", "heave")}
 
     def contradiction(self, sample: Sample) -> str:
         """What does not fit, in words, '' for nothing."""

@@ -1,11 +1,20 @@
 """What is believed: how far the gate opens and when, and what an outlier may do to the noise."""
 
 import math
+import time
 
 import pytest
+from scipy.stats import chi2
 
 from winch_friction.estimation import EstimatorConfig
-from winch_friction.estimation.trust import RESTART_AFTER, WIDE_FOR, InnovationGate, VarianceFactor
+from winch_friction.estimation.trust import (
+    RESTART_AFTER,
+    WIDE_FOR,
+    Consistency,
+    InnovationGate,
+    VarianceFactor,
+    nis_band,
+)
 
 CONFIG = EstimatorConfig(gate=5.0)
 
@@ -45,3 +54,17 @@ def test_one_sample_far_off_moves_the_noise_as_one_at_three_sigma():
     far.step(1e4, 0.02)
     near.step(9.0, 0.02)
     assert far.value == near.value == pytest.approx(1.0 + 8.0 * 0.02 / 5.0)
+
+
+def test_no_step_waits_for_the_band_of_the_largest_window():
+    """A second's work stood in the step that closed the first window: the speed was lost over it."""
+    largest = 100_000
+    consistency = Consistency(largest)
+    longest = 0.0
+    for _ in range(largest):
+        began = time.thread_time()
+        consistency.step(1.0)
+        longest = max(longest, time.thread_time() - began)
+    assert consistency.windows == consistency.inside == 1
+    assert longest < 0.05
+    assert nis_band(largest) == pytest.approx([chi2.ppf(each, largest) / largest for each in (0.025, 0.975)], rel=1e-9)

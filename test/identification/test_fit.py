@@ -7,7 +7,7 @@ import pytest
 
 from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
 from winch_friction.identification.fit import clustered_covariance, condition_number, exchangeable, fit
-from winch_friction.identification.fit_data import CountedModel
+from winch_friction.identification.fit_data import CountedModel, FitData
 from winch_friction.identification.motor_identification import identify_motor, motor_seed
 from winch_friction.identification.motor_models import MOTOR_MODELS, initial_model
 from winch_friction.identification.selection import choose, score_models
@@ -110,8 +110,40 @@ def test_clustered_errors_widen_the_covariance(table_215):
     jacobian = CountedModel(model, data).columns(model.values)
     shared = np.where(data.group > 150, 1.0, -1.0)
     alone = np.random.default_rng(1).permutation(shared)
-    wide, narrow = (np.diag(clustered_covariance(jacobian, error, data)) for error in (shared, alone))
+    wide, narrow = (np.diag(clustered_covariance(jacobian, error, data, np.ones(5))) for error in (shared, alone))
     assert (wide > narrow).sum() >= 4
+
+
+def seen_by(columns, labels, errors):
+    """Deviations by `clustered_covariance` of parameters of the sizes 1, 2, 3."""
+    count = len(errors)
+    data = FitData("three", (), np.zeros(count), np.ones(count), labels, labels)
+    return np.sqrt(np.diag(clustered_covariance(columns, errors, data, np.array([1.0, 2.0, 3.0]))))
+
+
+def test_what_nothing_saw_is_not_certain():
+    """The shape of a term that was fitted to nothing had a deviation of 0, and two that do the same one of rounding
+    along what they exchange."""
+    rng = np.random.default_rng(0)
+    slope, labels, errors = rng.normal(size=60), np.repeat([0, 1, 2], 20), rng.normal(size=60)
+    nothing = seen_by(np.column_stack([np.ones(60), slope, np.zeros(60)]), labels, errors)
+    assert nothing[2] == pytest.approx(3.0)
+    tied = seen_by(np.column_stack([np.ones(60), slope, 2.0 * slope]), labels, errors)
+    assert (tied[1:] > [1.0, 0.5]).all()
+    assert tied[0] == pytest.approx(nothing[0])
+
+
+def test_what_one_cluster_alone_saw_is_as_unsure_as_its_common_error():
+    """Where the others say nothing: over repetitions the deviation stated is the one that is seen."""
+    rng, labels = np.random.default_rng(1), np.repeat(np.arange(6), 10)
+    columns = np.column_stack([np.ones(60), rng.normal(size=60), labels == 5])
+    found, stated = [], []
+    for _ in range(300):
+        torque = rng.normal(size=6)[labels] + 0.1 * rng.normal(size=60)
+        values = np.linalg.lstsq(columns, torque, rcond=None)[0]
+        found.append(values[2])
+        stated.append(seen_by(columns, labels, torque - columns @ values)[2])
+    assert 0.7 < np.sqrt(np.mean(np.square(stated))) / np.std(found) < 1.5
 
 
 def test_selection_rewards_what_holds_on_unseen_displacements(table_215):

@@ -7,7 +7,7 @@ import pytest
 from cycles import SPEEDS, TABLE_2, cycle, cycles
 
 from winch_friction.identification.fit_data import modelled
-from winch_friction.identification.friction_curve import curve_data, friction_curve
+from winch_friction.identification.friction_curve import curve_data, friction_curve, winch_points
 from winch_friction.identification.plateaus import find_plateaus
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
@@ -167,3 +167,18 @@ def test_a_layer_holds_until_another_one_is_said(truth, crane):
     sparse = replace(every, columns={**every.columns, "wire_layer": np.where(np.arange(len(run)) % 25, np.nan, layer)})
     found, wanted = find_plateaus(sparse, crane), find_plateaus(every, crane)
     assert [each.drum_torque for each in found] == pytest.approx([each.drum_torque for each in wanted], rel=1e-9)
+
+
+def test_a_slow_motor_has_its_plateaus_and_its_curve(truth, crane):
+    """60 rpm at most: plateaus of 2 and 4 rpm were rest, and a curve in steps of 25 rpm had two points."""
+    slow, speeds = replace(crane, rated_speed=70 * RPM), (2, 4, 7, 11, 16, 23, 35, 48, 60)
+    run = cycle(truth, slow, "slow", 215, 79, speeds=speeds, noise=0.05)
+    plateaus = find_plateaus(run, slow)
+    assert sorted(round(each.speed / RPM) for each in plateaus) == sorted(d * s for s in speeds for d in (1, -1))
+    curve = friction_curve(plateaus, slow)
+    assert len(curve.speed) > 25
+    x = winch_points(curve.speed, 0.5 * (curve.pressure_up + curve.pressure_down), curve.displacement,
+                     curve.drum_torque, 11)  # fmt: skip
+    np.testing.assert_allclose(11 * curve.friction_torque, truth.torque(x), rtol=0.03)
+    ramp = np.interp(run.time, [0.0, run.time[-1]], [5.0, 60.0]) * RPM
+    assert find_plateaus(replace(run, columns={**run.columns, "motor_speed": ramp}), slow) == []

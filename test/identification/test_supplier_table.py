@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from campaign.supplier_generator import TABLE_1, write_supplier_table
 from winch_friction.identification.black_box import BlackBoxMap
+from winch_friction.identification.motor_identification import identify_motor
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import FitRange
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
@@ -101,6 +103,28 @@ def test_a_table_in_another_encoding_is_to_be_saved_as_utf_8(write, encoding):
     path.write_bytes(f"# größte\n{HEADER}\n1000,200,215,94\n".encode(encoding))
     with pytest.raises(InputError, match=r"table.csv: not UTF-8 text \(.*\); save it as UTF-8$"):
         read_supplier_table(path)
+
+
+@pytest.mark.parametrize("motor", sorted(TABLE_1))
+def test_the_usual_range_of_the_papers_motors_is_the_papers(tmp_path, motor):
+    table = read_supplier_table(write_supplier_table(tmp_path / "t.csv", motor))
+    np.testing.assert_array_equal(FitRange.usual(table).select(table).speed, FitRange().select(table).speed)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "fastest"), [(45.0, 5000.0), (28.0, 2500.0), (5000.0, 60.0)], ids=["small", "smallest", "radial"]
+)
+def test_a_small_or_slow_motor_has_rows_in_the_usual_range(write, stroke, fastest):
+    """A practice with a motor of 45 cm^3/rev, or of a radial piston motor of 60 rpm, could not be identified."""
+    rows = [
+        f"{share * fastest},{bar},{part * stroke},{90.0 + 5.0 * share * part - 0.004 * bar}"
+        for share in (0.1, 0.3, 0.6, 0.8, 1.0) for bar in (100, 200, 300) for part in (0.2, 0.4, 0.7, 1.0)
+    ]  # fmt: skip
+    table = read_supplier_table(write(HEADER, *rows))
+    inside = FitRange.usual(table).select(table)
+    assert inside.displacement.min() < 0.5 * table.max_displacement
+    assert inside.speed.min() < 0.5 * inside.speed.max()
+    assert identify_motor(table, ["mj4"], with_complex=False).chosen.name == "mj4"
 
 
 def test_range_is_inclusive_and_refuses_to_leave_nothing(write):

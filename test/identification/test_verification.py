@@ -1,5 +1,7 @@
 """Predicted pressures against a plant that is written down here: balance, direction, wire, standstill."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cycles import cycle
@@ -9,6 +11,7 @@ from winch_friction.identification.verification import PressureCheck, inertia_to
 from winch_friction.identification.verification import test_errors as errors_of
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import operating_point
 
@@ -75,6 +78,38 @@ def test_normal_mode_plateaus(truth, crane):
     moving = still & (np.abs(run["motor_speed"]) > 15 * RPM)
     inner = np.convolve(moving, np.ones(25), mode="same") > 24.5  # not beside a ramp
     assert np.abs(check.predicted - check.measured)[inner].max() < 0.05 * BAR
+
+
+def with_term(model, name, size=1.0):
+    """The model and one more term, at its typical values times `size`."""
+    term = term_named(name)
+    values = (*model.values, *(size * each.typical for each in term.parameters))
+    return replace(model, terms=(*model.terms, term), values=values, covariance=None)
+
+
+def test_a_loss_with_the_pressure_in_the_case_is_predicted_with_the_pressures_there(truth, crane):
+    """Both ports' pressures belong to it; the lower one had been taken for zero."""
+    run = ahc_run(truth, crane)
+    plain, more = (pressure_check(run, crane, model) for model in (truth, with_term(truth, "case_pressure")))
+    sums = {group: run[f"{group}.pressure_a"] + run[f"{group}.pressure_b"] for group in run.groups}
+    loss = 5.0e-7 * sum(crane.motor_count(group) * sums[group] for group in run.groups)
+    fast = np.abs(run["motor_speed"]) > 50.0
+    expected = np.sign(run["motor_speed"]) * loss / (3 * 215 * CM3_PER_REV)
+    np.testing.assert_allclose((more.predicted - plain.predicted)[fast], expected[fast], rtol=0.03)
+
+
+def test_a_loss_with_the_oil_is_predicted_at_the_oil_there(truth, crane):
+    """It had been predicted at 40 degC throughout."""
+    run, model = ahc_run(truth, crane), with_term(truth, "viscosity_temperature", 10.0)
+
+    def sizes(temperature):
+        columns = {**run.columns, "oil_temperature": np.full(len(run), temperature)}
+        return np.ptp(pressure_check(Run("oil", columns), crane, model).predicted)
+
+    assert sizes(10.0) > sizes(40.0) + 1 * BAR
+    assert sizes(70.0) < sizes(40.0) - 0.2 * BAR
+    with pytest.raises(InputError, match="oil_temperature"):
+        pressure_check(run, crane, model)
 
 
 def test_the_load_swings_on_its_wire(crane):
@@ -167,6 +202,14 @@ def test_a_winch_that_never_turns(truth, crane):
     still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})
     with pytest.raises(InputError, match="still: the winch never turns"):
         pressure_check(still, crane, truth)
+
+
+def test_a_slow_motor_turns_where_a_fast_one_creeps(truth, crane):
+    run, slow = ahc_run(truth, crane), replace(crane, rated_speed=5.0)
+    creeping = Run("slow", {**run.columns, "motor_speed": run["motor_speed"] / 300.0})
+    assert np.isfinite(pressure_check(creeping, slow, truth).moving_rms)
+    with pytest.raises(InputError, match="never turns"):
+        pressure_check(creeping, crane, truth)
 
 
 def test_the_error_while_turning_leaves_standstill_out():

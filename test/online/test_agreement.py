@@ -61,3 +61,15 @@ def test_small_torques_contradict_no_load():
     }
     samples = [Sample(0.05 * k, 0.0, groups=groups, hook_load=1e3) for k in range(100)]
     assert not any(each.contradictions(sample, math.nan) for sample in samples)
+
+
+@pytest.mark.parametrize(("shown", "said"), [({"hook_load": 0.0}, "hook_load"), ({"rope_force": 0.0}, "rope_force")])
+def test_a_torque_at_the_motors_and_no_load_on_the_rope_contradict_each_other(shown, said):
+    each = Agreement(CRANE, ChannelRanges(CRANE, GROUPS))
+    groups = {
+        "active": GroupSample(50e5, 25e5, CRANE.max_displacement),
+        "passive": GroupSample(275e5, 25e5, CRANE.max_displacement / 3.0),
+    }
+    found = [each.contradictions(Sample(0.05 * k, 100.0, groups=groups, **shown)) for k in range(30)]
+    assert found[10] == ()
+    assert found[-1] == (f"{said} contradicts the drive torque",)

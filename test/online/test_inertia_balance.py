@@ -1,5 +1,6 @@
 """The gain of the drive's torque: a displacement that drifts moves friction and inertia alike, friction does not."""
 
+import itertools
 import math
 from collections.abc import Callable, Iterator
 
@@ -62,6 +63,29 @@ def test_a_displacement_that_is_off_is_told_within_a_minute():
     assert CHANGE_AT < first < CHANGE_AT + 60.0
     assert largest > CHANGED
     assert "displacement or pressures" in words
+
+
+def test_it_looks_at_a_log_of_5_hz_as_well():
+    """Its step was as long as the longest that counted: every sample began the smoothing anew."""
+    slow = slice(0, None, round(0.2 / PERIOD))
+    drifting = list(sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)))[slow]
+    assert CHANGE_AT < said(iter(drifting))[0] < CHANGE_AT + 60.0
+    first, largest, _ = said(itertools.islice(sailed(stepped(1.3), same), 0, None, slow.step))
+    assert math.isnan(first)
+    assert largest > 0.0
+
+
+@pytest.mark.parametrize("by", [-3600.0, 3600.0])
+def test_a_clock_that_is_set_makes_no_gain_true_again(by):
+    """The first minute after it had become the one to compare with, and the wrong displacement the right one."""
+    service, set_at = EstimatorService(CRANE, SEED, TOPICS), 0.85 * SECONDS
+    for sample in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)):
+        if set_at < sample.time <= set_at + PERIOD:
+            assert "displacement or pressures" in service.contradiction
+            service.forget()
+        sample.time += by * (sample.time > set_at)
+        service.take_row(sample)
+    assert "displacement or pressures" in service.contradiction
 
 
 @pytest.mark.parametrize("friction", [same, stepped(1.3), stepped(0.7), lambda time: 1.0 - 0.3 * time / SECONDS])

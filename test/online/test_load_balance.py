@@ -8,6 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample
 from winch_friction.simulation.scenario import load_scenario
@@ -78,6 +79,44 @@ def test_reset_forgets_the_contradiction_but_not_that_learning_is_switched_off(s
     assert not service.law.status()["enabled"]
     service.set_enabled(True)
     assert service.law.status()["enabled"]
+
+
+@pytest.mark.parametrize("begin", [0.0, 15.0])
+@pytest.mark.parametrize("load", [10e3, 55e3])
+def test_nothing_is_learned_from_a_load_cell_that_is_dead(load: float, begin: float) -> None:
+    """It shows exactly 0. With 10 t on the hook one parameter after the other had gone to the edge of its range, and
+    with 55 t every sample was rejected: nothing was said of either."""
+    scenario = load_scenario("ahc_irregular").override({"duration": begin + 20.0, "load": load})
+    service, before = EstimatorService(CRANE, SEED, TOPICS), 0
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        dead = sample.time >= begin
+        before = before if dead else service.law.counts["learned_from"]
+        service.take_row(replace(sample, hook_load=0.0) if dead else sample)
+    assert "hook_load contradicts" in service.contradiction
+    assert service.status(sample.time)["state"] == "contradicted"
+    assert service.law.counts["learned_from"] - before < 50 * (BALANCE_TIME + 2.0)
+    published = service.model_due(sample.time)
+    assert published is not None
+    assert published.values == SEED.values
+
+
+@pytest.mark.parametrize("load", [100.0, 1e3, 4e3])
+def test_a_hook_that_is_all_but_empty_is_no_dead_load_cell(load: float) -> None:
+    scenario = load_scenario("ahc_irregular").override({"duration": 30.0, "load": load})
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        service.take_row(replace(sample, hook_load=sample.hook_load + 40.0))  # a zero error: no share of nothing
+        assert not service.contradiction
+
+
+def test_a_dead_load_cell_in_the_rope_is_found_as_one_at_the_hook(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 10.0:
+            force = sample.hook_load * GRAVITY if passed < 5.0 else 0.0
+            service.take_row(replace(sample, hook_load=float("nan"), rope_force=force))
+            assert passed >= 5.0 or not service.contradiction
+    assert service.contradiction == "rope_force contradicts the drive torque"
 
 
 @pytest.mark.parametrize("error", [-0.05, 0.05])

@@ -47,9 +47,11 @@ def motor(
     max_displacement: Annotated[
         float, typer.Option(min=0.0, max=6283.0, help="D_max in cm^3/rev; 0: the table's largest.")
     ] = 0.0,
-    speed: Annotated[str, typer.Option(help="Range in rpm.")] = "400-2500",
+    speed: Annotated[str, typer.Option(help="Range in rpm; none: 400-2500, of a slower motor from 16 % on.")] = "",
     pressure: Annotated[str, typer.Option(help="Range in bar.")] = "50-350",
-    displacement: Annotated[str, typer.Option(help="Range in cm^3/rev.")] = "50-10000",
+    displacement: Annotated[
+        str, typer.Option(help="Range in cm^3/rev; none: from 50 on, of a small motor from 29 % of its stroke.")
+    ] = "",
     weighting: Annotated[str, typer.Option(help="nominal, equal or column.")] = "nominal",
     use_complex: Annotated[bool, typer.Option("--complex/--no-complex", help="Box's method beside it.")] = True,
     restarts: Restarts = 3,
@@ -77,15 +79,16 @@ def motor(
     refuse_input_as_output(out, [path])
     refuse_existing(overwrite, out)
     data = read_supplier_table(path, max_displacement * CM3_PER_REV or None)
+    usual = FitRange.usual(data)
     names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
     found = identify_motor(
         data,
         names,
         chosen="" if use == "best" else use,
         fit_range=FitRange(
-            _range(speed, RPM, "speed"),
+            _range(speed, RPM, "speed") if speed else usual.speed,
             _range(pressure, BAR, "pressure"),
-            _range(displacement, CM3_PER_REV, "displacement"),
+            _range(displacement, CM3_PER_REV, "displacement") if displacement else usual.displacement,
         ),
         weighting=weighting,
         with_complex=use_complex,

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque
-from winch_friction.compensation.safe_output import SafeOutput
+from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import refuse_other_crane
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.crane import Crane, at_its_speeds
 from winch_friction.physics.winch.operating_point import (
     ChannelRanges,
     SpeedPredictor,
@@ -74,7 +74,7 @@ class FeedforwardCompensator:
         self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None,
         since: float = -math.inf,
     ) -> None:  # fmt: skip
-        config = config or CompensatorConfig()
+        config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
         check_gains(config.gains)
         self.crane, self.seed, self.config = crane, seed_model, config
         self._seed_law = FrictionLaw(seed_model, config.gains)
@@ -86,8 +86,9 @@ class FeedforwardCompensator:
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
         self._needs = self._needed()
         self.output = SafeOutput(
-            self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead
-        )
+            self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead,
+            AGAINST_SPEED * crane.speed_scale,
+        )  # fmt: skip
         self._enabled = True
         self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
         self._forget()
@@ -125,6 +126,7 @@ class FeedforwardCompensator:
         Raises `InputError`, and changes nothing, for gains for unknown terms, and for a slew limit that could not let
         go in time of what is published.
         """
+        config = at_its_speeds(config, self.crane, "reversal_speed")
         check_gains(config.gains)
         self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead)
         self.config = config

@@ -29,9 +29,9 @@ class SafeOutput:
 
     `absolute` N m and `slew` N m/s bound it (and what `slew` lets go of within `LONGEST_AGAINST`); `ramp_time` s is how
     long it takes to fade in, out and over; a sample older than `hold` s carries nothing any more; `lead` s is how far
-    ahead of the motion it is asked for. A sample goes `arrive` (how much time counts), then `follow` (what is
-    published). Between samples `decay` publishes the ramp to zero, which `remaining` foretells. `restart` forgets the
-    samples but not what is published; `end` makes the ramp begin at once.
+    ahead of the motion it is asked for; a motion below `against_speed` rad/s has no direction. A sample goes `arrive`
+    (how much time counts), then `follow` (what is published). Between samples `decay` publishes the ramp to zero, which
+    `remaining` foretells. `restart` forgets the samples but not what is published; `end` makes the ramp begin at once.
 
     One rule holds on every one of these ways: once nothing carries the torque any more (silence, an input lost or
     doubted, disabled, the end), what pushes against the last known motion, measured or commanded, or against what was
@@ -44,6 +44,7 @@ class SafeOutput:
     ramp_time: float
     hold: float
     lead: float = 0.0
+    against_speed: float = AGAINST_SPEED
     torque: float = field(default=0.0, init=False)
     time: float = field(default=math.nan, init=False)  # stamp of what was published last, s
     sequence: int = field(default=0, init=False)
@@ -211,7 +212,7 @@ class SafeOutput:
         """Nothing pushes against the measured motion for much longer than a healthy winch turns against its command,
         whatever asks for it: a command that is wrong now and then, a limit that holds it up, what is left of before."""
         if not (self._against_motion(self.torque) or self._against_motion(wanted)):
-            if abs(self._motion) > AGAINST_SPEED:  # a motion that has no direction shows nothing
+            if abs(self._motion) > self.against_speed:  # a motion that has no direction shows nothing
                 self._contrary = 0.0
             return wanted
         self._contrary += self._passed
@@ -222,12 +223,12 @@ class SafeOutput:
         return math.copysign(min(abs(wanted), most), wanted)
 
     def _against_motion(self, torque: float) -> bool:
-        return torque * self._motion < 0.0 and abs(self._motion) > AGAINST_SPEED
+        return torque * self._motion < 0.0 and abs(self._motion) > self.against_speed
 
     def _opposed(self, torque: float) -> bool:
         """Whether it pushes against the last known motion, measured or commanded (nobody knows which of the two is
         wrong), or against the one that the last target was for."""
-        against_command = torque * self._command < 0.0 and abs(self._command) > AGAINST_SPEED
+        against_command = torque * self._command < 0.0 and abs(self._command) > self.against_speed
         return against_command or self._against_motion(torque) or torque * self._asked < 0.0
 
     def _fast(self, torque: float) -> float:

@@ -28,7 +28,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
@@ -85,7 +85,7 @@ class FrictionEstimator:
     ) -> None:
         # refuses by name what only a whole run can be rid of, unless it was over at `since` s
         self._correct = SampleCorrector(crane, seed_model, since=since)
-        self.config = config or EstimatorConfig()
+        self.config = at_its_speeds(config or EstimatorConfig(), crane, "stick_speed", "excitation_speed")
         self.crane = self._correct.crane
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
         self._ranges, self._needed = ChannelRanges(self.crane), needed(self.seed.terms)
@@ -205,7 +205,7 @@ class FrictionEstimator:
     def _restart(self, sample: Sample) -> Estimate:
         """Take the speed as measured and keep everything else, after a gap, a jump of time or a run of rejections; but
         where that did not help and nobody shows the load, another one hangs there."""
-        if self._gate.exhausted_again and math.isnan(self._load.shown(sample)) and not self._load_is_known:
+        if self._gate.exhausted_again and math.isnan(sample_load(sample)) and not self._load_is_known:
             self._begin_load(sample)
         self._filter.take_anew(fresh_motion(sample, self.crane, self.config, self._filter.speed_variance))
         self._friction.memory = None
@@ -244,9 +244,8 @@ class FrictionEstimator:
 
     @property
     def load_apart(self) -> float:
-        """What the balance of torques adds to the measured load, as a share of it; NaN where no load is measured."""
-        measured = self._load.shaft_torque(self._last.layer if self._last else NAN)
-        return self._filter.load_torque / measured if measured else NAN
+        """What the balance of torques adds to the measured load, as a share of it (`HangingLoad.share`)."""
+        return self._load.share(self._filter.load_torque, self._last.layer if self._last else NAN)
 
     def model(self) -> FrictionModel:
         """The seed's terms with the learned values and covariance."""

@@ -8,7 +8,7 @@ from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, driving_group, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, driving_group, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 
@@ -77,6 +77,7 @@ def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> fl
     return total
 
 
+LEAST_LOAD = 0.01  # of the rated one: a load cell's class; a share of less than that would be one of its zero error
 PICKED_UP = 0.1  # a relative change of the measured mass beyond this is another load, not noise
 
 
@@ -119,16 +120,13 @@ class HangingLoad:
     def __init__(self, crane: Crane, time_constant: float) -> None:
         self._crane = crane
         self._time_constant = time_constant
+        held = 0.5 * ChannelRanges(crane).load if crane.drive.hydraulic else 0.0  # where no rated load is known
+        self._least = LEAST_LOAD * (crane.rated_load or held)  # kg
         self.mass = math.nan  # kg; NaN: not measured
-
-    @staticmethod
-    def shown(sample: Sample) -> float:
-        """Hook load, or the mass that the rope force carries, kg; NaN where a sample has neither."""
-        return sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
 
     def following(self, sample: Sample, dt: float) -> float:
         """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
-        measured = self.shown(sample)
+        measured = sample_load(sample)
         if not math.isfinite(measured) or measured < 0.0:
             return self.mass
         if not abs(measured - self.mass) <= PICKED_UP * self.mass:
@@ -143,6 +141,13 @@ class HangingLoad:
     def shaft_torque(self, layer: float) -> float:
         """T_d / i of the measured mass, N m; 0 without one."""
         return self._crane.drum_torque(self.mass, layer) / self._crane.gear_ratio if self.measured else 0.0
+
+    def share(self, torque: float, layer: float) -> float:
+        """A torque at the shaft in N m as a share of the measured load's, or of `LEAST_LOAD` where that is more: a hook
+        without a load, and a load cell that is dead, show next to nothing. NaN where no load is measured."""
+        least = self._crane.drum_torque(self._least, layer) / self._crane.gear_ratio
+        whole = max(self.shaft_torque(layer), least)
+        return torque / whole if self.measured and whole else math.nan
 
     def mass_by(self, shaft_torque: float, layer: float) -> float:
         """The measured mass, else the one that a load torque at the shaft means; kg."""

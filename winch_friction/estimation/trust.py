@@ -126,6 +126,7 @@ class Consistency:
         self.windows = 0
         self.inside = 0
         self.last_mean = 1.0
+        self._band = nis_band(window)  # not when the first window closes: for the largest it takes a while
 
     def step(self, nis: float) -> None:
         """Take one value."""
@@ -135,7 +136,7 @@ class Consistency:
             self._close()
 
     def _close(self) -> None:
-        lower, upper = nis_band(self.window)
+        lower, upper = self._band
         self.last_mean = self._sum / self._count
         self.windows += 1
         self.inside += lower <= self.last_mean <= upper

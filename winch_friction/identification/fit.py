@@ -15,6 +15,7 @@ from winch_friction.physics.signals import FloatArray
 
 METHODS = ("least_squares", "complex")
 SAME_DIRECTION = 1e-10  # of the largest singular value: below it rounding alone tells two columns apart
+LEAST_SEEN = 1e-12  # of the largest information of unit columns, a square: what has less is rounding
 _BOX_MARGIN = 3.0  # a term alone may explain three times the largest torque
 
 
@@ -53,8 +54,9 @@ def fit(
     fitted = model.with_values(values)
     jacobian = CountedModel(fitted, data).columns(values)
     errors = data.torque - CountedModel(fitted, data).torque(values)
+    sizes = np.array([max(abs(value), abs(p.typical)) for value, p in zip(values, model.parameters, strict=True)])
     return FitResult(
-        model=fitted.with_covariance(clustered_covariance(jacobian, errors, data)),
+        model=fitted.with_covariance(clustered_covariance(jacobian, errors, data, sizes)),
         method=method,
         cost=cost,
         rms=float(np.sqrt(np.mean(errors**2))),
@@ -99,30 +101,56 @@ def search_box(model: FrictionModel, data: FitData) -> tuple[FloatArray, FloatAr
     return lower, np.maximum(upper, lower)
 
 
-def clustered_covariance(jacobian: FloatArray, errors: FloatArray, data: FitData) -> FloatArray:
-    """Covariance of a weighted least-squares estimate whose errors are alike inside clusters.
+def clustered_covariance(jacobian: FloatArray, errors: FloatArray, data: FitData, sizes: FloatArray) -> FloatArray:
+    """Covariance (parameters, parameters) of a weighted least-squares estimate whose errors (n,), N m, are alike inside
+    clusters.
 
-    A table's misfit and rounding persist over a displacement and over a pressure: the spreads over both are added.
+    A table's misfit and rounding persist over a displacement and over a pressure: the spreads over both are added. Of
+    what no observation saw nothing is known but the parameters' `sizes` (parameters,), SI: they are its deviation.
     """
     scale = _column_scale(jacobian)
     root = np.sqrt(data.weight)
     design, target = jacobian / scale * root[:, None], errors * root
     clusters = np.asarray(data.cluster).reshape(len(data), -1).T
     spreads = [_jackknife(design, target, np.unique(each, return_inverse=True)[1].ravel()) for each in clusters]
-    return np.sum(spreads, axis=0) / np.outer(scale, scale)
+    unseen = _unseen(design.T @ design)
+    among = unseen @ unseen.T
+    ignorance = among @ np.diag((sizes * scale) ** 2) @ among
+    return np.asarray((np.sum(spreads, axis=0) + ignorance) / np.outer(scale, scale))
 
 
 def _jackknife(design: FloatArray, target: FloatArray, labels: Any) -> FloatArray:
-    """The spread of the estimates that leave one cluster out (CR3), in closed form."""
+    """The spread of the estimates that leave one cluster out (CR3), in closed form.
+
+    What one cluster alone has seen, the others cannot estimate: there its errors count as one that all its observations
+    share, of the size that errors have.
+    """
     information = design.T @ design
     count = labels.max() + 1
     if count < 2:
-        return np.linalg.pinv(information) * np.var(target)
-    shifts = np.zeros((count, design.shape[1]))
+        return _inverse(information) * np.var(target)
+    shifts, alone = np.zeros((count, design.shape[1])), np.zeros_like(information)
     for k in range(count):
         part = design[labels == k]
-        shifts[k] = np.linalg.pinv(information - part.T @ part) @ (part.T @ target[labels == k])
-    return (count - 1) / count * shifts.T @ shifts
+        left = information - part.T @ part
+        shifts[k] = _inverse(left) @ (part.T @ target[labels == k])
+        if (lost := _unseen(left)).size:
+            shared = len(part) * np.mean(target**2) * lost.T @ _inverse(information) @ lost
+            alone += lost @ shared @ lost.T
+    return (count - 1) / count * shifts.T @ shifts + alone
+
+
+def _unseen(information: FloatArray) -> FloatArray:
+    """The directions (parameters, k) that it says nothing of."""
+    seen, directions = np.linalg.eigh(information)
+    return np.asarray(directions[:, seen <= LEAST_SEEN * seen[-1]])
+
+
+def _inverse(information: FloatArray) -> FloatArray:
+    """The inverse, and zero along what it says nothing of."""
+    if _unseen(information).size:
+        return np.asarray(np.linalg.pinv(information, LEAST_SEEN, hermitian=True), float)
+    return np.asarray(np.linalg.pinv(information), float)
 
 
 def condition_number(jacobian: FloatArray) -> float:

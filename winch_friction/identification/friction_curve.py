@@ -18,7 +18,8 @@ _SAME_SPEED = 5.0 * RPM
 
 @dataclass(frozen=True)
 class FrictionCurve:
-    """One test: arrays over `speed` (n,) in rad/s, a grid of 25 rpm where hoisting and lowering overlap.
+    """One test: arrays over `speed` (n,) in rad/s, a grid of 25 rpm (of slow motors less, in proportion)
+    where hoisting and lowering overlap.
 
     `pressure_up`, `pressure_down` Pa interpolated to that speed; `displacement` m^3/rad per motor; `drum_torque` N m;
     `motors` on the shaft; `load_torque` N m per motor is the test's nominal torque T_d / (i N).
@@ -53,8 +54,9 @@ def friction_curve(plateaus: Sequence[Plateau], crane: Crane, group: str = "main
     motors = crane.motor_count(group)
     drum_torque = float(np.mean([each.drum_torque for each in plateaus])) if plateaus else 0.0
     alike = [_at_load(each, drum_torque, crane.gear_ratio * motors) for each in plateaus]
-    up, down = _branch(alike, +1, test), _branch(alike, -1, test)
-    grid = _common_grid(up[0], down[0], test)
+    same, step = _SAME_SPEED * crane.speed_scale, SPEED_STEP * crane.speed_scale
+    up, down = _branch(alike, +1, test, same), _branch(alike, -1, test, same)
+    grid = _common_grid(up[0], down[0], test, step)
     return FrictionCurve(
         test=test,
         speed=grid,
@@ -74,15 +76,15 @@ def _at_load(plateau: Plateau, mean: float, shafts: float) -> Plateau:
     return replace(plateau, pressure_drop=plateau.pressure_drop - difference)
 
 
-def _branch(plateaus: Sequence[Plateau], direction: int, test: str) -> tuple[FloatArray, FloatArray]:
-    """Speed magnitude and pressure drop of one direction, rising, repeats averaged."""
+def _branch(plateaus: Sequence[Plateau], direction: int, test: str, same: float) -> tuple[FloatArray, FloatArray]:
+    """Speed magnitude and pressure drop of one direction, rising, those within `same` rad/s averaged."""
     word = "hoisting" if direction > 0 else "lowering"
     chosen = sorted((each for each in plateaus if each.speed * direction > 0), key=lambda each: abs(each.speed))
     if not chosen:
         raise InputError(f"{test}: no {word} at constant speed was found; friction needs both directions")
     levels: list[list[Plateau]] = []
     for each in chosen:
-        if levels and abs(each.speed) - abs(levels[-1][0].speed) < _SAME_SPEED:
+        if levels and abs(each.speed) - abs(levels[-1][0].speed) < same:
             levels[-1].append(each)
         else:
             levels.append([each])
@@ -92,9 +94,9 @@ def _branch(plateaus: Sequence[Plateau], direction: int, test: str) -> tuple[Flo
     return speed, np.array([np.mean([each.pressure_drop for each in level]) for level in levels])
 
 
-def _common_grid(up: FloatArray, down: FloatArray, test: str) -> FloatArray:
+def _common_grid(up: FloatArray, down: FloatArray, test: str, step: float) -> FloatArray:
     lower, upper = max(up[0], down[0]), min(up[-1], down[-1])
-    grid = np.arange(np.ceil(lower / SPEED_STEP - 1e-9), np.floor(upper / SPEED_STEP + 1e-9) + 1) * SPEED_STEP
+    grid = np.arange(np.ceil(lower / step - 1e-9), np.floor(upper / step + 1e-9) + 1) * step
     if upper <= lower or len(grid) < 1:
         spans = f"{up[0] / RPM:.0f}-{up[-1] / RPM:.0f} rpm and {down[0] / RPM:.0f}-{down[-1] / RPM:.0f} rpm"
         raise InputError(f"{test}: the speeds of hoisting and lowering do not overlap ({spans})")

@@ -56,12 +56,13 @@ def identify_motor(
 ) -> MotorIdentification:
     """Fit every model both ways and score it.
 
-    `chosen` overrides the recommended model; `complex_options`: restarts, max_evaluations.
+    `chosen` overrides the recommended model; `fit_range`: which rows count, `FitRange.usual` of the table without it;
+    `complex_options`: restarts, max_evaluations.
     """
     names = list(dict.fromkeys(motor_model_named(name).name for name in models))
     if chosen and motor_model_named(chosen).name not in names:
         names.append(motor_model_named(chosen).name)
-    inside = (fit_range or FitRange()).select(table)
+    inside = (fit_range or FitRange.usual(table)).select(table)
     scores = score_models(inside, names, weighting)
     by_complex = {}
     for name in progress(names if with_complex else [], "complex method"):

@@ -10,7 +10,7 @@ from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import held, run_drum_torque
+from winch_friction.physics.winch.crane import at_its_speeds, held, run_drum_torque
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,8 @@ class PlateauRule:
 
     The slope of the speed, averaged over `window`, stays below `slope` plus `relative_slope` times the speed. The
     first `settle` seconds are dropped, and what lies outside `band` around the final speed. What remains lasts
-    `duration` at least, is faster than `standstill`, and drifts less than `drift`.
+    `duration` at least, is faster than `standstill`, and drifts less than `drift`. Of slow motors (`Crane.speed_scale`)
+    the speeds are in proportion, unless a rule is given.
     """
 
     window: float = 0.6
@@ -56,7 +57,7 @@ class Plateau:
 
 def find_plateaus(run: Run, crane: Crane, rule: PlateauRule | None = None, group: str = "main") -> list[Plateau]:
     """The plateaus of a run in order of time; raises `InputError` for a missing column, NaN or too few samples."""
-    rule = rule or PlateauRule()
+    rule = rule or at_its_speeds(PlateauRule(), crane, "slope", "drift", "band", "standstill")
     _check(run, group)
     pieces = _steady_pieces(run, rule, group)
     torque = run_drum_torque(run, crane)

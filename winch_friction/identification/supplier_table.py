@@ -10,6 +10,8 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import operating_point
 
+# of the smallest motor of paper 2 (50 of 170 cm^3/rev) and of its speeds (400 of 2500 rpm): what is left out there
+LOW_STROKE, LOW_SPEED = 50.0 / 170.0, 400.0 / 2500.0
 WEIGHTINGS = ("equal", "nominal", "column")
 
 
@@ -73,6 +75,14 @@ class FitRange:
     speed: tuple[float, float] = (400 * RPM, 2500 * RPM)
     pressure: tuple[float, float] = (50 * BAR, 350 * BAR)
     displacement: tuple[float, float] = (50 * CM3_PER_REV, float("inf"))
+
+    @classmethod
+    def usual(cls, table: SupplierTable) -> "FitRange":
+        """Paper 2's range, and of a motor that is smaller, or turns slower, than its motors the same part."""
+        speed, displacement = cls.speed, cls.displacement
+        slowest = min(speed[0], LOW_SPEED * float(table.speed.max()))
+        least = min(displacement[0], LOW_STROKE * table.max_displacement)
+        return cls(speed=(slowest, speed[1]), displacement=(least, displacement[1]))
 
     def select(self, table: SupplierTable) -> SupplierTable:
         """The rows inside the range; raises `InputError` when none is."""

@@ -14,9 +14,11 @@ from winch_friction.identification.plateaus import refuse_gaps
 from winch_friction.physics.channels import GROUP_CHANNELS, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
-from winch_friction.physics.winch.crane import run_drum_torque, run_rope_radius
+from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
+from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
@@ -80,7 +82,9 @@ test_errors.__test__ = False  # type: ignore[attr-defined]
 
 @dataclass(frozen=True)
 class PressureCheck:
-    """Measured and predicted pressure drop of one group along a run, Pa over `time` s; `speed` rad/s."""
+    """Measured and predicted pressure drop of one group along a run, Pa over `time` s; `speed` rad/s, those that tell
+    motion from rest times `speed_scale` (`Crane.speed_scale`).
+    """
 
     run: str
     group: str
@@ -88,6 +92,7 @@ class PressureCheck:
     speed: FloatArray
     measured: FloatArray
     predicted: FloatArray
+    speed_scale: float = 1.0
 
     @property
     def rms(self) -> float:
@@ -97,12 +102,12 @@ class PressureCheck:
     @property
     def moving_rms(self) -> float:
         """Root mean square error while the winch turns, Pa: at standstill friction is undetermined."""
-        moving = np.abs(self.speed) > STANDSTILL
+        moving = np.abs(self.speed) > STANDSTILL * self.speed_scale
         return float(np.sqrt(np.mean((self.predicted - self.measured)[moving] ** 2)))
 
     def mean_error(self, direction: int) -> float:
         """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa."""
-        return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM]))
+        return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM * self.speed_scale]))
 
 
 def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_scale: float = 0.0) -> PressureCheck:
@@ -111,20 +116,22 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
     winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
     relative error of the displacement feedback that a joint fit found for these motors. A record with long holes
-    is predicted piece by piece. Raises `InputError` for a missing column, NaN, and a winch that never turns.
+    is predicted piece by piece. Raises `InputError` for a missing column, NaN, also in what the model's terms read, and
+    for a winch that never turns.
     """
     refuse_unusable(run)
+    refuse_gaps(run, needed(model.terms))
     run = _with_true_displacement(run, displacement_scale)
     group = "active" if "active" in run.groups else run.groups[0]
     pieces = _pieces(run)
-    if not any(np.any(_turns(piece)) for piece in pieces):
+    if not any(np.any(_turns(piece, crane)) for piece in pieces):
         raise InputError(f"{run.name}: the winch never turns; there is no friction to verify")
     drop = f"{group}.pressure_a", f"{group}.pressure_b"
     time, speed, high, low = (
         np.concatenate([each[name] for each in pieces]) for name in ("time", "motor_speed", *drop)
     )
     predicted = np.concatenate([_predicted(piece, crane, model, group) for piece in pieces])
-    return PressureCheck(run.name, group, time, speed, high - low, predicted)
+    return PressureCheck(run.name, group, time, speed, high - low, predicted, crane.speed_scale)
 
 
 def refuse_unusable(run: Run) -> None:
@@ -154,8 +161,8 @@ def _even(run: Run) -> Run:
     return replace(run, columns={**lines, **layers, "time": time})
 
 
-def _turns(run: Run) -> Any:
-    return np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING
+def _turns(run: Run, crane: Crane) -> Any:
+    return np.abs(_smooth(run, run["motor_speed"], 0)) > _STICKING * crane.speed_scale
 
 
 def _predicted(piece: Run, crane: Crane, model: FrictionModel, group: str) -> FloatArray:
@@ -167,7 +174,7 @@ def _predicted(piece: Run, crane: Crane, model: FrictionModel, group: str) -> Fl
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
     capacity = crane.motor_count(group) * run[f"{group}.displacement"]
     predicted = held / capacity
-    moving = _turns(run)
+    moving = _turns(run, crane)
     for _ in range(4 if moving.any() else 0):  # the driving group's friction depends on its own pressure, weakly
         points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
         friction = np.asarray(model.torque(points))
@@ -197,10 +204,16 @@ def _points(
     run: Run, crane: Crane, drop: dict[str, FloatArray], drum_torque: FloatArray, acceleration: FloatArray
 ) -> tuple[Any, ...]:
     speed = _smooth(run, run["motor_speed"], 0)
+    lower = {name: np.minimum(run[f"{name}.pressure_a"], run[f"{name}.pressure_b"]) for name in drop}
     groups = [
-        group_point(np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"])
+        group_point(
+            np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"],
+            np.abs(p) + 2.0 * lower[name],
+        )
         for name, p in drop.items()
-    ]
+    ]  # fmt: skip
+    outer = np.full(len(run), float(len(crane.drum.layer_radii)))
+    shown = {name: held(run[name]) for name in CHANNEL_SIGNALS if name in run}
     return operating_point(
         direction=np.sign(speed),
         speed=speed,
@@ -208,6 +221,7 @@ def _points(
         groups=groups,
         motor_total=np.full(len(run), float(crane.motor_total(run.groups))),
         acceleration=acceleration,
+        **{"wire_layer": outer, **{name: values for name, values in shown.items() if np.isfinite(values).all()}},
     )
 
 

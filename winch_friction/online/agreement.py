@@ -11,7 +11,7 @@ from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.topics import Input, stamp_time
 
@@ -133,6 +133,7 @@ TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
 SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
 # to and fro: jumps of this share of the largest speed, so many, within this time
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
+LONGEST_SPAN = 0.1  # s between two samples that count: a gap shows nothing
 CALM = 1.0  # s of agreement, where something is to be seen, before a doubt ends
 # the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
 # displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
@@ -164,6 +165,11 @@ class Doubt:
         return self.stands
 
 
+def span(last: float, time: float) -> float:
+    """The seconds between two stamps that count for a doubt: none after a jump back, a tenth at most of a gap."""
+    return min(max(time - last, 0.0), LONGEST_SPAN) if math.isfinite(time - last) else 0.0
+
+
 class LoadBalance:
     """Whether the load that the estimator finds is the one that the load cell shows.
 
@@ -176,12 +182,40 @@ class LoadBalance:
 
     def contradiction(self, apart: float, time: float) -> str:
         """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown."""
-        dt = min(max(time - self._time, 0.0), 0.1) if self._time == self._time else 0.0
-        self._time = time
+        dt, self._time = span(self._time, time), time
         wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
         if not self._doubt.step(wrong, dt):
             return ""
         return f"hook_load contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
+
+
+class LoadAgainstDrive:
+    """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
+
+    A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
+    the rope's force.
+    """
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
+        self._crane, self._doubt = crane, Doubt(TORQUE_TIME)
+        self._rated = 0.5 * ranges.load  # kg
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing."""
+        stands = self._doubt.step(self._differ(sample), dt)
+        by_rope = math.isnan(sample.hook_load) and sample.rope_force == sample.rope_force
+        return f"{'rope_force' if by_rope else 'hook_load'} contradicts the drive torque" if stands else ""
+
+    def _differ(self, sample: Sample) -> bool | None:
+        if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
+            return None
+        load = self._crane.drum_torque(sample_load(sample), sample.wire_layer) / self._crane.gear_ratio
+        drive = sample_drive_torque(sample, self._crane)
+        large = max(abs(load), abs(drive))
+        rated = self._crane.drum_torque(self._rated, sample.wire_layer) / self._crane.gear_ratio
+        if not (large > SMALLEST_TORQUE * rated and math.isfinite(drive - load)):
+            return None
+        return abs(drive - load) > TORQUE_SHARE * large
 
 
 class Agreement:
@@ -199,7 +233,7 @@ class Agreement:
         self._time = self._now = math.nan
         self._command = self._step = math.nan
         self._jumps: list[float] = []
-        self._speeds, self._torques = Doubt(SPEED_TIME), Doubt(TORQUE_TIME)
+        self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(self._crane, self._ranges)
         # messages in batches: a command that is right in one sample of each is none
         self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 
@@ -209,16 +243,16 @@ class Agreement:
         `now` s: when it came, by the steady clock; stamps that advance slowly must not stretch the patience.
         """
         passed = (sample.time - self._time, now - self._now)
-        dt = min(max(0.0, *(each for each in passed if each == each)), 0.1) if self._time == self._time else 0.0
+        dt = max(span(0.0, each) for each in passed) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
         self._turns.patience = self.lead + LONGEST_LAG
         found = {
-            "speed_reference turns against motor_speed": self._turns.step(_turns_against(sample), dt),
+            "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
-            "hook_load contradicts the drive torque": self._torques.step(self._torques_differ(sample), dt),
+            self._load.contradiction(sample, dt): True,
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
         }
-        return tuple(name for name, stands in found.items() if stands)
+        return tuple(name for name, stands in found.items() if name and stands)
 
     def _speeds_differ(self, sample: Sample) -> bool | None:
         command, speed = sample.speed_reference, sample.motor_speed
@@ -226,17 +260,6 @@ class Agreement:
         if not large > SPEED_APART * self._ranges.speed:  # true for NaN
             return None
         return abs(command - speed) > SPEED_SHARE * large + SPEED_APART * self._ranges.speed
-
-    def _torques_differ(self, sample: Sample) -> bool | None:
-        if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
-            return None
-        load = self._crane.drum_torque(sample.hook_load, sample.wire_layer) / self._crane.gear_ratio
-        drive = sample_drive_torque(sample, self._crane)
-        large = max(abs(load), abs(drive))
-        rated = self._crane.drum_torque(0.5 * self._ranges.load, sample.wire_layer) / self._crane.gear_ratio
-        if not (large > SMALLEST_TORQUE * rated and math.isfinite(drive - load)):
-            return None
-        return abs(drive - load) > TORQUE_SHARE * large
 
     def _chatters(self, sample: Sample) -> bool:
         step = sample.speed_reference - self._command
@@ -246,8 +269,8 @@ class Agreement:
         self._jumps = [each for each in self._jumps if 0.0 <= sample.time - each < CHATTER_TIME]
         return len(self._jumps) >= CHATTER_COUNT
 
-
-def _turns_against(sample: Sample) -> bool | None:
-    if not (abs(sample.motor_speed) > AGAINST_SPEED and abs(sample.speed_reference) > 0.0):  # NaN as well
-        return None
-    return sample.motor_speed * sample.speed_reference < 0.0
+    def _turns_against(self, sample: Sample) -> bool | None:
+        least = AGAINST_SPEED * self._crane.speed_scale
+        if not (abs(sample.motor_speed) > least and abs(sample.speed_reference) > 0.0):  # NaN as well
+            return None
+        return sample.motor_speed * sample.speed_reference < 0.0

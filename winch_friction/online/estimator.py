@@ -7,7 +7,7 @@ from typing import Any
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
-from winch_friction.online.agreement import LoadBalance
+from winch_friction.online.agreement import LoadAgainstDrive, LoadBalance, span
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
@@ -40,8 +40,9 @@ class EstimatorService:
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
         self.last: Estimate | None = None
         self.missing: tuple[str, ...] = ()
-        self.contradiction = ""
-        self._balance, self._enabled = LoadBalance(), True
+        self.contradiction = self._slow = ""  # what is said, and what of it only time shows
+        self._balance, self._load = LoadBalance(), LoadAgainstDrive(self.law.crane, self.inputs.ranges)
+        self._enabled, self._seen = True, math.nan
         self._gain = InertiaBalance(self.law.crane)
         self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
@@ -65,13 +66,20 @@ class EstimatorService:
             *standing,
         )
         self.last = self.law.step(sample)
-        if self.last.accepted:
-            gain = self._gain.contradiction(sample)
-            self.contradiction = self._balance.contradiction(self.law.load_apart, sample.time) or gain
-            self.law.set_enabled(self._enabled and not self.contradiction)
+        self._doubt(sample, self.last.accepted)
         if math.isfinite(self.last.friction_torque):
             self.friction_torque = self.last.friction_torque
         return self.last
+
+    def _doubt(self, sample: Sample, accepted: bool) -> None:
+        """A load that is far off is seen without the filter, which would take in none of its samples."""
+        lost = self._load.contradiction(sample, span(self._seen, sample.time))
+        self._seen = sample.time
+        if accepted:
+            gain = self._gain.contradiction(sample)
+            self._slow = self._balance.contradiction(self.law.load_apart, sample.time) or gain
+        self.contradiction = lost or self._slow
+        self.law.set_enabled(self._enabled and not self.contradiction)
 
     def model_due(self, now: float) -> FrictionModel | None:
         """The learned model when it is time to publish it: every `model_period` s of the samples, and no faster than
@@ -92,7 +100,8 @@ class EstimatorService:
     def reset(self) -> None:
         """Back to the seed: everything learned is forgotten."""
         self.law.reset()
-        self.contradiction, self._balance = "", LoadBalance()
+        self.contradiction = self._slow = ""
+        self._balance, self._load = LoadBalance(), LoadAgainstDrive(self.law.crane, self.inputs.ranges)
         self._gain.forget()
         self.law.set_enabled(self._enabled)
         self.forget()
@@ -104,17 +113,17 @@ class EstimatorService:
 
     def _jumped(self) -> None:
         self._published = -math.inf
-        self._gain.forget()
+        self._gain.set_clock()
 
     def status(self, now: float) -> dict[str, Any]:
         """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""
         status = dict(self.law.status())
         if self.inputs.silence(now) > self.options.watchdog_timeout or self.missing:
             status["state"] = "waiting"
-        elif self.last is not None and not self.last.accepted:
-            status["state"] = "rejected"
         elif self.contradiction:
             status["state"] = "contradicted"
+        elif self.last is not None and not self.last.accepted:
+            status["state"] = "rejected"
         status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
         status["enabled"] = self._enabled
         return status

@@ -18,7 +18,7 @@ SMOOTHING = 0.1  # s, twice: of all signals alike, so that noise and the encoder
 MEMORY = 40.0  # s: some waves
 FIRST = 60.0  # s of motion after which what is seen is what the rest is compared with
 EVERY = 1.0  # s between looks
-LONGEST_STEP = 0.2  # s; a longer gap begins the smoothing anew
+LONGEST_STEP = 0.3  # s, a log of 5 Hz with its jitter; a longer gap begins the smoothing anew
 # what accelerates the shaft and is like nothing else, over what the regression leaves (friction's true shape at
 # reversals, the wire): 0.06 in a swell and 0.2 with a joystick tell too little; in the shipped seas it is 0.6 to 3.9
 TELLING = 0.6
@@ -58,14 +58,19 @@ class InertiaBalance:
         self.forget()
 
     def forget(self) -> None:
-        """Another machine, load or time begins."""
-        self._time = self._looked = self._mass = math.nan
+        """Another machine or load begins."""
+        self._mass = math.nan
         self._groups: frozenset[str] = frozenset()
-        self._signals = {name: _Smooth() for name in ("torque", "direction", "speed", "heave")}
+        self.set_clock()
         self._products, self._squares, self._known = np.zeros((4, 5)), 0.0, 0.0
         self._first: tuple[float, float, float] | None = None
         self._doubt = Doubt(PATIENCE, PATIENCE)
         self.change = math.nan
+
+    def set_clock(self) -> None:
+        """Another time begins with the same machine and load: a gain that was doubted is not believed for that."""
+        self._time = self._looked = math.nan
+        self._signals = {name: _Smooth() for name in ("torque", "direction", "speed", "heave")}
 
     def contradiction(self, sample: Sample) -> str:
         """What does not fit, in words, '' for nothing."""

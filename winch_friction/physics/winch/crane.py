@@ -13,10 +13,10 @@ N times the measured torque.
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -136,6 +136,10 @@ def hydraulic_torque(groups: Iterable[tuple[float, Any, Any]]) -> Any:
 
 
 # -- the crane
+FAST_MOTOR = 100.0  # rad/s; axial piston motors turn several times faster, radial ones on the drum at 2 to 20
+_Settings = TypeVar("_Settings", bound=Any)
+
+
 @dataclass(frozen=True)
 class Drum:
     """Rope radius of each wire layer in m, innermost first."""
@@ -198,6 +202,11 @@ class Crane:
     rated_speed: float = 0.0
     rated_load: float = 0.0
 
+    @property
+    def speed_scale(self) -> float:
+        """Factor of the speeds that tell motion from rest: below 1 where `rated_speed` calls the motors slow."""
+        return min(1.0, self.rated_speed / FAST_MOTOR) if self.rated_speed else 1.0
+
     def _repr_html_(self) -> str:
         from winch_friction.physics.frames import html_table
 
@@ -233,6 +242,13 @@ class Crane:
         return load * (self.drum.radius(layer) / self.gear_ratio) ** 2
 
 
+def at_its_speeds(settings: _Settings, crane: Crane, *names: str) -> _Settings:
+    """The settings with those in rad/s that were left at their defaults in proportion to a slow motor's speeds."""
+    usual: Mapping[str, Any] = {each.name: each.default for each in fields(settings) if each.name in names}
+    slower = {name: v * crane.speed_scale for name, v in usual.items() if getattr(settings, name) == v}
+    return replace(settings, **slower) if crane.speed_scale < 1.0 else settings
+
+
 # -- the balance of torques
 DRIVING = ("active", "main")  # the groups that carry what the others leave, where they run
 
@@ -245,6 +261,11 @@ def driving_group(groups: Sequence[str]) -> str:
 def sample_drive_torque(sample: Sample, crane: Crane) -> float:
     """Torque of all motors at the shaft in N m from one sample, as the crane's drive makes it known."""
     return crane.drive.of_sample(sample, crane)
+
+
+def sample_load(sample: Sample) -> float:
+    """The hanging mass that a sample shows in kg: hook load, else what the rope force carries; NaN without both."""
+    return sample.hook_load if math.isfinite(sample.hook_load) else sample.rope_force / GRAVITY
 
 
 def run_drive_torque(run: Run, crane: Crane) -> Any:

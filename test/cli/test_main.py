@@ -1,8 +1,11 @@
 """The command line's frame: exit statuses, one clear line for bad input, help without importing the verbs."""
 
+import importlib
 import os
 import subprocess
 import sys
+import types
+import typing
 
 import pytest
 import typer
@@ -111,3 +114,15 @@ def test_the_module_is_the_command():
         [sys.executable, "-m", "winch_friction.cli.main", "--version"], capture_output=True, text=True
     )
     assert (done.returncode, done.stdout.strip()) == (0, f"winch-friction {__version__}")
+
+
+@pytest.mark.parametrize("verb", main.VERBS, ids=lambda verb: verb.name)
+def test_no_option_is_of_a_type_that_ubuntus_typer_does_not_read(verb):
+    """Typer 0.9 knows `Optional[Path]`, not `Path | None`: the verb would end with a traceback."""
+    module = importlib.import_module(f"winch_friction.cli.{verb.module}")
+    app = getattr(module, "app", None)
+    functions = [each.callback for each in app.registered_commands] if app else [module.command]
+    for function in functions:
+        for name, hint in typing.get_type_hints(function, include_extras=True).items():
+            kind = typing.get_args(hint)[0] if hasattr(hint, "__metadata__") else hint
+            assert name == "return" or not isinstance(kind, types.UnionType), name

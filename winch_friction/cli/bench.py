@@ -10,14 +10,14 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.console import progress, show_json, show_table
-from winch_friction.cli.optional import OptionalTexts
+from winch_friction.cli.optional import OptionalPath, OptionalTexts
 from winch_friction.physics.errors import InputError
 
 
 def command(
     names: Annotated[OptionalTexts, typer.Argument(help="Which benchmarks; all without a name.")] = None,
     smoke: Annotated[bool, typer.Option("--smoke", help="Only show that every benchmark runs.")] = False,
-    page: Annotated[Path | None, typer.Option("--page", help="Write the table as a Markdown page, too.")] = None,
+    page: Annotated[OptionalPath, typer.Option("--page", help="Write the table as a Markdown page, too.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
 ) -> None:
     """Measure speed as ratios against what one would use instead, side by side in one process.

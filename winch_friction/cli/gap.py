@@ -251,7 +251,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(f"note: {note}")
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
-    if content["next_experiment"]:
-        print(f"next experiment: {content['next_experiment']['scenario']}")
+    if plan := content["next_experiment"]:
+        far = f" ({plan['note']})" if plan["note"] else ""
+        print(f"next experiment: {plan['scenario']}{far}")
     written = [out / name for name in ("gap.json", "model.yaml", "report.html") if (out / name).exists()]
     print("written:", ", ".join(map(str, written)))

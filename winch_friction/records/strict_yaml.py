@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,15 @@ import yaml
 
 from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, unknown_key
+
+
+def expect_kind(content: Any, kind: str, where: str) -> None:
+    """Raise `InputError` where a file says of itself that it is of another kind of this package's: what else it breaks
+    of the rules of `kind` is no news then."""
+    schema = content.get("schema") if isinstance(content, Mapping) else None
+    said = re.fullmatch(r"winch_friction\.(\w+)/\d+", schema) if isinstance(schema, str) else None
+    if said and said[1] != kind:
+        raise InputError(f"{where}: this is a {said[1]} file (schema '{schema}'), and a {kind} file is asked for")
 
 
 class Section:

@@ -84,6 +84,8 @@ def test_two_models_are_compared_on_a_grid_and_on_runs(tmp_path, capsys):
     path = wf.write_run(result.run, tmp_path / "run.csv")
     assert run(["compare", "a6vm215_crane2", str(more), str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["rows"][0]["RMS [N*m]"] > 50.0
+    assert run(["compare", "a6vm215_crane2", str(more), str(tmp_path), "--json"]) == 0  # the folder of runs
+    assert json.loads(capsys.readouterr().out)["rows"][0]["RMS [N*m]"] > 50.0
 
 
 def test_a_run_is_drawn(tmp_path, capsys):
@@ -94,6 +96,14 @@ def test_a_run_is_drawn(tmp_path, capsys):
     assert channels["motor_speed"]["largest"] == pytest.approx(60.0)
     assert channels["motor_speed"]["unit"] == "rpm"
     assert "figure" in (tmp_path / "a.html").read_text()
+    assert run(["plot", str(tmp_path), "--out", str(tmp_path / "b.html"), "--json"]) == 0  # the folder of runs
+    assert json.loads(capsys.readouterr().out)["channels"]
+
+
+def test_what_a_list_says_of_a_scenario_is_a_whole_sentence(capsys):
+    assert run(["list", "scenarios", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["name"] for row in rows if not row["about"].endswith((".", ")"))] == []
 
 
 def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys):

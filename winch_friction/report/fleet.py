@@ -122,6 +122,9 @@ def _months(store: Path, content: Mapping[str, Any]) -> str:
     for row in frame.itertuples():
         rows.setdefault((row.crane, row.name), []).append((row.time, row.value, row.std))
     series = monthly(rows)
+    months = {month for each in series for month in each.months.tolist()}
+    if len(months) == 1:
+        return f"<p>All recordings are of one month, {month_text(months.pop())}: there is nothing to follow yet.</p>"
     changed = {step["crane"] for step in content["steps"]}
     cranes = sorted({each.crane for each in series}, key=lambda name: (name not in changed, name))
     drawn = set(cranes[:MOST_DRAWN])
@@ -142,7 +145,7 @@ def _plot(trait: str, series: Sequence[Series], changed: set[str]) -> Plot:
     ]
     lines = [
         Line(each.crane if each.crane in changed else "no change", MONTH, label, k,
-             role="plain" if each.crane in changed else "other")
+             role="plain" if each.crane in changed else "other", kind="lines" if len(each.months) > 1 else "dots")
         for k, each in enumerate(series)
     ]  # fmt: skip
     said = f"{TRAIT_WORDS[trait][0].capitalize()}, by month; a line is a crane, those that changed in colour."

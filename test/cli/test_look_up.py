@@ -137,14 +137,21 @@ def test_names_complete():
         (["compare", "a6vm215_crane2", "a6vm215_cran2"], "did you mean a6vm215_crane2"),
         (["check", "one.csv", "--crane", "crane_150t"], "one.csv: no such file or folder"),
         (["import", "logs", "--propose", "--map", "m.yaml"], "give the logs themselves, as logs/*.csv"),
+        (["show", "motor_speed"], "in winch-friction list units"),
+        (["show", "a6vm215_generated"], "in winch-friction list suppliers"),
+        (["show", "files/run.csv"], "winch-friction plot draws runs"),
+        (["show", "files/plant.yaml"], "a plant file, and show knows files of models, cranes and scenarios"),
         (["show", "a6vm215_crane2", "--out", "/proc/x.html"], "/proc/x.html: cannot be written"),
     ],
 )
 def test_a_slip_is_one_line_that_says_what_was_meant(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "logs").mkdir()
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / "run.csv").write_text("time,motor_speed\n0,1\n")
+    (tmp_path / "files" / "plant.yaml").write_text("schema: winch_friction.plant/1\n")
     assert run(words) == 2
     error = capsys.readouterr().err.strip()
     assert said in error
     assert len(error.splitlines()) == 1
-    assert [each.name for each in tmp_path.iterdir()] == ["logs"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["files", "logs"]

@@ -111,3 +111,10 @@ def test_the_module_is_the_command():
         [sys.executable, "-m", "winch_friction.cli.main", "--version"], capture_output=True, text=True
     )
     assert (done.returncode, done.stdout.strip()) == (0, f"winch-friction {__version__}")
+
+
+@pytest.mark.parametrize("verb", ["convert", "identify", "init"])
+def test_a_group_of_verbs_offers_what_it_can_do(verb, capsys):
+    """Completion is installed for the whole command; each group offered to do so once more."""
+    assert main.run([verb, "--help"]) == 0
+    assert "--install-completion" not in capsys.readouterr().out

@@ -10,7 +10,9 @@ import typer
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts, Overwrite
 
-app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
+app = typer.Typer(
+    help="Supplier tables and logged tests become a friction model.", add_completion=False, no_args_is_help=True
+)
 
 PRACTICE = "Friction practice: "  # begins the title of its page
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]

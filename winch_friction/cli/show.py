@@ -8,7 +8,7 @@ import typer
 
 from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
-from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
+from winch_friction.cli.names import KINDS, SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalFloat, OptionalPath, Overwrite
 from winch_friction.physics.errors import InputError, meant
 
@@ -60,15 +60,22 @@ def command(
 def _of_file(name: str) -> str:
     path = Path(name)
     if not path.is_file():
+        for kind in ("units", "suppliers"):  # they have names, and nothing to draw
+            if name in KINDS[kind].names():
+                raise InputError(f"show: all that is known of '{name}' stands in winch-friction list {kind}")
         near = meant(name, (each for kind in SHOWN for each in names_of(kind)))
         raise InputError(
             f"show: '{name}' is neither a file nor a known name;{near} 'winch-friction list' says what there is"
         )
-    from winch_friction.records.strict_yaml import read_yaml
+    from winch_friction.fleet.recordings import RUN_SUFFIXES
+    from winch_friction.records.strict_yaml import kind_said, read_yaml
 
-    content = read_yaml(path)
-    schema = str(content.get("schema", "")) if isinstance(content, dict) else ""
-    return next((k for k in ("model", "crane", "scenario") if f".{k}/" in schema), "scenario")
+    if path.suffix.lower() in RUN_SUFFIXES:
+        raise InputError(f"show: {name} is a run file by its name; winch-friction plot draws runs")
+    said = kind_said(read_yaml(path)) or "scenario"
+    if said not in SHOWN:
+        raise InputError(f"show: {name} is a {said} file, and show knows files of models, cranes and scenarios")
+    return said
 
 
 def curve_crane(model: Any, crane: str, where: str = "") -> Any:

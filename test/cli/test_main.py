@@ -118,3 +118,17 @@ def test_a_group_of_verbs_offers_what_it_can_do(verb, capsys):
     """Completion is installed for the whole command; each group offered to do so once more."""
     assert main.run([verb, "--help"]) == 0
     assert "--install-completion" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["gap", "runs", "--crane", "crane_150t", "--model", "a6vm215_crane2"], ["gap", "--blind", "1"],
+     ["identify", "motor", "a6vm215_generated"], ["identify", "practice", "practice_150t"],
+     ["simulate", "ahc_55t_215"]],
+)  # fmt: skip
+def test_a_seed_below_zero_is_bad_input_and_no_defect(words, tmp_path, capsys):
+    """gap and identify worked, and then ended in numpy's own complaint."""
+    assert main.run([*words, "--seed", "-3", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "'--seed'" in error

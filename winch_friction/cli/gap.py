@@ -45,7 +45,7 @@ def command(
     ] = "",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
-    seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     effects: Annotated[
         OptionalPath, typer.Option(help="Python file that registers candidate terms of your own.")
     ] = None,

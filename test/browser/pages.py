@@ -36,6 +36,14 @@ INK = {"light": "#1d2126", "dark": "#e4e7ea"}  # of the plots' text
 RUN_AXE = """axe.run({resultTypes: ["violations"]}).then(
     ({violations}) => violations.map(({id, nodes}) => `${id}: ${nodes[0].html.slice(0, 120)}`))"""
 
+# a finger cannot hover: on a phone the buttons of a figure are always there, and may lie on no name of its legend
+COVERED = """[...document.querySelectorAll(".js-plotly-plot")].flatMap((plot) => {
+    const boxes = (name) => [...plot.querySelectorAll(name)].map((each) => each.getBoundingClientRect());
+    return boxes(".legendtext, .annotation-text").filter((text) => boxes(".modebar-btn").some((button) =>
+        Math.min(text.right, button.right) - Math.max(text.left, button.left) > 0.5 &&
+        Math.min(text.bottom, button.bottom) - Math.max(text.top, button.top) > 0.5));
+}).length"""
+
 
 def violations(page):
     """What axe-core finds wrong with the page, in words."""

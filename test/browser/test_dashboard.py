@@ -7,7 +7,7 @@ import time
 import urllib.request
 
 import pytest
-from pages import DESK, INK, PHONE, SCHEMES, TABLET, keep_screenshot, violations
+from pages import COVERED, DESK, INK, PHONE, SCHEMES, TABLET, keep_screenshot, violations
 
 from winch_friction.cli.dashboard import serving
 
@@ -57,6 +57,7 @@ def test_the_page_is_accessible_at_every_size(visit, stop, width):
             assert violations(page) == []
             keep_screenshot(page, "dashboard", width, scheme)
         assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
+        assert page.evaluate(COVERED) == 0
         assert said == []
 
 

@@ -3,7 +3,7 @@
 import urllib.parse
 
 import pytest
-from pages import DESK, INK, KINDS, PHONE, SCHEMES, TABLET, keep_screenshot, small_gap, violations
+from pages import COVERED, DESK, INK, KINDS, PHONE, SCHEMES, TABLET, keep_screenshot, small_gap, violations
 
 pytestmark = pytest.mark.browser
 INKS = "[...document.querySelectorAll('.canvas')].filter((c) => c.layout).map((c) => c.layout.font.color)"
@@ -77,6 +77,7 @@ def assert_fits_and_is_accessible(page, kind, width):
         assert violations(page) == []
         keep_screenshot(page, kind, width, scheme)
     page.wait_for_function(f"!{CUT_OFF}.length")
+    assert page.evaluate(COVERED) == 0
     page.wait_for_function(f"!{UNSEEN}.length")
     page.evaluate("document.querySelectorAll('.scroll').forEach((each) => each.scrollTo(1e4, 0))")
     page.wait_for_function(f"!{UNSEEN}.length")

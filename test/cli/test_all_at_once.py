@@ -173,3 +173,33 @@ def test_a_misspelt_key_is_known_by_the_one_that_is_missing(tmp_path, capsys):
     path.write_text(yaml.safe_dump(content))
     assert run(["show", str(path)]) == 2
     assert "unknown key 'K44'; did you mean K4" in capsys.readouterr().err
+
+
+KINDS = [("--crane", "crane"), ("--model", "model"), ("--plant", "plant"), (None, "scenario")]
+
+
+@pytest.mark.parametrize(("option", "kind"), KINDS)
+def test_a_file_of_another_kind_is_refused_by_that_alone(tmp_path, capsys, option, kind):
+    """A crane given as the model broke a dozen rules of models, each told."""
+    other = tmp_path / "other.yaml"
+    other.write_text(
+        yaml.safe_dump({"schema": f"winch_friction.{'crane' if kind != 'crane' else 'model'}/1", "name": "x"})
+    )
+    out = ["--out", str(tmp_path / "run.csv")]
+    words = ["simulate", "ahc_55t_215", option, str(other)] if option else ["simulate", str(other)]
+    assert run([*words, *(["--crane", "crane_150t"] if option != "--crane" else []), *out]) == 2
+    told = said(capsys)
+    assert len(told) == 1
+    assert "other.yaml: this is a " in told[0]
+    assert f"a {kind} file is asked for" in told[0]
+
+
+def test_a_log_given_as_a_scenario_is_told_as_no_scenario(tmp_path, capsys):
+    assert run(["simulate", str(table(tmp_path / "run.csv")), "--out", str(tmp_path / "out.csv")]) == 2
+    assert "is this a scenario file?" in said(capsys)[0]
+
+
+@pytest.mark.parametrize("words", [["simulate", "AHC_55T_215"], ["show", "A6VM215_CRANE2"]])
+def test_a_name_in_capitals_is_known_again(words, capsys):
+    assert run(words) == 2
+    assert f"did you mean {words[1].lower()}" in said(capsys)[0]

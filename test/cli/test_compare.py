@@ -22,6 +22,18 @@ def test_a_load_beyond_the_crane_is_said_with_what_its_file_gives(capsys, loads,
     assert ("0 to 540 t" in said) == warned
 
 
+def test_a_curve_beyond_the_crane_is_said_to_be(capsys):
+    assert run(["show", "a6vm215_crane2", "--load", "5000"]) == 0
+    assert "--load 5000: beyond what crane 'crane_150t' holds" in capsys.readouterr().err
+
+
+def test_a_small_drives_curve_is_drawn_without_the_papers_load(capsys):
+    assert run(["show", "emps_viscous", "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["load_t"] == 0.0  # EMPS lifts nothing; 55 t was what its curve was drawn at
+    assert said.err == ""
+
+
 def test_a_load_that_is_no_mass_is_refused(capsys):
     assert run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--loads=-3"]) == 2
     assert "hanging mass" in capsys.readouterr().err

@@ -84,6 +84,8 @@ def test_two_models_are_compared_on_a_grid_and_on_runs(tmp_path, capsys):
     path = wf.write_run(result.run, tmp_path / "run.csv")
     assert run(["compare", "a6vm215_crane2", str(more), str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["rows"][0]["RMS [N*m]"] > 50.0
+    assert run(["compare", "a6vm215_crane2", str(more), str(tmp_path), "--json"]) == 0  # the folder of runs
+    assert json.loads(capsys.readouterr().out)["rows"][0]["RMS [N*m]"] > 50.0
 
 
 def test_a_run_is_drawn(tmp_path, capsys):
@@ -94,6 +96,14 @@ def test_a_run_is_drawn(tmp_path, capsys):
     assert channels["motor_speed"]["largest"] == pytest.approx(60.0)
     assert channels["motor_speed"]["unit"] == "rpm"
     assert "figure" in (tmp_path / "a.html").read_text()
+    assert run(["plot", str(tmp_path), "--out", str(tmp_path / "b.html"), "--json"]) == 0  # the folder of runs
+    assert json.loads(capsys.readouterr().out)["channels"]
+
+
+def test_what_a_list_says_of_a_scenario_is_a_whole_sentence(capsys):
+    assert run(["list", "scenarios", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["name"] for row in rows if not row["about"].endswith((".", ")"))] == []
 
 
 def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys):
@@ -127,14 +137,21 @@ def test_names_complete():
         (["compare", "a6vm215_crane2", "a6vm215_cran2"], "did you mean a6vm215_crane2"),
         (["check", "one.csv", "--crane", "crane_150t"], "one.csv: no such file or folder"),
         (["import", "logs", "--propose", "--map", "m.yaml"], "give the logs themselves, as logs/*.csv"),
+        (["show", "motor_speed"], "in winch-friction list units"),
+        (["show", "a6vm215_generated"], "in winch-friction list suppliers"),
+        (["show", "files/run.csv"], "winch-friction plot draws runs"),
+        (["show", "files/plant.yaml"], "a plant file, and show knows files of models, cranes and scenarios"),
         (["show", "a6vm215_crane2", "--out", "/proc/x.html"], "/proc/x.html: cannot be written"),
     ],
 )
 def test_a_slip_is_one_line_that_says_what_was_meant(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "logs").mkdir()
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / "run.csv").write_text("time,motor_speed\n0,1\n")
+    (tmp_path / "files" / "plant.yaml").write_text("schema: winch_friction.plant/1\n")
     assert run(words) == 2
     error = capsys.readouterr().err.strip()
     assert said in error
     assert len(error.splitlines()) == 1
-    assert [each.name for each in tmp_path.iterdir()] == ["logs"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["files", "logs"]

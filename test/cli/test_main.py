@@ -126,3 +126,24 @@ def test_no_option_is_of_a_type_that_ubuntus_typer_does_not_read(verb):
         for name, hint in typing.get_type_hints(function, include_extras=True).items():
             kind = typing.get_args(hint)[0] if hasattr(hint, "__metadata__") else hint
             assert name == "return" or not isinstance(kind, types.UnionType), name
+
+
+@pytest.mark.parametrize("verb", ["convert", "identify", "init"])
+def test_a_group_of_verbs_offers_what_it_can_do(verb, capsys):
+    """Completion is installed for the whole command; each group offered to do so once more."""
+    assert main.run([verb, "--help"]) == 0
+    assert "--install-completion" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["gap", "runs", "--crane", "crane_150t", "--model", "a6vm215_crane2"], ["gap", "--blind", "1"],
+     ["identify", "motor", "a6vm215_generated"], ["identify", "practice", "practice_150t"],
+     ["simulate", "ahc_55t_215"]],
+)  # fmt: skip
+def test_a_seed_below_zero_is_bad_input_and_no_defect(words, tmp_path, capsys):
+    """gap and identify worked, and then ended in numpy's own complaint."""
+    assert main.run([*words, "--seed", "-3", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "'--seed'" in error

@@ -64,7 +64,22 @@ def test_runs_are_not_overwritten(short, tmp_path, capsys):
     out.write_text("precious")
     assert run(["simulate", short, "--out", str(out)]) == 2
     assert out.read_text() == "precious"
-    assert run(["simulate", short, "--out", str(out), "--force"]) == 0
+    assert "--overwrite" in capsys.readouterr().err
+    assert run(["simulate", short, "--out", str(out), "--overwrite"]) == 0  # as at every other verb
+    assert run(["simulate", short, "--out", str(out), "--force"]) == 0  # its name before
+
+
+def test_a_place_for_the_truth_is_asked_for_before_the_work(short, tmp_path, capsys):
+    (tmp_path / "truth").write_text("a file of this name")
+    assert run(["simulate", short, "--out", str(tmp_path / "run.csv"), "--truth"]) == 2
+    assert "is a file, no folder" in capsys.readouterr().err
+    assert not (tmp_path / "run.csv").exists()
+
+
+def test_a_format_that_the_files_name_contradicts_is_refused(short, tmp_path, capsys):
+    assert run(["simulate", short, "--out", str(tmp_path / "run.csv"), "--format", "parquet"]) == 2
+    assert "--format parquet" in capsys.readouterr().err
+    assert run(["simulate", short, "--out", str(tmp_path / "run.csv"), "--format", "csv"]) == 0
 
 
 def test_an_earlier_truth_is_not_overwritten(short, tmp_path, capsys):
@@ -87,6 +102,7 @@ def test_a_bag_is_never_replaced_and_nobody_is_told_that_it_could_be(short, tmp_
         said = capsys.readouterr().err
         assert "a bag is never replaced" in said
         assert "--force" not in said
+        assert "--overwrite" not in said
 
 
 def test_effects_are_listed(capsys):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.channels import clock_findings, frozen_findings, told_slow_clock
+from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.physics.signals import Run
@@ -96,3 +96,9 @@ def test_what_the_machine_cannot_do_is_told_by_channel(changed, channel):
 @pytest.mark.parametrize(("after", "words"), [(0.05, "much"), (0.07, "a little"), (0.095, "nothing"), (0.1, "nothing")])
 def test_what_runs_teach_is_what_they_take_off_the_models_own_sigma(after, words):
     assert Taught("C5", 0.1, after).words == words
+
+
+def test_one_run_fits_and_several_fit():
+    assert runs_say(("a.csv",), 1, "fit") == "run a.csv fits"
+    assert runs_say(("a.csv",), 3, "leave") == "1 of 3 runs (a.csv) leaves"
+    assert runs_say(("a", "b"), 2, "say") == "all 2 runs say"

@@ -44,4 +44,5 @@ def test_any_change_is_other_work():
 def test_the_verdict_is_told_with_its_names():
     found = {"verb": {"verdict": "ambiguous", "effects": [{"name": "churning", "indistinguishable_from": ["notch"]}]}}
     assert verdict_of(outcome("a", result=found)) == "ambiguous: churning or notch"
+    assert verdict_of(outcome("a", result={"verb": {"plausible": True}})) == "plausible"
     assert verdict_of(Outcome("a", "c", "r", 2, 0.0, None, "no such file")) == "no such file"

@@ -90,3 +90,12 @@ def test_what_is_no_curve_over_one_signal_is_shown_as_before():
     effect, model = _found("line_pressure_power")
     assert _curve(effect, model) == (set(), "")
     assert f"{VALVE.name}_2" in _text(_effect(effect, SimpleNamespace(model=model)))
+
+
+@pytest.mark.parametrize(("note", "parted"), [("", True), ("tied in every scenario of the family", False)])
+def test_an_experiment_that_parts_nothing_is_not_asked_for(note, parted):
+    plan = {"scenario": "experiment_loads.yaml", "separates": ["brake_drag", "coulomb"], "expected_z": 4.0 * parted,
+            "note": note}  # fmt: skip
+    (said,) = next_steps(SimpleNamespace(next_experiment=plan, effects=[], verdict="ambiguous", adequacy=()))
+    assert ("winch-friction simulate" in said) is parted
+    assert ("another channel" in said) is not parted

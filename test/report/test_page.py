@@ -87,3 +87,10 @@ def test_a_quantity_stays_on_one_line():
     assert "(−89\u00a0%)" in table
     assert "<wbr>" not in table
     assert "10 tests of" in table
+
+
+def test_a_unit_in_a_sentence_reads_as_in_a_heading():
+    table = table_html(["where"], [["main.displacement < 215 cm^3/rev"], ["less than 0.0012 m^3 would not show"]])
+    assert "215\u00a0cm³/rev" in table
+    assert "0.0012\u00a0m³ would" in table
+    assert "x.unit=cm^3/<wbr>rev" in table_html(["command"], [["import --set x.unit=cm^3/rev"]])  # to be typed as it is

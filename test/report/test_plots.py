@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.physics.effects import effect_texts
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms, term_named
+from winch_friction.report import plots
 from winch_friction.report.equations import latex_html, term_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 
@@ -65,3 +67,23 @@ def test_every_effect_of_the_catalogue_is_described():
         assert text.title
         assert text.look
         assert text.physics.count(".") >= 1
+
+
+def _luminance(colour):
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+    return np.dot((0.2126, 0.7152, 0.0722), linear)
+
+
+@pytest.mark.parametrize("scheme", ["LIGHT", "DARK"])
+def test_every_line_stands_out_from_its_card(scheme):
+    """WCAG 2.2, 1.4.11: 3 to 1 for what has to be seen of a picture; axe-core looks at text alone."""
+    script = (Path(plots.__file__).parent / "templates" / "plots.js").read_text()
+    text = re.search(rf"const {scheme} = {{(.*?)}};", script, re.DOTALL)[1]
+    colours = dict(re.findall(r'(\w+): "(#\w{6})"', text))
+    lines = [colours[role] for role in plots.ROLES if role != "plain"]
+    lines += re.findall(r"#\w{6}", re.search(r"plain: \[(.*?)\]", text, re.DOTALL)[1])
+    card = _luminance(colours["card"])
+    for each in lines:
+        low, high = sorted((card, _luminance(each)))
+        assert (high + 0.05) / (low + 0.05) >= 3.0, each

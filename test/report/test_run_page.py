@@ -53,3 +53,7 @@ def test_a_value_that_its_unit_takes_beyond_all_numbers_is_missing(tmp_path):
     run = read_run(tmp_path / "r.csv")
     assert np.isnan(run["motor_torque"]).tolist() == [True, False, False]
     assert "1 of 3 values are not numbers, line 2" in run.warnings[0]
+
+
+def test_one_run_is_one_run(tmp_path):
+    assert "1 run<" in write_run_page(tmp_path / "one.html", [RUN], None, None).read_text()

@@ -72,3 +72,8 @@ def test_feedforward_of_the_true_friction_improves_both_drives(ahc, crane, model
         with_it = simulate(scenario, crane, model, feedforward=friction)
         rms = [np.sqrt(np.mean(r.truth["position_error"][2000:] ** 2)) for r in (without, with_it)]
         assert rms[1] < (1.0 - least) * rms[0]
+
+
+def test_a_seed_below_zero_is_refused(ahc, crane, model):
+    with pytest.raises(InputError, match="seed -1: give a whole number, 0 or more"):
+        Simulator(ahc, crane, model, seed=-1)

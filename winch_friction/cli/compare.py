@@ -17,7 +17,9 @@ CERTAIN = 2.0  # standard deviations from which a difference is more than what t
 def command(
     first: Annotated[str, typer.Argument(help="Model: file or shipped name.", autocompletion=complete_model)],
     second: Annotated[str, typer.Argument(help="The model to compare with it.", autocompletion=complete_model)],
-    runs: Annotated[OptionalPaths, typer.Argument(help="Run files: compare on them instead of a grid.")] = None,
+    runs: Annotated[
+        OptionalPaths, typer.Argument(help="Run files, or folders of them: compare on them instead of a grid.")
+    ] = None,
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.", autocompletion=complete_crane)] = "",
     loads: Annotated[str, typer.Option(help="Hanging masses of the grid, t.")] = "15,55,100",
     out: Annotated[OptionalPath, typer.Option(help="Write a page (.html) with curves and differences.")] = None,
@@ -33,7 +35,8 @@ def command(
 
       winch-friction compare a6vm215_crane2 learned.yaml runs/*.csv --crane crane_150t
     """
-    from winch_friction.cli.show import curve_crane
+    from winch_friction.cli.inputs import run_paths
+    from winch_friction.cli.show import curve_crane, say_beyond
     from winch_friction.records.model_file import load_model
 
     load_terms(terms_file)
@@ -48,12 +51,12 @@ def command(
     _refuse_two_cranes(one, two)
     machine = curve_crane(one, crane, first)
     if runs:
-        content = _on_runs(one, two, machine, list(runs))
         if out is not None:
             raise InputError("compare: the page shows the grid; leave out the runs, or leave out --out")
+        content = _on_runs(one, two, machine, run_paths(runs))
     else:
         masses = _loads(loads)
-        _say_beyond(masses, machine)
+        say_beyond("--loads", masses, machine)
         content = _on_grid(one, two, machine, masses, out)
     if as_json:
         show_json(content)
@@ -86,19 +89,6 @@ def _loads(text: str) -> list[float]:
     if not all(0.0 <= each < float("inf") for each in found):
         raise InputError(f"--loads '{text}': a hanging mass is a number of t from 0 on")
     return found
-
-
-def _say_beyond(loads: list[float], crane: Any) -> None:
-    """One line on masses that the crane cannot hold: what a model says of them is extrapolated."""
-    from winch_friction.importing.expectations import most_held
-
-    most = most_held(crane) / 1e3
-    beyond = [f"{each:g}" for each in loads if each > most]
-    if beyond:
-        show_warnings([
-            f"--loads {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {most:.0f} t, all "
-            "motors at 450 bar or the torque limit); what the models say there is extrapolated"
-        ])  # fmt: skip
 
 
 def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | None) -> dict[str, Any]:

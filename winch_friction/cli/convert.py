@@ -10,7 +10,7 @@ from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath, Overwrite
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, Run
 
-app = typer.Typer(help="Run files from one format to another.", rich_markup_mode="rich")
+app = typer.Typer(help="Run files from one format to another.", add_completion=False, rich_markup_mode="rich")
 OUT = typer.Argument(help="Where to, one or several: .csv, .parquet, .mcap, .db3, or a folder for a bag.")
 
 

@@ -46,7 +46,7 @@ def command(
     ] = "",
     out: Annotated[Path, typer.Option(help="Folder for gap.json, model.yaml and report.html.")] = Path("gap"),
     holdout: Annotated[float, typer.Option(help="Share of the runs that is locked for the proof.")] = 0.25,
-    seed: Annotated[int, typer.Option(help="Seed of every random choice.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     effects: Annotated[
         OptionalPath, typer.Option(help="Python file that registers candidate terms of your own.")
     ] = None,
@@ -259,7 +259,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(f"note: {note}")
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
-    if content["next_experiment"]:
-        print(f"next experiment: {content['next_experiment']['scenario']}")
+    if plan := content["next_experiment"]:
+        far = f" ({plan['note']})" if plan["note"] else ""
+        print(f"next experiment: {plan['scenario']}{far}")
     written = [out / name for name in ("gap.json", "model.yaml", "report.html") if (out / name).exists()]
     print("written:", ", ".join(map(str, written)))

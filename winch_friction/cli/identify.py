@@ -10,12 +10,14 @@ import typer
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts, Overwrite
 
-app = typer.Typer(help="Supplier tables and logged tests become a friction model.", no_args_is_help=True)
+app = typer.Typer(
+    help="Supplier tables and logged tests become a friction model.", add_completion=False, no_args_is_help=True
+)
 
 PRACTICE = "Friction practice: "  # begins the title of its page
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
 Force = Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")]
-Seed = Annotated[int, typer.Option(help="Seed of the complex method and of the bootstrap.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the complex method and of the bootstrap.")]
 Restarts = Annotated[int, typer.Option(min=1, help="Restarts of the complex method.")]
 Evaluations = Annotated[int, typer.Option(min=100, help="Most evaluations of the complex method per restart.")]
 

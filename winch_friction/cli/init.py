@@ -11,7 +11,9 @@ from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
 from winch_friction.physics.errors import InputError
 
-app = typer.Typer(help="Commented files to begin with, from flags or questions.", no_args_is_help=True)
+app = typer.Typer(
+    help="Commented files to begin with, from flags or questions.", add_completion=False, no_args_is_help=True
+)
 
 Out = Annotated[OptionalPath, typer.Option(help="File to write; NAME.yaml without it.")]
 Force = Annotated[bool, typer.Option(help="Overwrite a file that exists.")]

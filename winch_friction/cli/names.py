@@ -73,8 +73,13 @@ def _scenarios() -> Rows:
 
 
 def _comment(path: Path) -> str:
-    first = path.read_text(encoding="utf-8").partition("\n")[0]
-    return first.removeprefix("#").strip() if first.startswith("#") else ""
+    """A file's first line, and the next where the first one only announces it."""
+    said = ""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#") or (said and not said.endswith(":")):
+            break
+        said = f"{said} {line.removeprefix('#').strip()}".strip()
+    return said
 
 
 def _suppliers() -> Rows:

@@ -12,7 +12,7 @@ from winch_friction.cli.optional import OptionalPath, Overwrite
 
 
 def command(
-    runs: Annotated[list[Path], typer.Argument(help="Run files: .csv, .parquet, rosbag2.")],
+    runs: Annotated[list[Path], typer.Argument(help="Run files (.csv, .parquet, rosbag2), or folders of them.")],
     out: Annotated[Path, typer.Option(help="Page to write.")] = Path("plot.html"),
     crane: Annotated[
         str, typer.Option(help="Crane: for drum speeds, fractions and a model.", autocompletion=complete_crane)
@@ -33,7 +33,7 @@ def command(
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
     from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind
-    from winch_friction.cli.inputs import read_all, read_inputs
+    from winch_friction.cli.inputs import read_all, read_inputs, run_paths
     from winch_friction.physics.errors import InputError
     from winch_friction.report.run_page import channel_rows, write_run_page
 
@@ -42,10 +42,11 @@ def command(
     load_terms(terms_file)
     refuse_other_kind(out, PAGE, "a page")
     refuse_existing(overwrite, out)
+    paths = run_paths(runs)
     if crane:
-        read, machine, drawn = read_inputs(runs, crane, model)
+        read, machine, drawn = read_inputs(paths, crane, model)
     else:
-        read, machine, drawn = read_all(runs, None), None, None
+        read, machine, drawn = read_all(paths, None), None, None
     for run in read:
         show_warnings(run.warnings)
     page = write_run_page(out, read, machine, drawn)

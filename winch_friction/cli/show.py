@@ -1,5 +1,6 @@
 """`winch-friction show`: one model, crane, scenario, effect or term, in the terminal and as a page."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -7,11 +8,12 @@ import typer
 
 from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
 from winch_friction.cli.inputs import load_terms
-from winch_friction.cli.names import SHOWN, complete_crane, complete_shown, kind_of, names_of
-from winch_friction.cli.optional import OptionalPath, Overwrite
+from winch_friction.cli.names import KINDS, SHOWN, complete_crane, complete_shown, kind_of, names_of
+from winch_friction.cli.optional import OptionalFloat, OptionalPath, Overwrite
 from winch_friction.physics.errors import InputError, meant
 
 LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
+USUAL = 55.0  # t, the papers' middle load
 
 
 def command(
@@ -21,7 +23,9 @@ def command(
     ],
     kind: Annotated[str, typer.Option(help=f"What it is, when a name stands for several: {', '.join(SHOWN)}.")] = "",
     crane: Annotated[str, typer.Option(help="Crane on which a model is drawn.", autocompletion=complete_crane)] = "",
-    load: Annotated[float, typer.Option(help="Hanging mass for a model's curve, t.")] = 55.0,
+    load: Annotated[
+        OptionalFloat, typer.Option(help="Hanging mass for a model's curve, t; none: 55, or 0 on a crane for less.")
+    ] = None,
     out: Annotated[OptionalPath, typer.Option(help="Also write a page (.html), for a model or a term.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     overwrite: Overwrite = False,
@@ -56,15 +60,22 @@ def command(
 def _of_file(name: str) -> str:
     path = Path(name)
     if not path.is_file():
+        for kind in ("units", "suppliers"):  # they have names, and nothing to draw
+            if name in KINDS[kind].names():
+                raise InputError(f"show: all that is known of '{name}' stands in winch-friction list {kind}")
         near = meant(name, (each for kind in SHOWN for each in names_of(kind)))
         raise InputError(
             f"show: '{name}' is neither a file nor a known name;{near} 'winch-friction list' says what there is"
         )
-    from winch_friction.records.strict_yaml import read_yaml
+    from winch_friction.fleet.recordings import RUN_SUFFIXES
+    from winch_friction.records.strict_yaml import kind_said, read_yaml
 
-    content = read_yaml(path)
-    schema = str(content.get("schema", "")) if isinstance(content, dict) else ""
-    return next((k for k in ("model", "crane", "scenario") if f".{k}/" in schema), "scenario")
+    if path.suffix.lower() in RUN_SUFFIXES:
+        raise InputError(f"show: {name} is a run file by its name; winch-friction plot draws runs")
+    said = kind_said(read_yaml(path)) or "scenario"
+    if said not in SHOWN:
+        raise InputError(f"show: {name} is a {said} file, and show knows files of models, cranes and scenarios")
+    return said
 
 
 def curve_crane(model: Any, crane: str, where: str = "") -> Any:
@@ -92,14 +103,31 @@ def curve_crane(model: Any, crane: str, where: str = "") -> Any:
         raise InputError(f"{said} ({error})") from None
 
 
-def _model(name: str, crane: str, load: float, out: Path | None, as_json: bool) -> None:
+def say_beyond(option: str, loads: Sequence[float], crane: Any) -> None:
+    """One line on masses in t that the crane cannot hold: what a model says of them is extrapolated."""
+    from winch_friction.importing.expectations import most_held
+
+    most = most_held(crane) / 1e3
+    beyond = [f"{each:g}" for each in loads if each > most]
+    if beyond:
+        show_warnings([
+            f"{option} {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {most:.0f} t, all "
+            "motors at 450 bar or the torque limit); what the models say there is extrapolated"
+        ])  # fmt: skip
+
+
+def _model(name: str, crane: str, load: float | None, out: Path | None, as_json: bool) -> None:
+    from winch_friction.importing.expectations import most_held
     from winch_friction.physics.channels import RPM
     from winch_friction.physics.winch.model_curve import model_curve
     from winch_friction.records.model_file import load_model
 
     model = load_model(name)
     machine = curve_crane(model, crane, name)
+    if load is None:
+        load = USUAL if most_held(machine) >= 1e3 * USUAL else 0.0
     curve = model_curve(model, machine, load=1e3 * load)
+    say_beyond("--load", [load], machine)
     rpm = curve.speed / RPM
     if as_json:
         parameters = {

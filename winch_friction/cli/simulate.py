@@ -39,9 +39,11 @@ def command(
         OptionalTexts, typer.Option(help="Effect to hide in the plant, EFFECT or EFFECT=SIZE (1 = typical).")
     ] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
-    kind: Annotated[str, typer.Option("--format", help="csv, parquet, mcap or db3, for a folder of runs.")] = "csv",
+    kind: Annotated[
+        str, typer.Option("--format", help="csv, parquet, mcap or db3, for a folder of runs; none: csv.")
+    ] = "",
     truth: Annotated[bool, typer.Option(help="Write the plant's truth beside each run.")] = False,
-    force: Annotated[bool, typer.Option(help="Overwrite runs that exist.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", "--force", help="Replace runs that exist.")] = False,
     effects: Annotated[bool, typer.Option("--effects", help="List the effects that can be hidden, and end.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
 ) -> None:
@@ -71,8 +73,9 @@ def command(
     with problems:
         plan = _plan(scenario, seed, out, kind)
         targets = [path for _, _, path in plan]
-        _refuse_overwriting([*targets, *(_truth_of(path) for path in targets if truth)], force)
-        refuse_unwritable(*targets[:1])
+        beside = [_truth_of(path) for path in targets if truth]
+        _refuse_overwriting([*targets, *beside], overwrite)
+        refuse_unwritable(*targets[:1], *beside[:1])
     winch, friction = machine_of(crane or (plan[0][0].crane if plan else ""), model, [], problems)
     problems.say()
     if plant:
@@ -120,8 +123,11 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
     from winch_friction.simulation import load_scenario
     from winch_friction.simulation.campaigns import CAMPAIGNS
 
-    if kind not in ("csv", "parquet", "mcap", "db3"):
+    if kind not in ("", "csv", "parquet", "mcap", "db3"):
         raise InputError(f"--format {kind}: not a kind of run file; use csv, parquet, mcap or db3")
+    if kind and out.suffix and out.suffix != f".{kind}":
+        raise InputError(f"--format {kind}: --out {out} says another kind; leave one of the two out")
+    kind = kind or "csv"
     if name in CAMPAIGNS:
         if out.suffix:
             raise InputError(f"--out {out}: '{name}' is a set of runs and needs a folder")
@@ -130,14 +136,14 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
     return [(scenario, seed, refuse_unknown_kind(out) if out.suffix else out / f"{scenario.name}.{kind}")]
 
 
-def _refuse_overwriting(paths: list[Path], force: bool) -> None:
+def _refuse_overwriting(paths: list[Path], overwrite: bool) -> None:
     from winch_friction.records.runs import BAG_SUFFIXES
 
     for path in paths:
         if path.exists() and path.suffix in BAG_SUFFIXES:
             raise InputError(f"{path}: exists already, and a bag is never replaced; give another --out, or remove it")
-        if path.exists() and not force:
-            raise InputError(f"{path}: exists already; give another --out, or --force to overwrite it")
+        if path.exists() and not overwrite:
+            raise InputError(f"{path}: exists already; give another --out, or --overwrite to replace it")
 
 
 def _simulate_to(

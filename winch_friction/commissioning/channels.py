@@ -55,6 +55,11 @@ def first_contradiction(findings: Sequence[Finding]) -> Finding | None:
     return next((each for each in findings if each.contradicts), None)
 
 
+def runs_say(names: Sequence[str], total: int, verb: str) -> str:
+    """`run_words` with a verb that agrees: 'run a fits', 'all 12 runs fit'."""
+    return f"{run_words(names, total)} {verb}{'s' * (len(names) == 1)}"
+
+
 def run_words(names: Sequence[str], total: int) -> str:
     """'all 12 runs', '3 of 12 runs (a, b, c)', or the run's name where there is one."""
     if total == 1:

@@ -17,6 +17,7 @@ from winch_friction.commissioning.channels import (
     frozen_findings,
     group_findings,
     run_words,
+    runs_say,
     told_slow_clock,
 )
 from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
@@ -192,15 +193,15 @@ def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
 
 
 def _proof(diagnosis: Diagnosis, best: Hypothesis) -> str:
-    told = run_words(best.runs, len(diagnosis.names))
+    told = runs_say(best.runs, len(diagnosis.names), "fit")
     worst = max(diagnosis.closures, key=lambda each: each.before if each.before == each.before else -1.0)
     balance = ""
     if worst.before == worst.before:
         balance = f" (the torque balance of {worst.run} is off by {worst.before:.3g} N m RMS)"
     misfit = f"misfit {diagnosis.score:.3g} -> {best.score:.3g}{balance}"
     if max(best.scores) > CONTRADICTS:
-        return f"with that put right {told} fit the crane better and not well, so there is more amiss: {misfit}"
-    return f"with that put right {told} fit the crane: {misfit}"
+        return f"with that put right {told} the crane better and not well, so there is more amiss: {misfit}"
+    return f"with that put right {told} the crane: {misfit}"
 
 
 def _evidence(diagnosis: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesis]) -> dict[str, object]:
@@ -234,7 +235,8 @@ def _unexplained(diagnosis: Diagnosis, crane: Crane) -> Finding:
         )
     if not crane.drive.hydraulic:
         words = (
-            f"{runs} leave the torque balance open and no single mistake closes it: {off}; of a drive of kind "
+            f"{runs_say(bad, len(diagnosis.names), 'leave')} the torque "
+            f"balance open and no single mistake closes it: {off}; of a drive of kind "
             f"'{crane.drive.kind}' friction and inertia are not known beforehand, so this may be the winch itself: "
             "winch-friction gap says what is missing"
         )
@@ -255,7 +257,7 @@ def _named_crane(runs: Sequence[Run], crane: Crane, others: Mapping[str, Crane])
     if not machines:
         return []
     names = tuple(name for name, own in foreign.items() if own in machines)
-    words = f"{run_words(names, len(runs))} say that they are of crane '{', '.join(machines)}', not of '{crane.name}'"
+    words = f"{runs_say(names, len(runs), 'say')} that they are of crane '{', '.join(machines)}', not of '{crane.name}'"
     return [Finding("error", "crane", words, "", names, {"recorded": machines})]
 
 

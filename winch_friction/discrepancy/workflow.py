@@ -272,3 +272,5 @@ def _check(runs: Sequence[Run], options: GapOptions) -> None:
         raise InputError(f"two runs are called '{twice[0]}'; a run's identity is its file name")
     if not 0.05 <= options.holdout <= 0.6:
         raise InputError(f"--holdout {options.holdout:g} is outside 0.05 ... 0.6")
+    if options.seed < 0:
+        raise InputError(f"seed {options.seed}: give a whole number, 0 or more")

@@ -79,4 +79,4 @@ def verdict_of(outcome: Outcome) -> str:
         return f"{verb['verdict']}: {names}" if names else str(verb["verdict"])
     if "active_share" in verb:
         return f"active {100 * verb['active_share']:.0f} %, peak {verb['feedforward_peak_Nm']:.0f} N m"
-    return "done"
+    return "plausible" if verb.get("plausible") else "done"

@@ -59,7 +59,11 @@ class Problems:
 
 def meant(name: str, known: Iterable[str]) -> str:
     """' did you mean ...?' where a name is nearly a known one, otherwise nothing."""
-    near = get_close_matches(name, sorted(set(known)), n=3, cutoff=0.75)
+    written: dict[str, list[str]] = {}
+    for each in sorted(set(known)):
+        written.setdefault(each.casefold(), []).append(each)  # capitals make no other name
+    close = get_close_matches(name.casefold(), written, n=3, cutoff=0.75)
+    near = [each for key in close for each in written[key]]
     return f" did you mean {' or '.join(near)}?" if near else ""
 
 

@@ -12,7 +12,7 @@ from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.winch.crane import SLOWEST_FOR_POWER, Crane, Drive, Drum
 from winch_friction.records.atomic import shipped
 from winch_friction.records.schemas import with_all_problems
-from winch_friction.records.strict_yaml import Section, as_quantity, read_yaml
+from winch_friction.records.strict_yaml import Section, as_quantity, expect_kind, read_yaml
 
 SCHEMA = "winch_friction.crane/1"
 RATINGS = {"rated_pressure": "Pa", "rated_speed": "rad/s", "rated_load": "kg"}  # optional
@@ -22,6 +22,7 @@ def load_crane(name: str | Path) -> Crane:
     """A crane by path or shipped name; raises `InputError` for anything that is not a complete crane file."""
     path = shipped("cranes", name)
     content = read_yaml(path)
+    expect_kind(content, "crane", str(path))
     try:
         return crane_from_content(content, str(path))
     except InputError as error:

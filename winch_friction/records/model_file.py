@@ -16,7 +16,7 @@ from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.records.atomic import shipped, write_text
 from winch_friction.records.corrections import corrections_content, read_corrections, read_tables, tables_content
 from winch_friction.records.schemas import with_all_problems
-from winch_friction.records.strict_yaml import Section, finite, parse_yaml, read_yaml, spread
+from winch_friction.records.strict_yaml import Section, expect_kind, finite, parse_yaml, read_yaml, spread
 
 SCHEMA = "winch_friction.model/1"
 SYMMETRIC = 1e-6  # what a correlation may miss by that was written with six digits or more
@@ -26,6 +26,7 @@ def load_model(name: str | Path) -> FrictionModel:
     """A model by path or shipped name; raises `InputError` for anything that is not a complete model file."""
     path = shipped("models", name)
     content = read_yaml(path)
+    expect_kind(content, "model", str(path))
     try:
         return model_from_content(content, str(path))
     except InputError as error:

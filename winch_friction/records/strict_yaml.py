@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,22 @@ import yaml
 
 from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, unknown_key
+
+
+def kind_said(content: Any) -> str:
+    """Which kind of file a content says that it is: 'crane' of `schema: winch_friction.crane/1`; '' of no such word."""
+    schema = content.get("schema") if isinstance(content, Mapping) else None
+    said = re.fullmatch(r"winch_friction\.(\w+)/\d+", schema) if isinstance(schema, str) else None
+    return said[1] if said else ""
+
+
+def expect_kind(content: Any, kind: str, where: str) -> None:
+    """Raise `InputError` where a file says of itself that it is of another kind of this package's: what else it breaks
+    of the rules of `kind` is no news then."""
+    said = kind_said(content)
+    if said not in ("", kind):
+        schema = content["schema"]
+        raise InputError(f"{where}: this is a {said} file (schema '{schema}'), and a {kind} file is asked for")
 
 
 class Section:

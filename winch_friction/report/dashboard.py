@@ -19,7 +19,8 @@ _PANELS = (
 def dashboard_page() -> str:
     """The page as text; it listens to `events` beside it."""
     figures = "".join(
-        f'<figure hidden aria-label="{title}"><h3>{title}</h3><div id="{name}" style="height:260px"></div>'
+        f'<figure hidden aria-label="{title}"><h3>{title}</h3>'
+        f'<div class="canvas" id="{name}" style="height:260px"></div>'
         f"<figcaption>{about}</figcaption></figure>"
         for name, title, about in _PANELS
     )

@@ -40,7 +40,7 @@ def write_fleet_report(
         TextSection("What changed", _changes(content)),
         TextSection("Over the months", _months(store, content)),
         TextSection("Per crane", _per_crane(outcomes)),
-        TextSection("Per recording", table_html(("recording", "exit", "s", "outcome"), _outcome_rows(outcomes))),
+        TextSection("Per recording", _per_recording(outcomes)),
     ]
     said = f"{cranes} cranes, {len(outcomes)} results of {verb}"
     return write_report(path, f"Fleet: {verb}", sections, said, provenance)
@@ -74,7 +74,7 @@ def _size(step: Mapping[str, Any]) -> str:
 
 def _changes(content: Mapping[str, Any]) -> str:
     steps = [
-        (s["crane"], s["trait"].replace("_", " "), s["month"], _size(s), f"{s['p_value']:.1g}")
+        (s["crane"], s["trait"].replace("_", " "), s["month"], _size(s), float(f"{s['p_value']:.1g}"))
         for s in content["steps"]
     ]
     unlike = [
@@ -105,8 +105,9 @@ def _per_crane(outcomes: Sequence[Outcome]) -> str:
     return table_html(("crane", "worked", "last outcome"), rows)
 
 
-def _outcome_rows(outcomes: Sequence[Outcome]) -> list[tuple[str, ...]]:
-    return [(o.recording, str(o.status), f"{o.seconds:.1f}", verdict_of(o)) for o in outcomes]
+def _per_recording(outcomes: Sequence[Outcome]) -> str:
+    rows = [(o.recording, o.status, round(o.seconds, 1), verdict_of(o)) for o in outcomes]
+    return table_html(("recording", "exit status", "time [s]", "outcome"), rows)
 
 
 def _months(store: Path, content: Mapping[str, Any]) -> str:
@@ -121,6 +122,9 @@ def _months(store: Path, content: Mapping[str, Any]) -> str:
     for row in frame.itertuples():
         rows.setdefault((row.crane, row.name), []).append((row.time, row.value, row.std))
     series = monthly(rows)
+    months = {month for each in series for month in each.months.tolist()}
+    if len(months) == 1:
+        return f"<p>All recordings are of one month, {month_text(months.pop())}: there is nothing to follow yet.</p>"
     changed = {step["crane"] for step in content["steps"]}
     cranes = sorted({each.crane for each in series}, key=lambda name: (name not in changed, name))
     drawn = set(cranes[:MOST_DRAWN])
@@ -141,7 +145,7 @@ def _plot(trait: str, series: Sequence[Series], changed: set[str]) -> Plot:
     ]
     lines = [
         Line(each.crane if each.crane in changed else "no change", MONTH, label, k,
-             role="plain" if each.crane in changed else "other")
+             role="plain" if each.crane in changed else "other", kind="lines" if len(each.months) > 1 else "dots")
         for k, each in enumerate(series)
     ]  # fmt: skip
     said = f"{TRAIT_WORDS[trait][0].capitalize()}, by month; a line is a crane, those that changed in colour."

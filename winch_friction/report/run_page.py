@@ -27,7 +27,7 @@ def write_run_page(path: Path, runs: Sequence[Run], crane: Crane | None, model: 
     for run in runs:
         friction = _friction(run, crane, model) if crane and model else None
         sections.append(TextSection(run.name, plot_html(run_plot(run, friction))))
-    return write_report(path, "Runs", sections, f"{len(runs)} runs")
+    return write_report(path, "Runs", sections, f"{len(runs)} run{'s' * (len(runs) > 1)}")
 
 
 def channel_rows(run: Run) -> list[dict[str, Any]]:

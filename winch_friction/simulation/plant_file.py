@@ -6,7 +6,7 @@ from typing import Any, Literal
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import shipped
-from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.strict_yaml import expect_kind, read_yaml
 from winch_friction.simulation.pydantic_v1 import Field, StrictStr
 from winch_friction.simulation.quantities import (
     CubicMetres,
@@ -72,7 +72,9 @@ class PlantFile(Strict):
 def load_plant(name: str | Path) -> PlantFile:
     """A plant by path or shipped name; raises `InputError` in one line."""
     path = shipped("plants", name)
-    return validated(PlantFile, read_yaml(path), str(path))
+    content = read_yaml(path)
+    expect_kind(content, "plant", str(path))
+    return validated(PlantFile, content, str(path))
 
 
 def refuse_other_plant(scenario: Any, plant: PlantFile, crane: Crane) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from winch_friction.physics.errors import InputError
 from winch_friction.records.atomic import shipped
-from winch_friction.records.strict_yaml import as_quantity, read_yaml
+from winch_friction.records.strict_yaml import as_quantity, expect_kind, read_yaml
 from winch_friction.simulation.pydantic_v1 import Field, StrictStr, root_validator, validator
 from winch_friction.simulation.quantities import (
     CubicMetres,
@@ -240,5 +240,6 @@ def load_scenario(name: str | Path) -> Scenario:
 def scenario_from_content(content: Any, where: str = "scenario") -> Scenario:
     """A scenario from parsed YAML."""
     if not isinstance(content, dict):
-        raise InputError(f"{where}: expected a mapping of keys")
+        raise InputError(f"{where}: expected a mapping of keys (YAML): is this a scenario file?")
+    expect_kind(content, "scenario", where)
     return validated(Scenario, content, where)

@@ -76,6 +76,8 @@ class Simulator:
         self._reset()
 
     def _draw(self, seed: int) -> None:
+        if seed < 0:
+            raise InputError(f"seed {seed}: give a whole number, 0 or more")
         sensors, controller = (np.random.default_rng([seed, stream]) for stream in (1, 2))
         time = np.arange(self.periods + 1, dtype=np.float64) * self.period
         self.motion = prescribed_motion(self.scenario, self.crane, time, seed, self._full_speed())

@@ -39,8 +39,9 @@
       place.parentElement.hidden = !data.length;
       if (data.length) Plotly.react(place, data, {paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: {color: c.ink, family: "system-ui"},
         margin: {l: 60, r: 10, t: 8, b: 42}, legend: {orientation: "h", y: 1, yanchor: "bottom", font: {color: c.ink}, itemsizing: "constant"}, uirevision: "kept", showlegend: true,
+        modebar: {bgcolor: "rgba(0,0,0,0)", color: c.ink, activecolor: c.ink},
         xaxis: {...axis, title: {text: panel.x || "time before now [s]", font: {color: c.ink}}}, yaxis: {...axis, title: {text: panel.y, font: {color: c.ink}}}},
-        {responsive: true, displaylogo: false, displayModeBar: "hover"});
+        {responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"]});
     }
   };
   const fill = (id, rows) => {
@@ -63,7 +64,7 @@
   const show = (frame) => {
     keep(frame.points);
     fill("state", frame.state);
-    fill("estimates", frame.estimates.map((e) => [e.parameter, short(e.value), short(e.value - e.std) + " … " + short(e.value + e.std), e.status]));
+    fill("estimates", frame.estimates.map((e) => [e.parameter, short(e.value), short(e.value - e.std) + "\u00a0… " + short(e.value + e.std), e.status]));
     fill("inputs", frame.inputs.map((e) => [e.input, short(e.rate), short(e.age)]));
     text("faults", frame.faults.length ? frame.faults.join("; ") : "no fault");
     document.getElementById("faults").className = frame.faults.length ? "bad" : "good";

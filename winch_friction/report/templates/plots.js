@@ -2,10 +2,10 @@
   "use strict";
   // colours that people with any colour vision tell apart; dashes keep them apart in print
   const LIGHT = {ink: "#1d2126", faint: "#59616b", grid: "#e3e5e8", card: "#ffffff", measured: "#1d2126", before: "#b34700",
-    after: "#0062a3", noise: "#59616b", truth: "#8a8f96", other: "#b9bec5", low: "#0062a3", high: "#b34700", mid: "#f4f4f2",
+    after: "#0062a3", noise: "#59616b", truth: "#8a8f96", other: "#8d939a", low: "#0062a3", high: "#b34700", mid: "#f4f4f2",
     plain: ["#0062a3", "#b34700", "#00754f", "#9c3d7a", "#5b4db3", "#806600", "#2d7f94", "#a03d38"]};
   const DARK = {ink: "#e4e7ea", faint: "#a3adb8", grid: "#343b43", card: "#1c2025", measured: "#f2f4f6", before: "#ffa25c",
-    after: "#62b8f5", noise: "#a3adb8", truth: "#8b949e", other: "#5d6670", low: "#62b8f5", high: "#ffa25c", mid: "#2a3037",
+    after: "#62b8f5", noise: "#a3adb8", truth: "#8b949e", other: "#68727d", low: "#62b8f5", high: "#ffa25c", mid: "#2a3037",
     plain: ["#62b8f5", "#ffa25c", "#5fd0a0", "#e08fc4", "#a99cf0", "#d6b94a", "#7cc7da", "#ef918b"]};
   const DASH = {before: "6px,3px", noise: "2px,3px", truth: "solid", measured: "solid", after: "solid"};
   const WIDTH = {measured: 1.6, before: 1.4, after: 1.8, truth: 3, noise: 1.2, other: 1};

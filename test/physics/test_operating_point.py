@@ -58,7 +58,7 @@ def test_port_a_is_the_higher_where_nobody_says():
             operating_point(**common, groups=[group])
 
 
-POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power")
+POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power", "line_each_motor")
 
 
 @pytest.mark.parametrize("name", POWERS)

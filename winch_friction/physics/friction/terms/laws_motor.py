@@ -102,6 +102,11 @@ n_l = Parameter("n_l", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponen
 b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
 )
+p_le = Parameter("p_le", "Pa", 2e5, upper=1e9, doc="pressure lost in each motor's own line at 2000 rpm, full stroke")
+n_le = Parameter("n_le", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow of each motor")
+b_le = Parameter(
+    "b_le", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
+)
 c_hi = Parameter("c_hi", "m^3/rad", 5e-7, lower=-1e-4, upper=1e-4, doc="loss per pressure at the high port")
 K_pA = Parameter("K_pA", "m^3/rad", 5e-7, upper=1e-4, doc="loss per pressure at port A")
 K_pB = Parameter("K_pB", "m^3/rad", 5e-7, upper=1e-4, doc="loss per pressure at port B")
@@ -154,6 +159,10 @@ notch_any_stroke = _motor(
 line_pressure_power = _motor(
     "line_pressure_power", p_l.symbol * D * (n * D * w / FULL_FLOW + _TINY) ** n_l.symbol * (1 + b_l.symbol * s),
     (p_l, n_l, b_l), "Blasius 1913 for 1.75, Hagen-Poiseuille for 1; a check valve opens one way", "fluid",
+)  # fmt: skip
+line_each_motor = _motor(
+    "line_each_motor", p_le.symbol * D * (_x * _w + _TINY) ** n_le.symbol * (1 + b_le.symbol * s), (p_le, n_le, b_le),
+    "Blasius 1913, Hagen-Poiseuille, of motors that each have a line or a valve of their own", "fluid",
 )  # fmt: skip
 case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")
 # one port is always the same one, which the high port is not where either may be; together they are the sum of both

@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy import workflow as workflow_module
+from winch_friction.discrepancy.adequacy import of_names, supplying
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -1030,4 +1031,8 @@ def test_a_set_that_leaves_out_more_names_than_it_has_room_for_is_no_answer(monk
     monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
     result = standing_module.standing(None, None, None, trial.search, np.random.default_rng(0))
     assert (result is trial) is told
-    assert (f"wave is not told from other, {', '.join(names)}" in result.search.verdict.refused) is not told
+    said = f"wave is not told from other, {', '.join(names)}"
+    assert (said in result.search.verdict.refused) is not told
+    asked = of_names(selection.untold)
+    assert asked.met is told
+    assert (said in asked.sentence and supplying([asked]) == "experiment_loads") is not told

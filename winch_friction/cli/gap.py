@@ -248,8 +248,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
-            value = told_apart(check["value"], check["needed"])
-            print(f"lacking: {check['what']} {value} {check['unit']}, needed {check['needed']:g}")
+            value, unit_of = told_apart(check["value"], check["needed"]), check["unit"].replace("1", "")
+            print(f"lacking: {check['what']} {value} {unit_of}".rstrip() + f", needed {check['needed']:g}")
     if gap["before"] is not None:
         print(
             f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "

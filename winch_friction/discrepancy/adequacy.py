@@ -19,6 +19,7 @@ from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
 
 SWING = "longest record, of a load whose swing on its wire is not told"
+TELLING = "runs that tell more effects apart"
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
@@ -124,6 +125,11 @@ def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Ch
     return _at_least(SWING, longest, LIMITS.swing_told, "s")
 
 
+def of_names(untold: str) -> Check:
+    """Whether the runs tell one name from all others; `untold` says which they do not."""
+    return _at_least(f"{TELLING} ({untold})" if untold else TELLING, 0.0 if untold else 1.0, 1.0)
+
+
 def _untold(run: PreparedRun, crane: Crane) -> bool:
     """Whether a run may hold a swing that it does not tell: none was found in heave compensation, what a found one
     began with has not died when its samples begin to count, or they were too few to look for one on a wire that gives.
@@ -172,7 +178,8 @@ def supplying(checks: Sequence[Check]) -> str:
     lacking = {check.what for check in checks if not check.met}
     if SWING in lacking:
         return "ahc_55t_215"
-    return "experiment_loads" if "loads" in lacking else "test_02"
+    many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
+    return "experiment_loads" if many else "test_02"
 
 
 # -- runs that are locked away

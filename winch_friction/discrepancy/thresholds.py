@@ -55,7 +55,7 @@ class Thresholds:
     rival_share: float = 0.03  # of the effect's own gain: a rival within it does as well for any purpose
     rival_worth: float = 0.5  # of the effect's own gain that a rival must reach to be considered
     looked_at_closer: int = 4  # rivals whose shapes are refined like that of what was found
-    most_names: int = 3  # in a set, which is no answer where it leaves out more than that
+    most_names: int = 3  # in a set, which is no answer where it leaves out more than those
     free_charge: float = 0.05  # of what a flexible member saves, that a law of the literature may save less
     plain_first: float = 1e-3  # of what is saved: of laws that do the same, the one that every machine has
     grammar_heads: int = 6  # single factors that are tried together with every other

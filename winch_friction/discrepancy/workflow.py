@@ -215,6 +215,9 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         search = search_runs(split, widened(given), options, rng)
     options.told("proving on the locked runs")
     trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    names = adequacy.of_names(search.selection.untold)
+    if trial.search.verdict.kind == UNEXPLAINED and not names.met:
+        return insufficient([*checks, names], notes, crane, model, (given, split))
     if trial.search.verdict.kind != NOTHING and not options.candidates:
         options.told("drawing surfaces")
         trial = by_surfaces(split, crane, options, trial, rng)

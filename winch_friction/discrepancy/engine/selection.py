@@ -61,10 +61,10 @@ class Selection:
 
     @property
     def untold(self) -> str:
-        """Why it is no answer: a set that leaves out more names than it has room for; empty where none does."""
-        others = [(f, [*(each.name for each in f.rivals), *f.no_room]) for f in self.found]
-        crowded = [(f.slot.name, ", ".join(names)) for f, names in others if len(f.no_room) > LIMITS.most_names]
-        return "; ".join(f"{name} is not told from {names}" for name, names in crowded)
+        """Which names are not told from which, of a set that leaves out more than it has room for; empty without."""
+        many = [f for f in self.found if len(f.no_room) > LIMITS.most_names]
+        others = [", ".join([*(each.name for each in f.rivals), *f.no_room]) for f in many]
+        return "; ".join(f"{f.slot.name} is not told from {names}" for f, names in zip(many, others, strict=True))
 
 
 def select(

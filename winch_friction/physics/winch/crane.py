@@ -184,8 +184,8 @@ class Crane:
     >>> crane = wf.load_crane("crane_150t")
     >>> crane.motor_count("active"), crane.motor_total(["active", "passive"])
     (3, 11)
-    >>> round(crane.drum_torque(55e3) / 1e3), round(crane.load_inertia(55e3), 2)  # kN m, kg m^2
-    (613, 1.14)
+    >>> round(crane.drum_torque(55e3) / 1e3), round(crane.load_inertia(55e3), 2), crane.speed_scale  # kN m, kg m^2
+    (613, 1.14, 1.0)
     """
 
     name: str

@@ -68,7 +68,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
-    monkeypatch.setattr(workflow, "search_runs", lambda *_: None)
+    monkeypatch.setattr(workflow, "search_runs", lambda *_: SimpleNamespace(verdict=SimpleNamespace(untold=False)))
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "standing", lambda *_: None)
     monkeypatch.setattr(workflow, "not_one_law", lambda *_: trial(first))

@@ -31,7 +31,7 @@ class Found:
 
     @property
     def verdict(self):
-        return SimpleNamespace(kind=self.kind)
+        return SimpleNamespace(kind=self.kind, untold=False)
 
 
 @dataclass(frozen=True)

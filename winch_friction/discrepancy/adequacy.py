@@ -126,8 +126,8 @@ def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Ch
 
 
 def of_names(untold: str) -> Check:
-    """Whether the runs tell one name from all others; `untold` says which they do not."""
-    return _at_least(f"{TELLING} ({untold})" if untold else TELLING, 0.0 if untold else 1.0, 1.0)
+    """That the runs do not tell names apart; `untold` says which."""
+    return _at_least(f"{TELLING} ({untold})", 0.0, 1.0)
 
 
 def _untold(run: PreparedRun, crane: Crane) -> bool:

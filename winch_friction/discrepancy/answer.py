@@ -220,6 +220,7 @@ class Verdict:
     kind: str
     refused: str = ""
     leaves: bool = False  # refused for nothing but what the names leave of the training runs
+    untold: bool = False  # refused for nothing but the many others that do as well
 
 
 def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], rippled: bool = False) -> Verdict:
@@ -239,8 +240,6 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
         return Verdict(UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it")
-    if selection.untold:
-        return Verdict(UNEXPLAINED, selection.untold)
     whole, whole_before = cross.excess(selection.final), max(cross.excess(selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)
@@ -249,6 +248,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
         names = ", ".join(selection.final.names)
         why = f"{names} leaves {100 * after / before:.0f} % of the gap above the noise floor"
         return Verdict(UNEXPLAINED, why, leaves=True)
+    if selection.untold:
+        return Verdict(UNEXPLAINED, selection.untold, untold=True)
     return Verdict(AMBIGUOUS if any(f.rivals for f in selection.found) else MISSING)
 
 

@@ -215,8 +215,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         search = search_runs(split, widened(given), options, rng)
     options.told("proving on the locked runs")
     trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    names = adequacy.of_names(search.selection.untold)
-    if trial.search.verdict.kind == UNEXPLAINED and not names.met:
+    if trial.search.verdict.kind == UNEXPLAINED and search.verdict.untold:
+        names = adequacy.of_names(search.verdict.refused)
         return insufficient([*checks, names], notes, crane, model, (given, split))
     if trial.search.verdict.kind != NOTHING and not options.candidates:
         options.told("drawing surfaces")

@@ -114,7 +114,9 @@ def _bar() -> Progress:
         TimeRemainingColumn(),
     )
     watched = stderr.is_terminal and not (Modes.quiet or Modes.plain)
-    return Progress(*columns, console=stderr, transient=True, disable=not watched)
+    # rich 13.7 (Ubuntu 24.04's) ends a bar that is not drawn with an empty line
+    console = stderr if watched else Console(quiet=True)
+    return Progress(*columns, console=console, transient=True, disable=not watched)
 
 
 def _plain(value: Any) -> str:

@@ -24,6 +24,12 @@ VERBS = {
     "gap, a next experiment": (
         ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "experiment_loads.yaml", "gap.json",
     ),
+    "gap, runs that supply what lacks": (
+        ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "test_02.yaml", "gap.json",
+    ),
+    "gap, a swing that is not told": (
+        ["gap", RUN, *MACHINE], "winch_friction.discrepancy.workflow.find_gap", "ahc_55t_215.yaml", "gap.json",
+    ),
     "check": (
         ["check", RUN, *MACHINE], "winch_friction.commissioning.commissioning.check", "check.html", "check.json",
     ),

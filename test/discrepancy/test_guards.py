@@ -782,6 +782,16 @@ def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatc
     assert standing_module.standing(None, None, None, search, np.random.default_rng(0)).search.verdict.kind == kind
 
 
+def standing_of(monkeypatch, trial, refit):
+    """What stands of a trial whose names the locked runs bear out, beside a refit that leaves so much."""
+    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
+    monkeypatch.setattr(standing_module, "_stands", lambda *_: (trial, ""))
+    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
+    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
+    return standing_module.standing(None, None, None, trial.search, np.random.default_rng(0))
+
+
 @pytest.mark.parametrize(("left", "stand"), [(0.2, True), (2.0, False)])
 def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatch, left, stand):
     """Though the locked runs bear them out and miss each of them."""
@@ -791,12 +801,7 @@ def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatc
     search = _Whole(cross, Selection(cross.explain(()), final, found), Verdict(MISSING))
     both = Trial(search, None, None, side(3.0 * WAVE + noise(), left * OTHER + noise(1)))
     refit = side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1))
-    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
-    monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
-    monkeypatch.setattr(standing_module, "_stands", lambda *_: (both, ""))
-    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
-    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
-    result = standing_module.standing(None, None, None, search, np.random.default_rng(0))
+    result = standing_of(monkeypatch, both, refit)
     assert (result is both) is stand
     assert ("together leave" in result.search.verdict.refused) is not stand
 
@@ -1025,12 +1030,7 @@ def test_a_set_that_leaves_out_more_names_than_it_has_room_for_is_no_answer(monk
     assert (verdict.kind == AMBIGUOUS) is (not verdict.untold) is told
     trial = Trial(_Whole(cross, selection, Verdict(AMBIGUOUS)), None, None, side(3.0 * WAVE + noise(), noise(1)))
     refit = side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1))
-    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
-    monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
-    monkeypatch.setattr(standing_module, "_stands", lambda *_: (trial, ""))
-    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
-    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
-    result = standing_module.standing(None, None, None, trial.search, np.random.default_rng(0))
+    result = standing_of(monkeypatch, trial, refit)
     assert (result is trial) is told
     said = f"wave is not told from other, {', '.join(names)}"
     assert (said in result.search.verdict.refused) is not told

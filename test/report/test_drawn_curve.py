@@ -7,12 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import Effect
-from winch_friction.discrepancy.assembly import _amounts
+from winch_friction.discrepancy.assembly import _amounts, insufficient
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
 from winch_friction.physics.friction.table import Table, tabulated
 from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
 from winch_friction.report.gap import _curve, _effect
 from winch_friction.report.gap_words import next_steps
 
@@ -99,3 +102,12 @@ def test_an_experiment_that_parts_nothing_is_not_asked_for(note, parted):
     (said,) = next_steps(SimpleNamespace(next_experiment=plan, effects=[], verdict="ambiguous", adequacy=()))
     assert ("winch-friction simulate" in said) is parted
     assert ("another channel" in said) is not parted
+
+
+def test_runs_that_would_supply_what_lacks_are_asked_for():
+    """Not refused as an experiment that parts nothing: there is nothing for it to part."""
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    first, second = next_steps(insufficient([of_names("coulomb is not told from brake_drag")], (), crane, model))
+    assert "winch-friction simulate experiment_loads.yaml" in first
+    assert "supplies what these runs lack" in first
+    assert "coulomb is not told from brake_drag" in second

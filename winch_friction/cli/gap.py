@@ -28,7 +28,7 @@ Examples:
 
 MODEL = "a6vm215_crane2"  # of the 150 t crane, where none is named
 REPLACED = ("model.yaml", "report.html", "addition.csv", "proposal_*.py", "proposal_*.yaml")
-WRITTEN = ("gap.json", *REPLACED, "experiment_*.yaml", "ahc_55t_160.yaml")  # the last: a next experiment
+WRITTEN = ("gap.json", *REPLACED, "experiment_*.yaml", "ahc_55t_*.yaml", "test_02.yaml")  # the last: next experiments
 app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
 
@@ -248,7 +248,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
-            value, unit_of = told_apart(check["value"], check["needed"]), check["unit"].replace("1", "")
+            value, unit_of = told_apart(check["value"], check["needed"]), "" if check["unit"] == "1" else check["unit"]
             print(f"lacking: {check['what']} {value} {unit_of}".rstrip() + f", needed {check['needed']:g}")
     if gap["before"] is not None:
         print(

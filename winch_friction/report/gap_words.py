@@ -107,7 +107,12 @@ def next_steps(result: "GapResult") -> list[str]:
     """What to do now, in order."""
     steps: list[str] = []
     plan: Any = result.next_experiment
-    if plan and plan["note"]:  # the best of them parts nothing: whoever runs it learns nothing
+    if plan and not plan["separates"]:
+        steps.append(
+            f"Run `winch-friction simulate {plan['scenario']}`, or its likeness on the crane: it supplies what these "
+            "runs lack."
+        )
+    elif plan and plan["note"]:  # the best of them parts nothing: whoever runs it learns nothing
         steps.append(
             f"No experiment at hand separates {' from '.join(plan['separates'])} (the best one by "
             f"{plan['expected_z']:.1f} sigma): another channel must decide."

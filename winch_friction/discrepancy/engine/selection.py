@@ -62,9 +62,9 @@ class Selection:
     @property
     def untold(self) -> str:
         """Which names are not told from which, of a set that leaves out more than it has room for; empty without."""
-        many = [f for f in self.found if len(f.no_room) > LIMITS.most_names]
-        others = [", ".join([*(each.name for each in f.rivals), *f.no_room]) for f in many]
-        return "; ".join(f"{f.slot.name} is not told from {names}" for f, names in zip(many, others, strict=True))
+        many = (f for f in self.found if len(f.no_room) > LIMITS.most_names)
+        sets = ((f.slot.name, ", ".join([*(each.name for each in f.rivals), *f.no_room])) for f in many)
+        return "; ".join(f"{name} is not told from {others}" for name, others in sets)
 
 
 def select(

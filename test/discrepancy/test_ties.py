@@ -11,6 +11,7 @@ from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.families import literature
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.ties import TIES, _best_pair, member_candidate
 from winch_friction.discrepancy.workflow import find_gap
@@ -121,3 +122,21 @@ def test_what_is_tied_is_known_as_a_combination_at_the_length_that_was_run():
 
 def test_what_is_known_alone_needs_no_combination():
     assert _best_pair(*_between(0.0, 2000.0)) is None
+
+
+def _traces(name, **fixed):
+    """Unit vectors over all runs of a law's shapes that have these values."""
+    runs, _ = _prepared()
+    law = next(each for each in literature() if each.term is not None and each.term.name == name)
+    for shape in law.shapes(runs):
+        if fixed.items() <= shape.values.items():
+            own = np.concatenate([law.columns(run, shape.values)[run.used, 0] for run in runs])
+            yield own / np.linalg.norm(own)
+
+
+def test_a_line_of_each_motors_own_is_a_ports_loss_whichever_way_the_oil_passes():
+    """Every one-way shape of a port that goes with the flow through its motor is one of the line, but for its size."""
+    lines, ports = list(_traces("line_each_motor", n_le=2.0)), list(_traces("port_one_way", m_po=3.0))
+    assert len(ports) == 2
+    for port in ports:
+        assert max(abs(float(port @ line)) for line in lines) == pytest.approx(1.0, abs=1e-4)

@@ -891,6 +891,24 @@ def test_a_name_refused_for_what_it_leaves_of_the_training_runs_stands_by_the_lo
         assert full.search.verdict.kind == MISSING
 
 
+@pytest.mark.parametrize(("train", "stands"), [(1.0, True), (1.9, True), (2.5, False), (3.2, False)])
+def test_a_name_that_leaves_most_of_the_training_runs_gap_is_not_what_shows_there(train, stands):
+    """Of 3 of a wave 1.9 are less than half of the square above the floor of 1; a robust search sets the rest aside."""
+    cross = crossfit(3.0 * WAVE + noise())
+    final = cross.explain(SLOTS[:1])
+    found = (Finding(SLOTS[0], (), 0.0, 0.1, 1.0),)
+    search = _Tried(cross, Selection(cross.explain(()), final, found), Verdict(MISSING))
+
+    def trial_of(own):
+        sides = [side(3.0 * np.sqrt(2) * WAVE, left * np.sqrt(2) * OTHER + noise(1)) for left in (train, 0.2)]
+        return Trial(own, SimpleNamespace(parameters={}), *[replace(each, noise_floor=0.8) for each in sides])
+
+    refit = Trial(search, None, None, side(3.0 * np.sqrt(2) * WAVE + noise(), 3.0 * np.sqrt(2) * WAVE + noise(1)))
+    full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
+    assert (full is not None) is stands
+    assert ("training gap" in why) is not stands
+
+
 @pytest.mark.parametrize(("late", "step", "named"), [(0.004, 0.02, False), (0.014, 0.01, True), (0.014, 0.02, True)])
 def test_a_delay_within_half_a_sample_is_no_name(late, step, named):
     found = {"signal_delay": {"tau": SimpleNamespace(value=-late)}}

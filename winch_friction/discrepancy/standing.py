@@ -19,6 +19,7 @@ from winch_friction.discrepancy.proof import (
     at_the_floor,
     far_off,
     is_minor,
+    leaves_most,
     leaves_too_much,
     nobodys,
     prove,
@@ -126,7 +127,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         worse = "".join(worse_runs(full.holdout, rng))
         return (None, worse) if worse else (full, "")
     proof = prove(names, refit.holdout, full.holdout, rng)
-    why = proof.why or leaves_too_much(full.holdout) or _within_a_sample(full)
+    why = proof.why or leaves_too_much(full.holdout) or leaves_most(full.train) or _within_a_sample(full)
     return (None, why) if why else (full, "")
 
 

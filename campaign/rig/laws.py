@@ -143,7 +143,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "high_pressure_mixed": (
         Law("cubic", _motor(3.6, p=3.0)), Law("film_builds_up", _motor(14.0, p=2.0, fade=60.0)),
-        Law("film_above_a_pressure", _motor(40.0, p=1.0, p0=90 * BAR, fade=60.0), held_out=True),
+        Law("film_above_a_pressure", _motor(40.0, p=1.0, p0=90 * BAR, fade=60.0)),
+        Law("film_breaks_at_a_pressure", _motor(14.0, p=0.3, p0=110 * BAR, fade=90.0), held_out=True),
     ),
     "slip_leakage": (
         Law("cold_and_warm", _leak(1.0, 0.0)), Law("gap_opens", _leak(2.0, 1.0)),

@@ -28,6 +28,7 @@ TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may 
 STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
+ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
 POWERS = (0.5, 1.5, 2.0, 3.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL = ("oil_temperature",)
@@ -60,6 +61,7 @@ def literature() -> list[Candidate]:
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
         # at lower speeds and in proportion to the pressure it is a Stribeck curve
         _of("high_pressure_mixed", "high_pressure_film", {"n_hf": (1.5, 2.0, 3.0), "w_hf": (20.0, 60.0, 180.0)}),
+        _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0, 2000.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},

@@ -89,6 +89,9 @@ n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="expone
 K_hf = Parameter("K_hf", "N*m", 10.0, upper=500.0, doc="mixed loss at 200 bar and standstill")
 n_hf = Parameter("n_hf", "1", 2.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 w_hf = Parameter("w_hf", "rad/s", 60.0, lower=1.0, upper=500.0, shape=True, doc="speed over which a film builds up")
+K_ho = Parameter("K_ho", "N*m", 10.0, upper=500.0, doc="mixed loss 200 bar above the onset and at standstill")
+p_ho = Parameter("p_ho", "Pa", 100 * BAR, lower=20 * BAR, upper=500 * BAR, shape=True, doc="pressure of the onset")
+w_ho = Parameter("w_ho", "rad/s", 60.0, lower=1.0, upper=5000.0, shape=True, doc="speed over which a film builds up")
 c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")
 w_np = Parameter("w_np", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
 a_np = Parameter("a_np", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
@@ -146,6 +149,12 @@ high_pressure_power = _motor(
 high_pressure_film = _motor(
     "high_pressure_film", K_hf.symbol * _p**n_hf.symbol * sp.exp(-w / w_hf.symbol), (K_hf, n_hf, w_hf),
     "paper 1 eq 10, C_m, which fades as a film builds up with the speed (Stribeck 1902)",
+)  # fmt: skip
+high_pressure_onset = _motor(
+    "high_pressure_onset",
+    K_ho.symbol * sp.Piecewise((0.0, p <= p_ho.symbol), (p - p_ho.symbol, True)) / FULL_PRESSURE
+    * sp.exp(-w / w_ho.symbol), (K_ho, p_ho, w_ho),
+    "paper 1 eq 10, C_m, of a film that carries up to a pressure, and builds up with the speed (Stribeck 1902)",
 )  # fmt: skip
 notch_power = _motor(
     "notch_power",

@@ -14,25 +14,28 @@ YIELDS = 0.004  # of the radius per layer below, at 50 t
 GROWS = 0.6  # with the load's power: the law of the package has any
 
 
-def yielding(run, crane):
+def yielding(run, crane, power):
     """The run with the pressures of a rope that lies lower the more layers are below it and the more hangs there."""
     groups = [name for name in ("main", "active") if f"{name}.pressure_a" in run.columns]
     swept = sum(crane.groups[name] * run[f"{name}.displacement"] for name in groups)
     layer = np.rint(run["wire_layer"]).astype(int)
     lever = np.array(crane.drum.layer_radii)[layer - 1] / crane.gear_ratio
-    share = YIELDS * (layer - 1) * (run["hook_load"] / 5e4) ** GROWS
+    share = YIELDS * (layer - 1) ** power * (run["hook_load"] / 5e4) ** GROWS
     more = {f"{name}.pressure_a": run[f"{name}.pressure_a"] - share * run["hook_load"] * GRAVITY * lever / swept
             for name in groups}  # fmt: skip
     return replace(run, columns={**run.columns, **more})
 
 
 @pytest.mark.long
-def test_layers_that_yield_under_the_load_are_a_radius(crane_150t, crane2_model):
-    runs = [yielding(run, crane_150t) for run in runs_with(4411, "quiet", length=0.3)]
+@pytest.mark.parametrize(
+    ("power", "law", "exponent"), [(1.0, "layer_bedding", "n_lb"), (0.5, "layer_yielding", "n_ly")]
+)
+def test_layers_that_yield_under_the_load_are_a_radius(crane_150t, crane2_model, power, law, exponent):
+    runs = [yielding(run, crane_150t, power) for run in runs_with(4411, "quiet", length=0.3)]
     assert len({float(layer) for run in runs for layer in run["wire_layer"]}) > 2
     result = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
     assert names_of(result)[0] >= {"layer_radius"}
     assert len(result.effects) == 1
-    assert result.effects[0].law_name == "layer_bedding"
-    assert abs(result.model.as_dict()["n_lb"] - (1.0 + GROWS)) < 0.2
+    assert result.effects[0].law_name == law
+    assert abs(result.model.as_dict()[exponent] - (1.0 + GROWS)) < 0.2
     assert result.holdout.size_after.value < 0.3 * result.holdout.size_before.value

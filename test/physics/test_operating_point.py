@@ -79,6 +79,23 @@ def test_a_motor_that_is_swung_out_loses_a_number_by_a_power_of_its_displacement
     assert np.isfinite(model.jacobian(x)).all()
 
 
+def test_layers_further_down_yield_by_a_power_of_their_number(crane_150t):
+    """By the first power it is the law of equal layers; the square root of three layers below is 1.73 times one."""
+    group = {"main": GroupSample(120e5, 25e5, 3e-5)}
+
+    def torque(name, layer, **shape):
+        term = term_named(name)
+        model = FrictionModel("layers", (term,), tuple(shape.get(p.name, 0.01) for p in term.parameters))
+        sample = Sample(time=0.0, motor_speed=SPEED, groups=group, wire_layer=layer)
+        one = sample_operating_point(sample, crane_150t, drum_torque=crane_150t.drum_torque(55e3), speed=SPEED)
+        return model.compile(1).scalar_torque(one, model.values, ())
+
+    assert torque("layer_yielding", 4.0, n_ly=1.5, m_ly=1.0) == pytest.approx(torque("layer_bedding", 4.0, n_lb=1.5))
+    root = [torque("layer_yielding", layer, n_ly=1.5, m_ly=0.5) for layer in (1.0, 2.0, 4.0)]
+    assert root[2] / root[1] == pytest.approx(np.sqrt(3.0), rel=1e-4)
+    assert abs(root[0]) < 2e-3 * abs(root[1])
+
+
 def test_a_layer_that_nobody_says_is_the_outer_one_for_a_term_as_for_the_load(crane_150t):
     term = term_named("layer_bedding")
     model = FrictionModel("layers", (term,), tuple(each.typical for each in term.parameters))

@@ -89,6 +89,8 @@ def literature() -> list[Candidate]:
             needs=("hook_load",), blind=friction.one_load),
         _of("layer_radius", "layer_bedding", {"n_lb": (1.5, 2.0)}, needs=("hook_load", "wire_layer"),
             blind=friction.one_load),
+        _of("layer_radius", "layer_yielding", {"n_ly": (1.0, 1.5, 2.0), "m_ly": (0.5, 2.0)},
+            needs=("hook_load", "wire_layer"), blind=friction.one_load),
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
             blind=friction.no_load),
     ]  # fmt: skip

@@ -42,6 +42,9 @@ e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_lb = Parameter("e_lb", "1", 0.01, lower=-0.2, upper=0.2, doc="per layer below, at 500 kN m, share of T_d/i")
 n_lb = Parameter("n_lb", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+e_ly = Parameter("e_ly", "1", 0.01, lower=-0.2, upper=0.2, doc="of one layer below, at 500 kN m, share of T_d/i")
+n_ly = Parameter("n_ly", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+m_ly = Parameter("m_ly", "1", 0.5, lower=0.2, upper=3.0, shape=True, doc="exponent of the number of layers below")
 a_d = Parameter("a_d", "1", 0.01, lower=-0.2, upper=0.2, doc="sine amplitude over the drum's angle, share of T_d/i")
 b_d = Parameter("b_d", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude over the drum's angle, share of T_d/i")
 k_d = Parameter("k_d", "1", 1.0, lower=0.5, upper=100.0, shape=True, doc="periods per turn of the drum")
@@ -57,6 +60,7 @@ _HARMONICS = tuple(
 _h = sp.Symbol("z_held", real=True)
 _rest = sp.exp(-w / REST_SPEED)
 _tiny = 1e-9  # of the load scale; keeps derivatives by an exponent finite without load
+_below = sp.Abs(wire_layer - 1) + _tiny
 _load = sp.Abs(T_d) / LOAD_SCALE + _tiny
 
 
@@ -139,6 +143,14 @@ layer_bedding = register(
     Term(
         "layer_bedding", e_lb.symbol * LOAD_SCALE / gear_ratio * (wire_layer - 1) * _load**n_lb.symbol, (e_lb, n_lb),
         Scope.SHAFT, "Dietz 1972: under the rope's tension each layer yields to those on it", "gear and drum",
+        opposing=False,
+    )
+)  # fmt: skip
+layer_yielding = register(
+    Term(
+        "layer_yielding",
+        e_ly.symbol * LOAD_SCALE / gear_ratio * _below**m_ly.symbol * _load**n_ly.symbol,
+        (e_ly, n_ly, m_ly), Scope.SHAFT, "the same, where layers further down yield less or more", "gear and drum",
         opposing=False,
     )
 )  # fmt: skip

@@ -5,6 +5,7 @@ And in the calculated pressure of an accumulator: a gas that warms, cools, or fo
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -203,11 +204,13 @@ def geometry_candidates() -> list[Candidate]:
 
 # -- the gas of an accumulator
 TIME_CONSTANTS = (30.0, 60.0, 120.0, 240.0)  # s, of an accumulator's gas
+SLOWER = 5.0  # times the fast time constant: further apart than that the fast one is over before the slow one shows
 AT_ONCE = 0.01  # s; heat that goes as fast as it comes is another exponent of the calculated law
 
 e_T = Parameter(
     "e_T", "1", 0.02, lower=-0.2, upper=0.2, doc="relative excess temperature of the gas at the start of a run"
 )
+e_S = Parameter("e_S", "1", 0.02, lower=-0.2, upper=0.2, doc="a part of it that fades more slowly")
 g_T = Parameter("g_T", "1", 1.0, lower=-10.0, upper=10.0, doc="share of the compression's heat that the wall takes")
 
 
@@ -261,33 +264,30 @@ def _to_exponent(found: Estimates, shape: Shape, sides: Sides) -> list[Correctio
     return [correction("accumulator_heat", found[g_T.name], groups=sides.passive, time_constant=AT_ONCE)]
 
 
+def two_parts_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """The same with a second part of the warmth that fades more slowly, N m, shape (samples, 3)."""
+    slow = accumulator_columns(run, {"tau": SLOWER * values["tau"]})[:, :1]
+    return np.hstack([accumulator_columns(run, values), slow])
+
+
+def _to_two_parts(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    slow = SLOWER * shape.values["tau"]
+    warmth = correction("accumulator_slow_warmth", found[e_S.name], groups=sides.passive, time_constant=slow)
+    return [*_to_gas(found, shape, sides), warmth]
+
+
 def gas_candidates() -> list[Candidate]:
     """What a polytropic law that is logged for the passive pressure lacks."""
+    # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
+    # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
+    gas = partial(Candidate, "accumulator_thermal", kind="signal", hydraulic=True, blind=_no_passive_group)
+    torque = r"n_p D_p\,\Delta p_p\,"
     return [
-        # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
-        # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
-        Candidate(
-            "accumulator_thermal",
-            r"n_p D_p\,\Delta p_p\,(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)",
-            (e_T, g_T),
-            accumulator_columns,
-            _time_constants,
-            kind="signal",
-            hydraulic=True,
-            continuous=("tau",),
-            blind=_no_passive_group,
-            corrects=_to_gas,
-        ),
-        Candidate(
-            "accumulator_thermal",
-            r"g_T\,n_p D_p\,\Delta p_p\,\ln p",
-            (g_T,),
-            exponent_columns,
-            _at_once,
-            kind="signal",
-            law_name="another exponent",
-            hydraulic=True,
-            blind=_no_passive_group,
-            corrects=_to_exponent,
-        ),
-    ]
+        gas(torque + r"(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)", (e_T, g_T), accumulator_columns,
+            _time_constants, continuous=("tau",), corrects=_to_gas),
+        gas(torque + r"(e_T e^{-t/\tau} + e_S e^{-t/5\tau} + g_T \langle\ln p\rangle_\tau)", (e_T, g_T, e_S),
+            two_parts_columns, _time_constants, law_name="a fast part and a slow one", continuous=("tau",),
+            corrects=_to_two_parts),
+        gas(r"g_T\," + torque + r"\ln p", (g_T,), exponent_columns, _at_once, law_name="another exponent",
+            corrects=_to_exponent),
+    ]  # fmt: skip

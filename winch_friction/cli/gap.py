@@ -243,7 +243,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
     ]
     print(f"verdict: {content['verdict']}")
     if rows:
-        show_table("missing effects", ["effect", "or", "parameters", "gain"], rows)
+        show_table("missing effects", ["effect", "or", "parameters", "error lower by"], rows)
     if content["verdict"] == "unexplained":
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
@@ -262,5 +262,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
     if plan := content["next_experiment"]:
         far = f" ({plan['note']})" if plan["note"] else ""
         print(f"next experiment: {plan['scenario']}{far}")
+    elif content["verdict"] == "ambiguous":
+        print("next experiment: no scenario at hand tells these apart; measure what only one of them changes")
     written = [out / name for name in ("gap.json", "model.yaml", "report.html") if (out / name).exists()]
     print("written:", ", ".join(map(str, written)))

@@ -278,3 +278,20 @@ def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
     steady = acceleration <= LIMITS.steady * np.percentile(acceleration, 99)
     chosen = steady if steady.sum() >= LIMITS.fewest_steady else np.ones_like(steady)
     return float(np.mean(left[chosen] ** 2 - 1.0 - cross.problem.unresolved[chosen]))
+
+
+def named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
+    """The signals that 'unexplained' names, those that are sure first."""
+    significant = [
+        each for each in left if each.p_value <= LIMITS.remainder_p and each.share > LIMITS.least_named_share
+    ]
+    return tuple((significant or [d for d in left if d.share > 0.0])[: LIMITS.most_signals])
+
+
+def unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:
+    """Share of the gap above the noise floor that no named effect explains."""
+    before = max(selection.base.loss - cross.floor, 1e-9)
+    after = max(selection.final.loss - cross.floor, 0.0)
+    if verdict.kind == NOTHING:
+        return 0.0
+    return float(min(after / before, 1.0)) if selection.found else 1.0

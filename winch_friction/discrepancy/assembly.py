@@ -14,20 +14,20 @@ from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     INSUFFICIENT,
     MISSING,
-    NOTHING,
     UNEXPLAINED,
     Effect,
     GapOptions,
     GapResult,
     Side,
     Verdict,
+    named,
+    unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.engine.blocks import Slot, find_regions
-from winch_friction.discrepancy.engine.chance import Dependence
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.expansion import Given, meet
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.preparation.prepare import READ_AS
@@ -91,17 +91,29 @@ def assemble(split: Split, options: GapOptions, trial: Trial) -> GapResult:
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
-        depends=_named(search.left) if verdict.kind == UNEXPLAINED else (),
-        unexplained_share=_unexplained_share(cross, selection, verdict), considered=selection.considered,
+        depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
+        unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
         untestable=search.untestable, model=_concluded(repaired.model, given.model, kind), seed_model=given.model,
         next_experiment=experiment.content() if experiment else None,
         next_scenario=experiment.text if experiment else "",
         notes=(
-            *_notes(split.runs, given.loads), *_amounts(repaired.model, split.runs), *repaired.cut,
+            *_notes(split.runs, given.loads), *_amounts(repaired.model, split.runs),
+            *_times(repaired.model, given.model, split.runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
             *filter(None, (own.note(name) for name, own in tied.items())), *([drift] if drift else []), *left,
+            *(_inexact(trial.holdout, given.crane.drive.unit) if found else []),
         ),
     )  # fmt: skip
+
+
+def _in_the_end(selection: Selection) -> tuple[Considered, ...]:
+    """What was considered; of what was taken at first and does not stand it says so."""
+    stand = {finding.slot.name for finding in selection.found}
+    fell = f"{TAKEN} at first, but it does not stand in the end"
+    return tuple(
+        replace(each, verdict=fell) if each.verdict == TAKEN and each.name not in stand else each
+        for each in selection.considered
+    )
 
 
 def insufficient(
@@ -199,22 +211,6 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
     return replace(model, name=name, provenance={**model.provenance, "verdict": verdict})
 
 
-def _named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
-    significant = [
-        each for each in left if each.p_value <= LIMITS.remainder_p and each.share > LIMITS.least_named_share
-    ]
-    return tuple((significant or [d for d in left if d.share > 0.0])[: LIMITS.most_signals])
-
-
-def _unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:
-    """Share of the gap above the noise floor that no named effect explains."""
-    before = max(selection.base.loss - cross.floor, 1e-9)
-    after = max(selection.final.loss - cross.floor, 0.0)
-    if verdict.kind == NOTHING:
-        return 0.0
-    return float(min(after / before, 1.0)) if selection.found else 1.0
-
-
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
     bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
@@ -234,6 +230,27 @@ def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:
         said = ", ".join(f"{name} {amount:.3g}" for name, amount in own if amount)
         found.append(f"{term.name}, N·m at each motor: {said}; to any other run the file gives none")
     return found
+
+
+def _times(model: FrictionModel, seed: FrictionModel, runs: Sequence[Run]) -> list[str]:
+    """Which runs have an error that is not always there, of those that the given model did not know."""
+    found = []
+    for each in model.corrections:
+        if each.during and not each.declared.grows and each.during not in [old.during for old in seed.corrections]:
+            there = [run.name for run in runs if each.holds(float(run.time[len(run) // 2]))]
+            found.append(f"{each.name} is there in {', '.join(there)}; in no other of these runs")
+    return list(dict.fromkeys(found))
+
+
+def _inexact(side: Side, unit: str) -> list[str]:
+    """That more than noise is left beside what is named."""
+    left = side.size_after.value
+    if left <= LIMITS.far_off_the_floor * side.floor:
+        return []
+    return [
+        f"the locked runs keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}: the cause is named, its "
+        "law is not exact, or a smaller effect is beside it"
+    ]
 
 
 # -- when something changed

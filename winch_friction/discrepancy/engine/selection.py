@@ -22,6 +22,7 @@ from winch_friction.discrepancy.engine.crossfit import (
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
+TAKEN = "taken"
 NO_BETTER = 1e-3  # of the held-out loss: a tenth of the least gain
 THE_SAME = 1e-5  # of the held-out loss: a thousand times its rounding; laws that are one over these runs
 
@@ -195,7 +196,7 @@ def _considered(
 ) -> Considered:
     own = trial.slots[-1]
     if best:
-        verdict = "taken"
+        verdict = TAKEN
     elif worthy:
         verdict = "significant and useful, but outdone in held-out loss by the one taken"
     elif not _significant(np.asarray(p), np.asarray(gain)):
@@ -294,7 +295,6 @@ def _found(
     without = cross.explain(rest)
     gain_losses = without.losses - current.losses
     rivals, frequency = rivals_of(cross, current, without, k, rng, same=bool(bringers))
-    name = own.name
-    p = p_values.get(name, float(flip_p_values(gain_losses[None], rng)[0]))
+    p = p_values.get(own.name, float(flip_p_values(gain_losses[None], rng)[0]))
     sets = rivals[: LIMITS.most_names - 1], tuple(slot.name for slot in rivals[LIMITS.most_names - 1 :])
     return Finding(own, sets[0], p, float(cross.gain(without, current)), frequency, sets[1])

@@ -1,0 +1,67 @@
+"""What a result says besides its verdict: when an error is there, what is left, and what did not stand."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.cli.gap import show_result
+from winch_friction.discrepancy.answer import Side
+from winch_friction.discrepancy.assembly import _in_the_end, _inexact, _times
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
+from winch_friction.discrepancy.proof import nothing_compared
+from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.signals import Run
+
+RUNS = [Run(f"run_{k}", {"time": 1000.0 * k + np.arange(11.0), "motor_speed": np.ones(11)}) for k in range(3)]
+MODEL = FrictionModel("m", (term_named("coulomb"),), (50.0,))
+
+
+def with_errors(*corrections):
+    return replace(MODEL, corrections=corrections)
+
+
+def test_an_error_that_is_not_always_there_says_which_runs_have_it():
+    there = Correction("pressure_offset", 1e5, during=((-1.0, 20.0), (1990.0, 2100.0)))
+    always = Correction("tare_load", 500.0)
+    creeps = Correction("pressure_creep", 1e5, during=((0.0, 2000.0),))
+    (said,) = _times(with_errors(there, always, creeps), MODEL, RUNS)
+    assert said == "pressure_offset is there in run_0, run_2; in no other of these runs"
+    assert _times(with_errors(there), with_errors(there), RUNS) == []  # the given model said so already
+
+
+@pytest.mark.parametrize(("left", "said"), [(0.2, False), (0.27, False), (0.3, True)])
+def test_a_named_cause_whose_law_leaves_more_than_noise_says_so(left, said):
+    """More than twice 0.14 bar, 0.1 of noise and 0.1 that no balance closes."""
+    side = replace(nothing_compared(), size_after=Size(left, (left, left)), noise_floor=0.1, least_noise=0.1)
+    assert isinstance(side, Side)
+    notes = _inexact(side, "bar")
+    assert bool(notes) is said
+    assert all("keep 0.3 bar where their noise is 0.1" in note for note in notes)
+
+
+def test_what_was_taken_at_first_and_does_not_stand_is_not_called_taken():
+    one, two = (Considered(name, "", 0.1, 0.001, stage, TAKEN) for stage, name in enumerate(("churning", "viscous")))
+    other = Considered("stribeck", "", 0.0, 0.5, 0, "not significant")
+    finding = Finding(Slot("churning", "", (0,)), (), 0.001, 0.1, 1.0)
+    said = _in_the_end(Selection(SimpleNamespace(), SimpleNamespace(), (finding,), (one, two, other)))
+    assert [each.verdict for each in said] == [TAKEN, "taken at first, but it does not stand in the end", other.verdict]
+
+
+@pytest.mark.parametrize(("verdict", "said"), [("ambiguous", True), ("missing_effect", False)])
+def test_names_that_no_scenario_tells_apart_say_so(tmp_path, capsys, verdict, said):
+    parameters = {"D_0": {"value": 1e-7, "std": 1e-8, "unit": "m^3/rad"}}
+    effect = {"name": "swivel_offset", "indistinguishable_from": ["pressure_scale"], "law_kind": "literature",
+              "parameters": parameters, "evidence": {"cv_gain": 0.5}}  # fmt: skip
+    gap = {"unit": "bar", "holdout": {"before": 1.0, "after": 0.2, "noise_floor": 0.1}}
+    show_result(
+        {"verdict": verdict, "effects": [effect], "gap": gap, "adequacy": [], "notes": [], "next_experiment": None},
+        tmp_path,
+    )
+    shown = capsys.readouterr().out
+    assert ("no scenario at hand tells these apart" in shown) is said
+    assert "error lower by" in shown

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from gap_rig import runs_with
 
-from winch_friction.discrepancy.repair import Repair, polished
+from winch_friction.discrepancy.repair import Repair, _as_found, polished
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -19,3 +21,14 @@ def test_a_delay_is_all_of_what_the_signals_are_out_of_step_by():
     drafted = Repair(replace(seed, corrections=(late,)), {"signal_delay": {}})
     found = polished(drafted, seed, runs, [run.name for run in runs[:3] + runs[9:]], crane).model.corrections
     assert found[0].value == pytest.approx(0.050, abs=5e-4)
+
+
+@pytest.mark.parametrize(("after", "said"), [(9.95, 0.995), (5.0, 5.0), (0.2, 0.2)])
+def test_what_the_last_fit_says_nothing_of_is_as_uncertain_as_when_it_was_found(after, said):
+    """The place of a step has no slope: freed tenfold, it was said to be uncertain by all of itself."""
+    seed = FrictionModel("m", (term_named("coulomb"),), (50.0,), covariance=np.eye(1))
+    terms = (term_named("coulomb"), term_named("high_pressure_onset"))
+    values = (50.0, 10.0, 1e7, 60.0)
+    drafted = FrictionModel("m", terms, values, covariance=np.diag([1.0, 0.04, 1.0, 9.0]))
+    fitted = replace(drafted, covariance=np.diag([0.99, 0.01, after**2, 4.0]))
+    assert _as_found(fitted, drafted, seed).std == pytest.approx((np.sqrt(0.99), 0.1, said, 2.0))

@@ -209,7 +209,17 @@ def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: S
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))
             break
         now, best = new, replace(best, model=tried)
+    best = replace(best, model=_as_found(best.model, drafted.model, seed))
     return replace(best, parameters=_reported(best, seed))
+
+
+def _as_found(model: FrictionModel, drafted: FrictionModel, seed: FrictionModel) -> FrictionModel:
+    """The model with the draft's deviation of what was freed and of which the fit tells nothing: a step's place."""
+    freed = (
+        LIMITS.loosened * np.array(drafted.std) * [name not in seed.parameter_names for name in model.parameter_names]
+    )
+    share = np.where((freed > 0.0) & (np.array(model.std) >= 0.99 * freed), 1.0 / LIMITS.loosened, 1.0)
+    return replace(model, covariance=model.covariance * np.outer(share, share)) if len(share) else model
 
 
 def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[str, float]]:

@@ -27,7 +27,7 @@ from winch_friction.discrepancy.engine.chance import (
     rivals_of,
     rms_with_interval,
 )
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, heads
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, fitted, heads
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, noise_of_run
 from winch_friction.discrepancy.engine.selection import (
@@ -907,6 +907,16 @@ def test_a_name_that_leaves_most_of_the_training_runs_gap_is_not_what_shows_ther
     full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
     assert (full is not None) is stands
     assert ("training gap" in why) is not stands
+
+
+def test_a_law_of_the_set_is_not_tried_beside_itself():
+    """Its columns twice are a singular matrix where they are large, and say nothing anywhere."""
+    cross = crossfit(3.0 * WAVE + noise())
+    alone = {slot.name for slot in fitted(cross, (), set())}
+    beside = fitted(cross, SLOTS[:1], set(), by_part=True)
+    assert {each.name for each in SLOTS} <= alone
+    assert SLOTS[0] not in beside
+    assert {slot.name for slot in beside} >= {SLOTS[1].name}
 
 
 @pytest.mark.parametrize(("late", "step", "named"), [(0.004, 0.02, False), (0.014, 0.01, True), (0.014, 0.02, True)])

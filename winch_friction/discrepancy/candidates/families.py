@@ -78,6 +78,8 @@ def literature() -> list[Candidate]:
         # of shorter films Stribeck's curve speaks
         _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=friction.no_load, continuous=()),
         _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=friction.no_load),
+        _of("sheave_bending", "sheave_film", {"w_sf": (40.0, 100.0, 250.0)}, presumes=("gear_load_loss",),
+            blind=friction.no_load, continuous=()),
         _of("sheave_bending", "sheave_stiffness", presumes=COULOMB),
         _of("gear_load_loss", "gear_load_saturating", shapes=friction.loads("T_gs"), continuous=("T_gs",),
             blind=friction.no_load),

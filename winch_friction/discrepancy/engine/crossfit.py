@@ -181,7 +181,7 @@ def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str], by_part
     the training runs best beside the rest."""
     best: dict[tuple[str, str, str], tuple[float, Slot]] = {}
     for slot in cross.problem.slots:
-        if slot.name in taken:
+        if slot.name in taken or any(slot is each for each in rest):
             continue
         loss, _ = cross.train_loss((*rest, slot))
         key = (slot.name, slot.law, slot.part if by_part else "")

@@ -33,6 +33,8 @@ c_gf = Parameter("c_gf", "N*m", 5.0, upper=200.0, doc="loss per motor at standst
 w_gf = Parameter("w_gf", "rad/s", 100.0, lower=10.0, upper=1e3, shape=True, doc="speed over which its film builds up")
 c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+c_sf = Parameter("c_sf", "1", 0.01, lower=0.0, upper=0.5, doc="loss at standstill, share of T_d/i")
+w_sf = Parameter("w_sf", "rad/s", 100.0, lower=1.0, upper=1000.0, shape=True, doc="motor speed at which a film carries")
 c_gs = Parameter("c_gs", "N*m", 5.0, upper=200.0, doc="loss per motor at a large load")
 T_gs = Parameter("T_gs", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
 c_ss = Parameter("c_ss", "N*m", 20.0, upper=1e3, doc="loss at a large load")
@@ -130,6 +132,12 @@ sheave_power = register(
     Term(
         "sheave_power", c_sp.symbol * LOAD_SCALE / gear_ratio * _load**n_sp.symbol, (c_sp, n_sp), Scope.SHAFT,
         "Feyrer 2015: bending loss of a rope grows less than its tension", "gear and drum",
+    )
+)  # fmt: skip
+sheave_film = register(
+    Term(
+        "sheave_film", c_sf.symbol * LOAD_SCALE / gear_ratio * _load * sp.exp(-w / w_sf.symbol), (c_sf, w_sf),
+        Scope.SHAFT, "greased bushes and wires in mixed film (Stribeck 1902), as the mesh of a gear", "gear and drum",
     )
 )  # fmt: skip
 gear_asymmetry_power = register(

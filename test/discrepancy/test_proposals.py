@@ -9,7 +9,16 @@ import pytest
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy.engine.grammar import Factor, Law
-from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, amount_in_words, declare, factors, shape
+from winch_friction.discrepancy.vocabulary import (
+    BY_NAME,
+    TEXTS,
+    WORDS,
+    amount_in_words,
+    declare,
+    factors,
+    in_words,
+    shape,
+)
 from winch_friction.physics.channels import dimension_of, product
 from winch_friction.physics.friction import FrictionModel, symbols
 from winch_friction.physics.friction.symbols import layout
@@ -43,6 +52,16 @@ def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
     assert np.isfinite(
         model.compile(2).scalar_torque([1.0] * len(layout(2)), model.values, model.compile(2).initial_states)
     )
+
+
+def test_the_sentence_has_the_constants_of_the_last_fit():
+    """Every 16.9 m was said of a term whose file said 17.4."""
+    factors_of = (Factor("above", "motor_speed", (("c", 90.0),)), Factor("wave", "wire_out", (("c", 16.9), ("h", 3.0))))
+    law = Law(factors_of, opposing=True)
+    assert in_words(law, [90.0, 16.9, 3.0]) == declare(law, 1.0).sentence
+    said = in_words(law, [90.0, 17.4, 3.0])
+    assert "17.4 m" in said
+    assert said == declare(law, 1.0).sentence.replace("16.9", "17.4")
 
 
 def test_text_and_arrays_say_the_same():

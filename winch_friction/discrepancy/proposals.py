@@ -32,6 +32,7 @@ from winch_friction.discrepancy.vocabulary import (
     amount_in_words,
     declare,
     factors,
+    in_words,
     shape,
 )
 from winch_friction.physics.friction import FrictionModel
@@ -251,8 +252,9 @@ def _proven(
         trial = evaluate(own)
     if not prove(declared.term.name, refit.holdout, trial.holdout, rng).holds:
         return None
-    held = trial.holdout
+    held, found = trial.holdout, trial.repaired.parameters[declared.term.name]
+    declared = replace(declared, sentence=in_words(scored.law, [found[name].value for name in declared.constants]))
     return Proposal(
-        declared, dict(trial.repaired.parameters[declared.term.name]), declared.text, trial.repaired.model,
+        declared, dict(found), declared.text, trial.repaired.model,
         held.size_before.value, held.size_after.value, held.noise_floor, own.given.crane.drive.unit, p_value,
     )  # fmt: skip

@@ -8,7 +8,7 @@ search).
 import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -260,6 +260,13 @@ def _file_text(
 
 def _mentions(text: str, symbol: str) -> bool:
     return re.search(rf"(?<![\w.\"]){symbol}(?![\w\"])", text) is not None
+
+
+def in_words(law: Law, values: Sequence[float]) -> str:
+    """The law's sentence with its constants, in their order, as the last fit has them."""
+    rest = iter(values)
+    factors = tuple(replace(f, constants=tuple((key, next(rest)) for key, _ in f.constants)) for f in law.factors)
+    return _sentence(replace(law, factors=factors))
 
 
 def _sentence(law: Law) -> str:

@@ -164,15 +164,16 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
     y_before, y_after = blocks.y, blocks.x[:, 0]
     skew = blocks.x[:, 1]
-    noise = np.array([_noise(y_after, skew, blocks, k, least_noise_of(old)) for k, (old, _) in enumerate(pairs)])
-    floor = np.sqrt(np.mean(noise[blocks.run] ** 2)) if len(blocks.run) else 0.0
+    least = np.array([least_noise_of(old) for old, _ in pairs])
+    noise = np.array([_noise(y_after, skew, blocks, k, least[k]) for k in range(len(pairs))])
+    floor, closes = (rms(each[blocks.run]) if len(pairs) else 0.0 for each in (noise, least))
     runs = tuple(old for old, _ in pairs)
     torque = np.array([drive_of(run) for run in runs])[blocks.run]
     return Side(
         runs=runs, blocks=blocks, before=y_before, after=y_after,
         size_before=rms_with_interval(y_before, blocks.segment, blocks.run, rng),
-        size_after=rms_with_interval(y_after, blocks.segment, blocks.run, rng), noise_floor=float(floor),
-        least_noise=max((least_noise_of(run) for run in runs), default=0.0),
+        size_after=rms_with_interval(y_after, blocks.segment, blocks.run, rng), noise_floor=floor,
+        least_noise=closes,
         relative=(relative_error(y_before, torque), relative_error(y_after, torque)),
     )  # fmt: skip
 

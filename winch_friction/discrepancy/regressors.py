@@ -210,7 +210,10 @@ def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
 def least_noise_of(run: PreparedRun) -> float:
     """What no balance of a winch closes better than, however quiet its sensors, bar (N m for an electric drive)."""
     if run.groups:  # of a slow log the samples that it follows to so much are used
-        return LIMITS.least_noise * (SHOWS if run.dt > SPARSEST else 1.0)
+        own = LIMITS.least_noise * (SHOWS if run.dt > SPARSEST else 1.0)
+        # where a passive side carries the load, what a load cell is off by is many times as much of the driving side
+        hangs = float(np.sqrt(np.mean(run.drum_torque**2))) / run.gear_ratio / run.unit_torque
+        return float(np.hypot(own, LIMITS.least_share_of_load * hangs))
     return LIMITS.least_share_of_torque * float(np.sqrt(np.mean((run.gap + run.predicted) ** 2))) / run.unit_torque
 
 

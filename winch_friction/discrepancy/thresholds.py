@@ -39,8 +39,8 @@ class Thresholds:
     unbounded: float = 1e9  # typical sizes: what a bare model's plain terms may have
     least_noise: float = 0.1  # bar; less than what a 12-bit transducer of 600 bar steps by, which is 0.15
     step: float = 1.5  # times it: that step, up to which a zero is off without being wrong
-    # of what hangs there, that a load cell differs by from run to run beside the one tolerance for all of them: what the
-    # best cells repeat to; of ten runs that were off by so much a feedback "shifted with the oil"
+    # of what hangs there, that a load cell differs by from run to run beside the one tolerance for all of them: what
+    # the best cells repeat to; of ten runs that were off by so much a feedback "shifted with the oil"
     least_share_of_load: float = 3e-4
     least_share_of_torque: float = 1e-3  # of an electric drive's torque
     bare_room: float = 10.0  # times the size found: how far a bare model's new parameter may move later

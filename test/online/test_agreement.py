@@ -5,7 +5,9 @@ import math
 import pytest
 from sea import CRANE
 
-from winch_friction.online.agreement import BALANCE_TIME, Agreement, Doubt, LoadBalance
+from winch_friction.online.agreement import Agreement
+from winch_friction.online.doubt import Doubt
+from winch_friction.online.load_agreement import BALANCE_TIME, LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 from sea import CRANE, SEED, TOPICS
 
-from winch_friction.online.agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.load_agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample

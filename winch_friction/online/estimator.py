@@ -7,10 +7,11 @@ from typing import Any
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
-from winch_friction.online.agreement import LoadAgainstDrive, LoadBalance, span
 from winch_friction.online.compensator import LEARNED_AT
+from winch_friction.online.doubt import span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.load_agreement import LoadAgainstDrive, LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from sea import CRANE, SEED, TOPICS
 
+from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.load_agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.physics.channels import GRAVITY
@@ -117,6 +118,28 @@ def test_a_dead_load_cell_in_the_rope_is_found_as_one_at_the_hook(sea: tuple[Sam
             service.take_row(replace(sample, hook_load=float("nan"), rope_force=force))
             assert passed >= 5.0 or not service.contradiction
     assert service.contradiction == "rope_force contradicts the drive torque"
+
+
+def on_the_brake(sample: Sample, passed: float) -> Sample:
+    """The load on the brake: the shaft stands still and the motors' lines are at boost pressure."""
+    groups = {name: replace(each, pressure_a=25e5, pressure_b=25e5) for name, each in sample.groups.items()}
+    return replace(sample, time=sample.time + passed, motor_speed=0.0, speed_reference=0.0, groups=groups)
+
+
+def test_a_load_that_hangs_on_the_brake_is_no_dead_load_cell(sea: tuple[Sample, ...]) -> None:
+    """The seed took the learned model's place at each stop, and nothing was fed forward for two seconds after it."""
+    learning, feeding = EstimatorService(CRANE, SEED, TOPICS), CompensatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 15.0:
+            learning.take_row(sample)
+    for k in range(500):
+        stopped = on_the_brake(sea[750], 0.02 * k)
+        assert feeding.take_row(replace(stopped, groups=dict(stopped.groups))).valid
+        learning.take_row(stopped)
+        assert not learning.contradiction
+    published = learning.model_due(stopped.time)
+    assert published is not None
+    assert published.values == learning.law.model().values != SEED.values
 
 
 @pytest.mark.parametrize("error", [-0.05, 0.05])

@@ -2,6 +2,7 @@
 
 import math
 
+from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.online.doubt import Doubt, span
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
@@ -38,12 +39,12 @@ class LoadAgainstDrive:
     """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
 
     A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
-    the rope's force.
+    the rope's force. A winch that stands still shows nothing: its brake may carry the load.
     """
 
     def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
         self._crane, self._doubt = crane, Doubt(TORQUE_TIME)
-        self._rated = 0.5 * ranges.load  # kg
+        self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
@@ -53,6 +54,8 @@ class LoadAgainstDrive:
 
     def _differ(self, sample: Sample) -> bool | None:
         if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
+            return None
+        if not abs(sample.motor_speed) > self._moving:
             return None
         load = self._crane.drum_torque(sample_load(sample), sample.wire_layer) / self._crane.gear_ratio
         drive = sample_drive_torque(sample, self._crane)

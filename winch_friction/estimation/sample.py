@@ -123,6 +123,7 @@ class HangingLoad:
         held = 0.5 * ChannelRanges(crane).load if crane.drive.hydraulic else 0.0  # where no rated load is known
         self._least = LEAST_LOAD * (crane.rated_load or held)  # kg
         self.mass = math.nan  # kg; NaN: not measured
+        self.doubted = False  # another load than the measured one was found
 
     def following(self, sample: Sample, dt: float) -> float:
         """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
@@ -148,6 +149,12 @@ class HangingLoad:
         least = self._crane.drum_torque(self._least, layer) / self._crane.gear_ratio
         whole = max(self.shaft_torque(layer), least)
         return torque / whole if self.measured and whole else math.nan
+
+    def is_another(self, torque: float, layer: float) -> bool:
+        """Whether a doubted load still lacks more than noise: a torque at the shaft in N m that is not small beside
+        it. Once it does not, the doubt is over."""
+        self.doubted = self.doubted and abs(self.share(torque, layer)) > PICKED_UP
+        return self.doubted
 
     def mass_by(self, shaft_torque: float, layer: float) -> float:
         """The measured mass, else the one that a load torque at the shaft means; kg."""

@@ -137,11 +137,11 @@ CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
 class Agreement:
     """Cross-checks one sample after the other; says which inputs contradict each other.
 
-    `lead` s: how far the command may be ahead of the speed.
+    `lead` s: how far the command may be ahead of the speed; `load` kg: the one that was set, where none is measured.
     """
 
-    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0) -> None:
-        self._crane, self._ranges, self.lead = crane, ranges, lead
+    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0, load: float = math.nan) -> None:
+        self._crane, self._ranges, self.lead, self.load = crane, ranges, lead, load
         self.forget()
 
     def forget(self) -> None:
@@ -161,7 +161,7 @@ class Agreement:
         passed = (sample.time - self._time, now - self._now)
         dt = max(span(0.0, each) for each in passed) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
-        self._turns.patience = self.lead + LONGEST_LAG
+        self._turns.patience, self._load.assumed = self.lead + LONGEST_LAG, self.load
         found = {
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),

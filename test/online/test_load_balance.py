@@ -12,6 +12,7 @@ from winch_friction.online.load_agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample
+from winch_friction.records.topics import crane_topics
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 
@@ -118,6 +119,18 @@ def test_a_dead_load_cell_in_the_rope_is_found_as_one_at_the_hook(sea: tuple[Sam
             service.take_row(replace(sample, hook_load=float("nan"), rope_force=force))
             assert passed >= 5.0 or not service.contradiction
     assert service.contradiction == "rope_force contradicts the drive torque"
+
+
+def test_one_way_alone_friction_that_the_seed_does_not_know_is_no_error_of_the_load_cell() -> None:
+    """The hook alone, hoisted for half a minute against 1.3 times the seed's friction, and then lowered: nothing tells
+    friction from load before it is. It was contradicted after ten seconds, so that nothing was learned, for good."""
+    stiff = SEED.with_values({name: 1.3 * SEED.value(name) for name in SEED.parameter_names if name != "C4"})
+    run = simulate(load_scenario("experiment_zero_check"), CRANE, stiff, seed=5).run
+    service = EstimatorService(CRANE, SEED, crane_topics(CRANE, run.groups))
+    for sample in run.samples():
+        service.take_row(sample)
+        assert not service.contradiction
+    assert service.law.counts["learned_from"] > 3000
 
 
 def on_the_brake(sample: Sample, passed: float) -> Sample:

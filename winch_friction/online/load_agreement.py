@@ -26,19 +26,29 @@ class LoadBalance:
     """Whether the load that the estimator finds is the one that the load cell shows.
 
     A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
-    with m g r. It is not said which one is wrong, but that nothing may be learned from them.
+    with m g r. It is not said which one is wrong, but that nothing may be learned from them. Nor is it before the winch
+    has turned both ways, faster than `moving` rad/s: one way, friction that the seed does not know looks like load.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, moving: float = AGAINST_SPEED) -> None:
         self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
+        self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
 
-    def contradiction(self, apart: float, time: float) -> str:
+    def contradiction(self, apart: float, sample: Sample) -> str:
         """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown."""
-        dt, self._time = span(self._time, time), time
+        dt, self._time = span(self._time, sample.time), sample.time
+        self._hoisted += dt if sample.motor_speed > self._moving else 0.0
+        self._lowered += dt if sample.motor_speed < -self._moving else 0.0
         wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
-        if not self._doubt.step(wrong, dt):
+        both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
+        if not both_ways and wrong is False:
+            self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
+        if not self._doubt.step(wrong, dt) or not both_ways:
             return ""
-        return f"hook_load contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
+        return (
+            f"{_shown_by(sample)} contradicts the balance of torques by {abs(apart):.0%}: "
+            "load cell, displacement or pressures"
+        )
 
 
 @dataclass

@@ -133,6 +133,17 @@ def test_one_way_alone_friction_that_the_seed_does_not_know_is_no_error_of_the_l
     assert service.law.counts["learned_from"] > 3000
 
 
+def test_an_empty_hook_whose_cell_shows_a_little_less_than_nothing_contradicts_nothing(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 10.0:
+            service.take_row(sample)
+    scenario = load_scenario("ahc_irregular").override({"duration": 40.0, "load": 60.0})
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        service.take_row(replace(sample, time=sample.time + sea[0].time + 20.0, hook_load=-40.0))
+        assert not service.contradiction
+
+
 def on_the_brake(sample: Sample, passed: float) -> Sample:
     """The load on the brake: the shaft stands still and the motors' lines are at boost pressure."""
     groups = {name: replace(each, pressure_a=25e5, pressure_b=25e5) for name, each in sample.groups.items()}

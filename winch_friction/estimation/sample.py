@@ -126,9 +126,10 @@ class HangingLoad:
         self.doubted = False  # another load than the measured one was found
 
     def following(self, sample: Sample, dt: float) -> float:
-        """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
-        measured = sample_load(sample)
-        if not math.isfinite(measured) or measured < 0.0:
+        """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it, a cell whose zero is a
+        little below shows an empty hook."""
+        measured = max(sample_load(sample), 0.0)  # NaN stays
+        if not math.isfinite(measured):
             return self.mass
         if not abs(measured - self.mass) <= PICKED_UP * self.mass:
             return measured

@@ -196,6 +196,21 @@ def test_a_load_cell_that_steps_is_said_and_does_not_lock_the_gate(crane, seed, 
     assert each.counts["learned_from"] - learned_from > 500
 
 
+def test_a_load_cell_that_follows_slowly_is_believed_as_soon_as_it_has(crane, seed):
+    """55 t are set down at once, the cell lags by 2 s: what the filter had put in its place must go as it comes."""
+    each, shown = FrictionEstimator(crane, seed, CONFIG), 55e3
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=3, speed_noise=0.1):
+        each.step(sample)
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=5, speed_noise=0.1, load=10e3):
+        sample.time += 20.0
+        shown += (10e3 - shown) * 0.02 / 2.0
+        sample.hook_load = shown
+        each.step(sample)
+        if sample.time > 32.0:
+            assert abs(each.load_apart) < 0.1
+            assert each.status()["state"] in ("learning", "stick")
+
+
 def test_a_load_taken_anew_is_what_the_dead_cells_last_word_lacks(crane, seed):
     """The estimator knows of 55 t; where 20 t are balanced, what hangs there beyond the 55 is -35."""
     each = FrictionEstimator(crane, seed, CONFIG)

@@ -165,7 +165,7 @@ class FrictionEstimator:
             return "saturation"
         if stick:
             return "stick"
-        if self._load.is_another(self._filter.load_torque, sample.wire_layer):
+        if self._load.is_another(self._filter.load_torque, sample):
             return "another load"
         return "no excitation" if self._excitation.range < self.config.excitation_speed else ""
 

@@ -151,10 +151,12 @@ class HangingLoad:
         whole = max(self.shaft_torque(layer), least)
         return torque / whole if self.measured and whole else math.nan
 
-    def is_another(self, torque: float, layer: float) -> bool:
-        """Whether a doubted load still lacks more than noise: a torque at the shaft in N m that is not small beside
-        it. Once it does not, the doubt is over."""
-        self.doubted = self.doubted and abs(self.share(torque, layer)) > PICKED_UP
+    def is_another(self, torque: float, sample: Sample) -> bool:
+        """Whether a doubted load that is shown still lacks more than noise: a torque at the shaft in N m that is not
+        small beside it. Once it does not, the doubt is over."""
+        if self.doubted:
+            shown = math.isfinite(sample_load(sample))
+            self.doubted = shown and abs(self.share(torque, sample.wire_layer)) > PICKED_UP
         return self.doubted
 
     def mass_by(self, shaft_torque: float, layer: float) -> float:

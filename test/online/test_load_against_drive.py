@@ -72,6 +72,20 @@ def test_the_wire_beyond_a_cell_at_the_hook_is_no_error_of_it():
     assert said(40.0, load=hanging, shown=40e3, out=100.0)[-1]
 
 
+@pytest.mark.parametrize("wrong", [0.0, 15e3])
+def test_a_cell_that_was_taken_out_is_not_doubted_for_good(wrong):
+    """The load is taken from the pressures then, as on a crane without a cell; only ~/reset had brought it back."""
+    service, found = CompensatorService(CRANE, SEED, TOPICS), []
+    for k in range(round(60.0 / PERIOD)):
+        shown = 55e3 if k * PERIOD < 5.0 else wrong if k * PERIOD < 40.0 else NAN
+        given = service.take_row(replace(at_work(k * PERIOD, 55e3, 300.0), hook_load=shown))
+        found.append("; ".join(service.contradictions))
+    assert found[round(39.0 / PERIOD)]
+    assert all(each.startswith("hook_load") for each in found if each)
+    assert not found[-1]
+    assert given.valid
+
+
 def test_a_cell_that_works_again_is_believed_again():
     service, found = CompensatorService(CRANE, SEED, TOPICS), []
     for k in range(round(100.0 / PERIOD)):

@@ -144,6 +144,31 @@ def test_an_empty_hook_whose_cell_shows_a_little_less_than_nothing_contradicts_n
         assert not service.contradiction
 
 
+def test_a_load_cell_that_was_lost_contradicts_no_load_that_came_after_it(sea: tuple[Sample, ...]) -> None:
+    """Its last word had been held against whatever hung there, for good."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 20.0:
+            service.take_row(sample)
+    learned = service.law.counts["learned_from"]
+    scenario = load_scenario("ahc_irregular").override({"duration": 40.0, "load": 25e3})
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        service.take_row(replace(sample, time=sample.time + sea[0].time + 30.0, hook_load=float("nan")))
+        assert not service.contradiction
+    assert service.law.counts["learned_from"] > learned + 1000
+    assert service.law.drum_torque == pytest.approx(CRANE.drum_torque(25e3), rel=0.05)
+
+
+def test_a_wrong_load_cell_that_was_taken_out_is_not_held_against_anything(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea, error=0.25):
+        if passed == pytest.approx(40.0):
+            assert service.contradiction.startswith("hook_load contradicts")
+        lost = {"hook_load": float("nan")} if passed > 40.0 else {}
+        service.take_row(replace(sample, **lost))
+    assert not service.contradiction
+
+
 def on_the_brake(sample: Sample, passed: float) -> Sample:
     """The load on the brake: the shaft stands still and the motors' lines are at boost pressure."""
     groups = {name: replace(each, pressure_a=25e5, pressure_b=25e5) for name, each in sample.groups.items()}

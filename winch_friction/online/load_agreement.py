@@ -33,21 +33,25 @@ class LoadBalance:
     def __init__(self, moving: float = AGAINST_SPEED) -> None:
         self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
         self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
+        self._by = ""  # the channel that showed the load last
 
     def contradiction(self, apart: float, sample: Sample) -> str:
-        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown."""
+        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown. A
+        sample without a load contradicts nothing: what hangs there may be another one than was shown last."""
         dt, self._time = span(self._time, sample.time), sample.time
         self._hoisted += dt if sample.motor_speed > self._moving else 0.0
         self._lowered += dt if sample.motor_speed < -self._moving else 0.0
-        wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
+        wrong: bool | None = False
+        if math.isfinite(sample_load(sample)):
+            self._by = _shown_by(sample)
+            wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
         both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
         if not both_ways and wrong is False:
             self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
         if not self._doubt.step(wrong, dt) or not both_ways:
             return ""
         return (
-            f"{_shown_by(sample)} contradicts the balance of torques by {abs(apart):.0%}: "
-            "load cell, displacement or pressures"
+            f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
         )
 
 
@@ -83,22 +87,33 @@ class LoadAgainstDrive:
         self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
         self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
         self._hoisting, self._lowering = _Way(), _Way()
+        self._by = ""  # what showed the load last
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
         at_once = both_ways = None
-        if self._tells(sample):
-            lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
-            load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
-            if math.isfinite(drive - load):
-                (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
-                at_once, both_ways = self._differ(load, drive, lever), self._middles_differ(sample, lever)
+        if math.isnan(self._load(sample)):  # nothing is shown that could be wrong, whatever was before
+            at_once = both_ways = False
+            self._hoisting, self._lowering = _Way(), _Way()
+        else:
+            self._by = _shown_by(sample)
+            if self._tells(sample):
+                at_once, both_ways = self._compared(sample, dt)
         # both look at every sample
         stand = self._at_once.step(at_once, dt), self._both_ways.step(both_ways, dt)
         if not any(stand):
             return ""
         how = "" if stand[0] else ", hoisting and lowering"
-        return f"{_shown_by(sample)} contradicts the drive torque{how}"
+        return f"{self._by} contradicts the drive torque{how}"
+
+    def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, bool | None]:
+        """Whether load and drive differ in this sample, and in the middle between both ways."""
+        lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
+        load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
+        if not math.isfinite(drive - load):
+            return None, None
+        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
+        return self._differ(load, drive, lever), self._middles_differ(sample, lever)
 
     def _tells(self, sample: Sample) -> bool:
         moves = abs(sample.motor_speed) > self._moving

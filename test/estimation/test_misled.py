@@ -158,6 +158,59 @@ def test_another_load_that_nobody_shows_does_not_lock_the_gate(crane, seed, show
         assert each.drum_torque == pytest.approx(crane.drum_torque(load), rel=0.02)
 
 
+def test_a_load_on_the_brake_is_not_learned_from_motors_that_carry_nothing(crane, seed):
+    """After an hour the filter had lost half of the load; every sample was rejected after that, for good."""
+    each = FrictionEstimator(crane, seed, CONFIG)
+    sea = list(rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=3, speed_noise=0.1))
+    for sample in sea:
+        each.step(sample)
+    before, resting = each.drum_torque, copy.deepcopy(sea[-1])
+    resting.motor_speed = resting.speed_reference = 0.0
+    resting.groups["main"].pressure_a = resting.groups["main"].pressure_b
+    for k in range(18_000):
+        resting.time = 20.0 + 0.2 * k
+        each.step(resting)
+    assert each.drum_torque == pytest.approx(before, rel=0.001)
+    rejected = each.counts["rejected"]
+    for sample in sea:
+        sample.time += 3700.0
+        each.step(sample)
+    assert each.counts["rejected"] - rejected < 50
+
+
+@pytest.mark.parametrize("shown", [0.5, 2.0])
+def test_a_load_cell_that_steps_is_said_and_does_not_lock_the_gate(crane, seed, shown):
+    """By so much less than a dead one that no check of one sample sees it; every sample was rejected, and nobody said
+    why."""
+    each, learned_from = FrictionEstimator(crane, seed, CONFIG), 0
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=40.0, noise=3, speed_noise=0.1):
+        learned_from = learned_from if sample.time > 20.0 else each.counts["learned_from"]
+        sample.hook_load *= shown if sample.time > 20.0 else 1.0
+        each.step(sample)
+    assert each.counts["rejected"] < 100  # of two thousand; some at each reversal, of the friction under the wrong load
+    assert each.load_apart == pytest.approx(1.0 / shown - 1.0, abs=0.1)
+    assert each.counts["learned_from"] - learned_from < 10  # nor does it teach anything
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=4, speed_noise=0.1):
+        sample.time += 40.0
+        each.step(sample)
+    assert each.counts["learned_from"] - learned_from > 500
+
+
+def test_a_load_cell_that_follows_slowly_is_believed_as_soon_as_it_has(crane, seed):
+    """55 t are set down at once, the cell lags by 2 s: what the filter had put in its place must go as it comes."""
+    each, shown = FrictionEstimator(crane, seed, CONFIG), 55e3
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=3, speed_noise=0.1):
+        each.step(sample)
+    for sample in rigid_samples(crane, seed, amplitude=150.0, duration=20.0, noise=5, speed_noise=0.1, load=10e3):
+        sample.time += 20.0
+        shown += (10e3 - shown) * 0.02 / 2.0
+        sample.hook_load = shown
+        each.step(sample)
+        if sample.time > 32.0:
+            assert abs(each.load_apart) < 0.1
+            assert each.status()["state"] in ("learning", "stick")
+
+
 def test_a_load_taken_anew_is_what_the_dead_cells_last_word_lacks(crane, seed):
     """The estimator knows of 55 t; where 20 t are balanced, what hangs there beyond the 55 is -35."""
     each = FrictionEstimator(crane, seed, CONFIG)

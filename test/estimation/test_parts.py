@@ -160,24 +160,26 @@ def test_chi_squared_is_scipys(count):
     assert chi_squared.survival(2000.0 + 10.0 * count, count) == pytest.approx(chi2.sf(2000.0 + 10.0 * count, count))
 
 
-@pytest.mark.parametrize("learning", [True, False])
-def test_considered_parameters_keep_value_and_variance_and_the_rest_is_josephs(kind, seed, learning):
+@pytest.mark.parametrize(("learning", "stick"), [(True, False), (False, False), (False, True)])
+def test_what_is_considered_keeps_value_and_variance_and_the_rest_is_josephs(kind, seed, learning, stick):
     each, step = some_filter(seed, kind=kind)
     each.predict_step(step, learning, False)
     ahead, x = each._ahead_P.copy(), each._ahead_carried[-1].copy()
     innovation, variance = each.innovation(0.7)
     row = np.zeros(each.size)
     row[[SPEED, ENCODER_CHANGE]] = 1.0
-    first = each.size if learning else FIRST_PARAMETER
+    considered = np.arange(each.size if learning else FIRST_PARAMETER, each.size)
+    considered = np.append(considered, LOAD) if stick else considered
     gain = ahead @ row / variance
-    gain[first:] = 0.0
+    gain[considered] = 0.0
     left = np.eye(each.size) - np.outer(gain, row)
     joseph = left @ ahead @ left.T + each.speed_variance * np.outer(gain, gain)
     unbounded(each)
-    each.correct(innovation, variance, learning)
+    each.correct(innovation, variance, learning, stick)
     assert np.allclose(each.P, joseph, rtol=1e-9, atol=1e-12 * np.abs(joseph).max())
-    assert np.array_equal(each.x[first:, 0], x[first:])
-    assert np.array_equal(each.P[first:, first:], ahead[first:, first:])
+    assert np.array_equal(each.x[considered, 0], x[considered])
+    among = np.ix_(considered, considered)
+    assert np.array_equal(each.P[among], ahead[among])
     assert np.linalg.eigvalsh(each.P).min() > -1e-9
 
 
@@ -248,7 +250,7 @@ def test_the_compiled_step_is_numpys(seed, widths):
         for one in (each, other):
             one.predict_step(step, k % 5 > 0, k % 7 == 0)
             said.append(one.innovation(0.1 * k))
-            one.correct(*said[-1], k % 5 > 0)
+            one.correct(*said[-1], k % 5 > 0, k % 5 == 0 and k % 3 == 0)
             one.adapt(1.3, 0.02)
         assert said[1] == pytest.approx(said[0], rel=1e-9)
         at_edge += np.any(np.abs(each.phi) >= widths)

@@ -5,7 +5,9 @@ import math
 import pytest
 from sea import CRANE
 
-from winch_friction.online.agreement import BALANCE_TIME, Agreement, Doubt, LoadBalance
+from winch_friction.online.agreement import Agreement
+from winch_friction.online.doubt import Doubt
+from winch_friction.online.load_agreement import BALANCE_TIME, LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
@@ -47,7 +49,8 @@ def test_speeds_near_standstill_heal_no_doubt():
 @pytest.mark.parametrize("apart", [0.3, -0.3])
 def test_a_load_cell_that_shows_too_much_is_doubted_as_one_that_shows_too_little(apart):
     balance = LoadBalance()
-    said = [balance.contradiction(apart, 0.1 * k) for k in range(int(BALANCE_TIME / 0.1) + 2)]
+    both_ways = [Sample(0.1 * k, 100.0 * (-1.0) ** k, hook_load=55e3) for k in range(int(BALANCE_TIME / 0.1) + 5)]
+    said = [balance.contradiction(apart, sample) for sample in both_ways]
     assert not said[1]
     assert "by 30%" in said[-1]
 

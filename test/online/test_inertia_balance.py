@@ -2,13 +2,16 @@
 
 import itertools
 import math
+import random
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import pytest
 from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inertia_balance import CHANGED, FIRST, InertiaBalance
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 
 PERIOD, LOAD = 0.02, 55e3  # s, kg
@@ -19,6 +22,7 @@ CHANGE_AT, SECONDS = 100.0, 200.0  # s
 def sailed(
     friction: Callable[[float], float], shown: Callable[[float], float],
     inertia: Callable[[float], float] = lambda _: 1.0, compensated: Callable[[float], float] = lambda _: 1.0,
+    load: float = LOAD,
 ) -> Iterator[Sample]:  # fmt: skip
     """Heave compensation by plain formulas: `friction` and `inertia` scale theirs, `shown` is the displacement that is
     logged over the true one, `compensated` the share of the wire's motion that the crane tip makes up for, all over
@@ -31,11 +35,11 @@ def sailed(
         speed = 80.0 * math.sin(phases[0]) + 40.0 * math.sin(phases[1])
         rate = 80.0 * 0.7854 * math.cos(phases[0]) + 40.0 * 1.1855 * math.cos(phases[1])
         torque = inertia(time) * CRANE.inertia * rate + friction(time) * (300.0 * math.tanh(speed / 3.0) + 1.5 * speed)
-        torque += LOAD * lever**2 * rate * (1.0 - compensated(time))
-        held = CRANE.drum_torque(LOAD, math.nan) / CRANE.gear_ratio / (CRANE.motor_count("passive") * DISPLACEMENT)
+        torque += load * lever**2 * rate * (1.0 - compensated(time))
+        held = CRANE.drum_torque(load, math.nan) / CRANE.gear_ratio / (CRANE.motor_count("passive") * DISPLACEMENT)
         drop = torque / (CRANE.motor_count("active") * DISPLACEMENT)
         yield Sample(
-            time=time, motor_speed=speed, hook_load=LOAD, heave_velocity=-lever * speed * compensated(time),
+            time=time, motor_speed=speed, hook_load=load, heave_velocity=-lever * speed * compensated(time),
             groups={
                 "active": GroupSample(drop + 20e5, 20e5, DISPLACEMENT * shown(time)),
                 "passive": GroupSample(held + 20e5, 20e5, DISPLACEMENT),
@@ -63,6 +67,24 @@ def test_a_displacement_that_is_off_is_told_within_a_minute():
     assert CHANGE_AT < first < CHANGE_AT + 60.0
     assert largest > CHANGED
     assert "displacement or pressures" in words
+
+
+def test_it_sees_a_load_by_its_rope_as_well():
+    """A crane that measures the rope's force and no hook load had no such check."""
+    by_rope = (
+        replace(each, hook_load=math.nan, rope_force=LOAD * GRAVITY)
+        for each in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT))
+    )
+    assert CHANGE_AT < said(by_rope)[0] < CHANGE_AT + 60.0
+
+
+def test_the_noise_of_a_load_cell_under_a_light_load_is_no_other_load():
+    """0.15 t of a cell for 300 t, with 2 t on the hook: each sample had begun everything anew."""
+    balance, rng = InertiaBalance(CRANE), random.Random(1)
+    light = itertools.takewhile(lambda each: each.time < FIRST + 5.0, sailed(same, same, load=2e3))
+    for sample in light:
+        balance.contradiction(replace(sample, hook_load=2e3 + rng.gauss(0.0, 150.0)))
+    assert abs(balance.change) < CHANGED
 
 
 def test_it_looks_at_a_log_of_5_hz_as_well():

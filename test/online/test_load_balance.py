@@ -6,11 +6,13 @@ from dataclasses import replace
 import pytest
 from sea import CRANE, SEED, TOPICS
 
-from winch_friction.online.agreement import BALANCE_SHARE, BALANCE_TIME
+from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.load_agreement import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample
+from winch_friction.records.topics import crane_topics
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 
@@ -117,6 +119,76 @@ def test_a_dead_load_cell_in_the_rope_is_found_as_one_at_the_hook(sea: tuple[Sam
             service.take_row(replace(sample, hook_load=float("nan"), rope_force=force))
             assert passed >= 5.0 or not service.contradiction
     assert service.contradiction == "rope_force contradicts the drive torque"
+
+
+def test_one_way_alone_friction_that_the_seed_does_not_know_is_no_error_of_the_load_cell() -> None:
+    """The hook alone, hoisted for half a minute against 1.3 times the seed's friction, and then lowered: nothing tells
+    friction from load before it is. It was contradicted after ten seconds, so that nothing was learned, for good."""
+    stiff = SEED.with_values({name: 1.3 * SEED.value(name) for name in SEED.parameter_names if name != "C4"})
+    run = simulate(load_scenario("experiment_zero_check"), CRANE, stiff, seed=5).run
+    service = EstimatorService(CRANE, SEED, crane_topics(CRANE, run.groups))
+    for sample in run.samples():
+        service.take_row(sample)
+        assert not service.contradiction
+    assert service.law.counts["learned_from"] > 3000
+
+
+def test_an_empty_hook_whose_cell_shows_a_little_less_than_nothing_contradicts_nothing(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 10.0:
+            service.take_row(sample)
+    scenario = load_scenario("ahc_irregular").override({"duration": 40.0, "load": 60.0})
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        service.take_row(replace(sample, time=sample.time + sea[0].time + 20.0, hook_load=-40.0))
+        assert not service.contradiction
+
+
+def test_a_load_cell_that_was_lost_contradicts_no_load_that_came_after_it(sea: tuple[Sample, ...]) -> None:
+    """Its last word had been held against whatever hung there, for good."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 20.0:
+            service.take_row(sample)
+    learned = service.law.counts["learned_from"]
+    scenario = load_scenario("ahc_irregular").override({"duration": 40.0, "load": 25e3})
+    for sample in simulate(scenario, CRANE, SEED, seed=3).run.samples():
+        service.take_row(replace(sample, time=sample.time + sea[0].time + 30.0, hook_load=float("nan")))
+        assert not service.contradiction
+    assert service.law.counts["learned_from"] > learned + 1000
+    assert service.law.drum_torque == pytest.approx(CRANE.drum_torque(25e3), rel=0.05)
+
+
+def test_a_wrong_load_cell_that_was_taken_out_is_not_held_against_anything(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea, error=0.25):
+        if passed == pytest.approx(40.0):
+            assert service.contradiction.startswith("hook_load contradicts")
+        lost = {"hook_load": float("nan")} if passed > 40.0 else {}
+        service.take_row(replace(sample, **lost))
+    assert not service.contradiction
+
+
+def on_the_brake(sample: Sample, passed: float) -> Sample:
+    """The load on the brake: the shaft stands still and the motors' lines are at boost pressure."""
+    groups = {name: replace(each, pressure_a=25e5, pressure_b=25e5) for name, each in sample.groups.items()}
+    return replace(sample, time=sample.time + passed, motor_speed=0.0, speed_reference=0.0, groups=groups)
+
+
+def test_a_load_that_hangs_on_the_brake_is_no_dead_load_cell(sea: tuple[Sample, ...]) -> None:
+    """The seed took the learned model's place at each stop, and nothing was fed forward for two seconds after it."""
+    learning, feeding = EstimatorService(CRANE, SEED, TOPICS), CompensatorService(CRANE, SEED, TOPICS)
+    for passed, sample in fed(sea):
+        if passed < 15.0:
+            learning.take_row(sample)
+    for k in range(500):
+        stopped = on_the_brake(sea[750], 0.02 * k)
+        assert feeding.take_row(replace(stopped, groups=dict(stopped.groups))).valid
+        learning.take_row(stopped)
+        assert not learning.contradiction
+    published = learning.model_due(stopped.time)
+    assert published is not None
+    assert published.values == learning.law.model().values != SEED.values
 
 
 @pytest.mark.parametrize("error", [-0.05, 0.05])

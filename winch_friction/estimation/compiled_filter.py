@@ -42,10 +42,18 @@ class CompiledFilter(StateFilter):
         seen = self._seen.item
         return seen(-1), seen(SPEED) + seen(ENCODER_CHANGE)
 
-    def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
+    def _take_in(self, innovation: float, variance: float, learning: bool, stick: bool) -> bool:
         parameters = self.parameters
         return bool(
             self._kernel_in(
-                self._now, self._ahead, self._seen, innovation, variance, learning, parameters.lower, parameters.upper
-            )
+                self._now,
+                self._ahead,
+                self._seen,
+                innovation,
+                variance,
+                learning,
+                stick,
+                parameters.lower,
+                parameters.upper,
+            )  # fmt: skip
         )

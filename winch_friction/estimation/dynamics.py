@@ -29,6 +29,7 @@ TORQUE, HEAVE, ACTING = 3, 4, 5
 # the noises of a step, behind the states
 TORQUE_NOISE, HEAVE_NOISE, LOAD_SPEED_NOISE, LOAD_NOISE, DISTURBANCE_NOISE, ROUNDING_NOISE, NOISES = range(7)
 
+DOUBTED_LOAD = 20.0  # times the load's random walk: what a slow load cell makes up for is followed in half a second
 STICK_IGNORANCE = 30.0  # times the friction level
 UNKNOWN_STRETCH = 1e-3  # m, of a wire whose past was not seen
 UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
@@ -43,7 +44,8 @@ class Step(NamedTuple):
 
     `torque`: drive minus measured load, N m, its noise `variance` and what stick leaves unknown of it, (N m)^2;
     `friction`: N m, with its derivatives by all parameters; `by_sensors`: derivatives of the torque by the considered
-    sensor errors; `wire` as from `wire_step`; heave velocity m/s; duration s.
+    sensor errors; `wire` as from `wire_step`; heave velocity m/s; duration s; `doubted`: another load than the measured
+    one hangs there.
     """
 
     torque: float
@@ -56,6 +58,7 @@ class Step(NamedTuple):
     heave: float
     duration: float
     stick: bool
+    doubted: bool = False
 
 
 def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> Wire:
@@ -141,11 +144,12 @@ def noise_variances(step: Step, config: EstimatorConfig, factor: float, load_kno
     nothing.
     """
     kept = fading(step.duration, config)
+    walk = config.load_noise * (DOUBTED_LOAD if step.doubted else 1.0)
     return (
         factor * step.variance + step.unknown,
         factor * config.heave_noise**2,
         factor * config.payload_noise**2 * step.duration,
-        0.0 if load_known else factor * config.load_noise**2 * step.duration,
+        0.0 if load_known else factor * walk * walk * step.duration,
         factor * config.disturbance_std**2 * (1.0 - kept * kept),
         factor * rounding_variance(config),
     )

@@ -28,7 +28,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_drive_torque, sample_load
+from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
@@ -56,7 +56,7 @@ class FrictionEstimator:
     The seed's sigmas are a claim: when what is learned refutes them they are taken back (`estimation.conflict`).
 
     Learning rests in stick, in saturation and without excitation; the parameters are then considered, not updated
-    (Schmidt).
+    (Schmidt), and so is the load in stick, where the brake may carry it.
     A sample that is not finite, late, or beyond the innovation gate leaves the estimator exactly as it was.
 
     >>> import winch_friction as wf
@@ -144,7 +144,7 @@ class FrictionEstimator:
         if not self._gate.admits(sample.time, innovation, variance):
             self._load.mass = mass
             return self._rejected(sample, innovation, variance)
-        self._filter.correct(innovation, variance, not reason)
+        self._filter.correct(innovation, variance, not reason, step.stick)
         self._friction.advance(point, theta, len(sample.groups), dt)
         if not reason:
             self._conflict.step(self._filter, dt)
@@ -165,6 +165,8 @@ class FrictionEstimator:
             return "saturation"
         if stick:
             return "stick"
+        if self._load.is_another(self._filter.load_torque, sample):
+            return "another load"
         return "no excitation" if self._excitation.range < self.config.excitation_speed else ""
 
     def _accept(self, now: Accepted, dt: float, reason: str) -> None:
@@ -204,9 +206,10 @@ class FrictionEstimator:
 
     def _restart(self, sample: Sample) -> Estimate:
         """Take the speed as measured and keep everything else, after a gap, a jump of time or a run of rejections; but
-        where that did not help and nobody shows the load, another one hangs there."""
-        if self._gate.exhausted_again and math.isnan(sample_load(sample)) and not self._load_is_known:
+        where that did not help, another load hangs there, whatever a load cell shows."""
+        if self._gate.exhausted_again and not self._load_is_known:
             self._begin_load(sample)
+            self._load.doubted = True
         self._filter.take_anew(fresh_motion(sample, self.crane, self.config, self._filter.speed_variance))
         self._friction.memory = None
         self._gate.restarted(sample.time)

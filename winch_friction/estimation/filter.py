@@ -37,14 +37,14 @@ EVEN_EVERY = 50  # steps; the rounding of one step is 1e-16 of the covariance
 class StateFilter:
     """Predicts by steps, takes speeds in; a prediction that is not taken in changes nothing.
 
-    `x` (n, 1) and `P` (n, n) are named as filterpy's. When not learning the parameters are considered: their gain is
-    zero, while their uncertainty and their correlation with the others stay in the account (Schmidt 1966; Simon,
-    Optimal State Estimation, section 10.1). Constant sensor errors (standard deviations `sensors`) are considered
-    always, and by the gain of a filter that does not know them: `sensitivity` (errors, n) is what one of each does to
-    the state's error (Tapley, Schutz and Born, Statistical Orbit Determination, chapter 6), so that the covariance of
-    the error is P + sensitivity' diag(sensors^2) sensitivity. Their own states would share the innovation's
-    variance with the noises, and its check would no longer tell. All noise variances share one factor, which `adapt`
-    lets follow the innovations. SI throughout.
+    `x` (n, 1) and `P` (n, n) are named as filterpy's. When not learning the parameters are considered, and in stick the
+    load: their gain is zero, while their uncertainty and their correlation with the others stay in the account (Schmidt
+    1966; Simon, Optimal State Estimation, section 10.1). Constant sensor errors (standard deviations `sensors`) are
+    considered always, and by the gain of a filter that does not know them: `sensitivity` (errors, n) is what one of
+    each does to the state's error (Tapley, Schutz and Born, Statistical Orbit Determination, chapter 6), so that the
+    covariance of the error is P + sensitivity' diag(sensors^2) sensitivity. Their own states would share the
+    innovation's variance with the noises, and its check would no longer tell. All noise variances share one factor,
+    which `adapt` lets follow the innovations. SI throughout.
     """
 
     def __init__(self, config: EstimatorConfig, parameters: ScaledParameters, sensors: Sequence[float] = ()) -> None:
@@ -163,24 +163,31 @@ class StateFilter:
         seen = np.add(self._ahead[:, SPEED], self._ahead[:, ENCODER_CHANGE], out=self._seen)
         return seen.item(-1), seen.item(SPEED) + seen.item(ENCODER_CHANGE)
 
-    def correct(self, innovation: float, variance: float, learning: bool) -> None:
-        """Take the prediction and its measured speed in; learned parameters stay inside their range."""
-        inside = self._take_in(innovation, variance, learning)
+    def correct(self, innovation: float, variance: float, learning: bool, stick: bool = False) -> None:
+        """Take the prediction and its measured speed in; learned parameters stay inside their range.
+
+        In `stick` the load is considered as well: a brake may carry it, and for as long as it likes.
+        """
+        inside = self._take_in(innovation, variance, learning, stick)
         self._learned_for = self._unfaded
         if learning and not inside:
             self._flat[:] = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
 
-    def _take_in(self, innovation: float, variance: float, learning: bool) -> bool:
+    def _take_in(self, innovation: float, variance: float, learning: bool, stick: bool) -> bool:
         """The prediction becomes what is; whether the learned parameters are inside their range."""
         gain, seen, size = self._seen[: self.size] / variance, self._seen, self.size
         if not learning:
             gain[self._phi] = 0.0
+        if stick:
+            gain[LOAD] = 0.0
         # every row gives up what the measurement shows of it times the gain, x what it does not show yet; with the
         # optimal gain of the free states Joseph's form of P is that too, and P itself among the considered
         seen[-1] = -innovation
         np.multiply(seen[:, None], gain, out=self._change)
         np.subtract(self._ahead_P, self._change[:size], out=self.P)
         np.subtract(self._ahead_carried, self._change[size:], out=self._carried)
+        if stick:
+            self.P[:, LOAD] = self.P[LOAD, :]
         if not learning:
             self.P[:FIRST_PARAMETER, FIRST_PARAMETER:] = self.P[FIRST_PARAMETER:, :FIRST_PARAMETER].T
             return True

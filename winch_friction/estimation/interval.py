@@ -96,7 +96,7 @@ class Intervals:
         step = Step(
             drive - measured_load, torque_variance(sample, self._crane, config), unknown, friction, gradient,
             self._errors.by(sample, drive), self._wire(sample, extra, duration), 0.5 * (last.heave + now.heave),
-            duration, stick,
+            duration, stick, self._load.doubted,
         )  # fmt: skip
         return step, point
 

@@ -111,22 +111,24 @@ def look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
         seen[row] = ahead[row, SPEED] + ahead[row, ENCODER_CHANGE]
 
 
-def take_in(now, ahead, seen, innovation, variance, learning, lower, upper):
+def take_in(now, ahead, seen, innovation, variance, learning, stick, lower, upper):
     """The prediction and its measured speed into `now`; whether the parameters are still within `lower`, `upper` (m,).
 
-    Every row gives up what the measurement shows of it times the gain; considered parameters have none, and share with
-    the others what those lost.
+    Every row gives up what the measurement shows of it times the gain; what is considered, the parameters unless
+    `learning` and the load in `stick`, has none, and shares with the others what those lost.
     """
     n = ahead.shape[1]
     first = n if learning else FIRST_PARAMETER
     seen[-1] = -innovation
     for i in range(n):
         gain = seen[i] / variance
+        free = i < first and not (stick and i == LOAD)
         for j in range(i, n):
-            now[i, j] = ahead[i, j] - gain * seen[j] if i < first else ahead[i, j]
+            taken = free or (j < first and not (stick and j == LOAD))
+            now[i, j] = ahead[i, j] - gain * seen[j] if taken else ahead[i, j]
             now[j, i] = now[i, j]
         for row in range(n, ahead.shape[0]):
-            now[NOISES + row, i] = ahead[row, i] - gain * seen[row] if i < first else ahead[row, i]
+            now[NOISES + row, i] = ahead[row, i] - gain * seen[row] if free else ahead[row, i]
     inside = True
     for k in range(len(lower)):
         value = now[now.shape[0] - 1, FIRST_PARAMETER + k]
@@ -145,5 +147,5 @@ def kernels() -> tuple[Any, Any]:
     """
     directory = str(cache_root() / f"filter_{source_digest(sorted(Path(__file__).parent.glob('*.py')))}")
     ahead = f"void({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, int64[::1], {_VECTOR}, {_VECTOR}, {_MATRIX})"
-    taken = f"boolean({_MATRIX}, {_MATRIX}, {_VECTOR}, float64, float64, boolean, {_VECTOR}, {_VECTOR})"
+    taken = f"boolean({_MATRIX}, {_MATRIX}, {_VECTOR}, float64, float64, boolean, boolean, {_VECTOR}, {_VECTOR})"
     return compiled_in(directory, look_ahead, ahead), compiled_in(directory, take_in, taken)

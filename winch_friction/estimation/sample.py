@@ -123,11 +123,13 @@ class HangingLoad:
         held = 0.5 * ChannelRanges(crane).load if crane.drive.hydraulic else 0.0  # where no rated load is known
         self._least = LEAST_LOAD * (crane.rated_load or held)  # kg
         self.mass = math.nan  # kg; NaN: not measured
+        self.doubted = False  # another load than the measured one was found
 
     def following(self, sample: Sample, dt: float) -> float:
-        """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it."""
-        measured = sample_load(sample)
-        if not math.isfinite(measured) or measured < 0.0:
+        """The mass after `dt` s more of a measured one in kg; one that is not finite leaves it, a cell whose zero is a
+        little below shows an empty hook."""
+        measured = max(sample_load(sample), 0.0)  # NaN stays
+        if not math.isfinite(measured):
             return self.mass
         if not abs(measured - self.mass) <= PICKED_UP * self.mass:
             return measured
@@ -148,6 +150,14 @@ class HangingLoad:
         least = self._crane.drum_torque(self._least, layer) / self._crane.gear_ratio
         whole = max(self.shaft_torque(layer), least)
         return torque / whole if self.measured and whole else math.nan
+
+    def is_another(self, torque: float, sample: Sample) -> bool:
+        """Whether a doubted load that is shown still lacks more than noise: a torque at the shaft in N m that is not
+        small beside it. Once it does not, the doubt is over."""
+        if self.doubted:
+            shown = math.isfinite(sample_load(sample))
+            self.doubted = shown and abs(self.share(torque, sample.wire_layer)) > PICKED_UP
+        return self.doubted
 
     def mass_by(self, shaft_torque: float, layer: float) -> float:
         """The measured mass, else the one that a load torque at the shaft means; kg."""

@@ -1,6 +1,6 @@
 """What is believed: a stamp that advances, a sender with one voice, and inputs that fit each other.
 
-The last are the command and the speed, the load and the drive's torque, at once and slowly.
+The last are the command and the speed; the load and the drive's torque are in `load_agreement`.
 """
 
 import math
@@ -10,8 +10,10 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
+from winch_friction.online.doubt import Doubt, span
+from winch_friction.online.load_agreement import LoadAgainstDrive
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
+from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.topics import Input, stamp_time
 
@@ -128,104 +130,18 @@ class Voices:
 # the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
 SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed
 SPEED_TIME = 0.5  # s
-# the load and the drive: inertia, friction and waves are a third of it at most
-TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
-SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
 # to and fro: jumps of this share of the largest speed, so many, within this time
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
-LONGEST_SPAN = 0.1  # s between two samples that count: a gap shows nothing
-CALM = 1.0  # s of agreement, where something is to be seen, before a doubt ends
-# the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
-# displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
-BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
-
-
-@dataclass
-class Doubt:
-    """A contradiction that counts after `patience` s and is over after `calm` s of agreement.
-
-    What was wrong before counts on until it was right for `forgiven` s.
-    """
-
-    patience: float
-    calm: float = CALM
-    forgiven: float = 0.0
-    _wrong: float = field(default=0.0, init=False)
-    _right: float = field(default=0.0, init=False)
-    stands: bool = field(default=False, init=False)
-
-    def step(self, wrong: bool | None, dt: float) -> bool:
-        """Whether it counts, after `dt` s more that were wrong, right, or (None) showed nothing."""
-        if wrong:
-            self._wrong, self._right = self._wrong + dt, 0.0
-        elif wrong is not None:
-            self._right += dt
-            self._wrong = self._wrong if self._right < self.forgiven else 0.0
-        self.stands = self._wrong >= self.patience or (self.stands and self._right < self.calm)
-        return self.stands
-
-
-def span(last: float, time: float) -> float:
-    """The seconds between two stamps that count for a doubt: none after a jump back, a tenth at most of a gap."""
-    return min(max(time - last, 0.0), LONGEST_SPAN) if math.isfinite(time - last) else 0.0
-
-
-class LoadBalance:
-    """Whether the load that the estimator finds is the one that the load cell shows.
-
-    A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
-    with m g r. It is not said which one is wrong, but that nothing may be learned from them.
-    """
-
-    def __init__(self) -> None:
-        self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
-
-    def contradiction(self, apart: float, time: float) -> str:
-        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown."""
-        dt, self._time = span(self._time, time), time
-        wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
-        if not self._doubt.step(wrong, dt):
-            return ""
-        return f"hook_load contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
-
-
-class LoadAgainstDrive:
-    """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
-
-    A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
-    the rope's force.
-    """
-
-    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
-        self._crane, self._doubt = crane, Doubt(TORQUE_TIME)
-        self._rated = 0.5 * ranges.load  # kg
-
-    def contradiction(self, sample: Sample, dt: float) -> str:
-        """What does not fit after `dt` s more, in words, '' for nothing."""
-        stands = self._doubt.step(self._differ(sample), dt)
-        by_rope = math.isnan(sample.hook_load) and sample.rope_force == sample.rope_force
-        return f"{'rope_force' if by_rope else 'hook_load'} contradicts the drive torque" if stands else ""
-
-    def _differ(self, sample: Sample) -> bool | None:
-        if not self._crane.drive.hydraulic or not self._crane.drum.has(sample.wire_layer):
-            return None
-        load = self._crane.drum_torque(sample_load(sample), sample.wire_layer) / self._crane.gear_ratio
-        drive = sample_drive_torque(sample, self._crane)
-        large = max(abs(load), abs(drive))
-        rated = self._crane.drum_torque(self._rated, sample.wire_layer) / self._crane.gear_ratio
-        if not (large > SMALLEST_TORQUE * rated and math.isfinite(drive - load)):
-            return None
-        return abs(drive - load) > TORQUE_SHARE * large
 
 
 class Agreement:
     """Cross-checks one sample after the other; says which inputs contradict each other.
 
-    `lead` s: how far the command may be ahead of the speed.
+    `lead` s: how far the command may be ahead of the speed; `load` kg: the one that was set, where none is measured.
     """
 
-    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0) -> None:
-        self._crane, self._ranges, self.lead = crane, ranges, lead
+    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0, load: float = math.nan) -> None:
+        self._crane, self._ranges, self.lead, self.load = crane, ranges, lead, load
         self.forget()
 
     def forget(self) -> None:
@@ -245,7 +161,7 @@ class Agreement:
         passed = (sample.time - self._time, now - self._now)
         dt = max(span(0.0, each) for each in passed) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
-        self._turns.patience = self.lead + LONGEST_LAG
+        self._turns.patience, self._load.assumed = self.lead + LONGEST_LAG, self.load
         found = {
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),

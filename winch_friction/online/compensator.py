@@ -162,7 +162,7 @@ class CompensatorService:
         self.schedule = ModelSchedule(self.options.model_delay)
         hold = InputHold(topics.groups, self.law.config.max_age, dict(self.law.config.max_ages))
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
-        self._agreement = Agreement(crane, self.inputs.ranges, self.law.config.lead)
+        self._agreement = Agreement(crane, self.inputs.ranges, self.law.config.lead, self.law.config.load)
         self._silence = _Silence()
         self._last_stamp = math.nan
         self.contradictions: tuple[str, ...] = ()
@@ -246,7 +246,7 @@ class CompensatorService:
         self.law.configure(config)
         self.options = options or self.options
         self.schedule.delay = self.options.model_delay
-        self._agreement.lead = config.lead
+        self._agreement.lead, self._agreement.load = config.lead, config.load
         hold = self.inputs.hold
         hold.max_age, hold.max_ages = config.max_age, dict(config.max_ages)
 

@@ -4,13 +4,15 @@ import math
 from dataclasses import replace
 from typing import Any
 
+from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
-from winch_friction.online.agreement import LoadAgainstDrive, LoadBalance, span
 from winch_friction.online.compensator import LEARNED_AT
+from winch_friction.online.doubt import span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.load_agreement import LoadAgainstDrive, LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -41,11 +43,16 @@ class EstimatorService:
         self.last: Estimate | None = None
         self.missing: tuple[str, ...] = ()
         self.contradiction = self._slow = ""  # what is said, and what of it only time shows
-        self._balance, self._load = LoadBalance(), LoadAgainstDrive(self.law.crane, self.inputs.ranges)
+        self._watch_loads()
         self._enabled, self._seen = True, math.nan
         self._gain = InertiaBalance(self.law.crane)
         self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
+
+    def _watch_loads(self) -> None:
+        crane = self.law.crane
+        self._balance = LoadBalance(AGAINST_SPEED * crane.speed_scale)
+        self._load = LoadAgainstDrive(crane, self.inputs.ranges)
 
     def take(
         self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
@@ -77,7 +84,7 @@ class EstimatorService:
         self._seen = sample.time
         if accepted:
             gain = self._gain.contradiction(sample)
-            self._slow = self._balance.contradiction(self.law.load_apart, sample.time) or gain
+            self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
         self.contradiction = lost or self._slow
         self.law.set_enabled(self._enabled and not self.contradiction)
 
@@ -101,7 +108,7 @@ class EstimatorService:
         """Back to the seed: everything learned is forgotten."""
         self.law.reset()
         self.contradiction = self._slow = ""
-        self._balance, self._load = LoadBalance(), LoadAgainstDrive(self.law.crane, self.inputs.ranges)
+        self._watch_loads()
         self._gain.forget()
         self.law.set_enabled(self._enabled)
         self.forget()

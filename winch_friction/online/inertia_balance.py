@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from winch_friction.online.agreement import Doubt
+from winch_friction.online.doubt import Doubt
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 
 SMOOTHING = 0.1  # s, twice: of all signals alike, so that noise and the encoder's steps do not pass for acceleration
 MEMORY = 40.0  # s: some waves
@@ -25,6 +25,7 @@ TELLING = 0.6
 CHANGED = 0.10  # of the inertia: a displacement that is off by more spoils the friction by more than 40 N m at 55 t
 ALIKE = (0.6, 1.6)  # change of the friction over the inertia's: a gain moves both alike, a changing sea does not
 ANOTHER_LOAD = 0.05  # relative: a load that is picked up or set down is another balance
+LIGHT_LOAD = 0.1  # of the rated one: below it the same share is of this, for a load cell's noise is one of its range
 PATIENCE = 5.0  # s
 
 
@@ -77,13 +78,13 @@ class InertiaBalance:
         if not self.crane.drive.hydraulic or not self.crane.drum.has(sample.wire_layer):
             return ""
         lever = self.crane.drum.radius(sample.wire_layer) / self.crane.gear_ratio
-        torque = sample_drive_torque(sample, self.crane)
-        torque -= self.crane.drum_torque(sample.hook_load, sample.wire_layer) / self.crane.gear_ratio
+        load, torque = sample_load(sample), sample_drive_torque(sample, self.crane)
+        torque -= self.crane.drum_torque(load, sample.wire_layer) / self.crane.gear_ratio
         if not math.isfinite(torque) or not math.isfinite(sample.motor_speed):
             return self._words()
-        if self._is_other(sample):
+        if self._is_other(load, sample):
             self.forget()
-            self._mass, self._groups = sample.hook_load, frozenset(sample.groups)
+            self._mass, self._groups = load, frozenset(sample.groups)
         dt = sample.time - self._time if self._time == self._time else 0.0
         self._time = sample.time
         if not 0.0 < dt < LONGEST_STEP:
@@ -96,11 +97,10 @@ class InertiaBalance:
             self._doubt.step(self._look(), passed)
         return self._words()
 
-    def _is_other(self, sample: Sample) -> bool:
-        known = self._mass == self._mass and sample.hook_load == sample.hook_load
-        return not known or frozenset(sample.groups) != self._groups or (
-            abs(sample.hook_load - self._mass) > ANOTHER_LOAD * abs(self._mass)
-        )  # fmt: skip
+    def _is_other(self, load: float, sample: Sample) -> bool:
+        if self._mass != self._mass or frozenset(sample.groups) != self._groups:
+            return True
+        return abs(load - self._mass) > ANOTHER_LOAD * max(abs(self._mass), LIGHT_LOAD * self.crane.rated_load)
 
     def _take(self, sample: Sample, torque: float, lever: float, dt: float) -> None:
         heave = sample.heave_velocity if sample.heave_velocity == sample.heave_velocity else 0.0

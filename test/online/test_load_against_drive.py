@@ -1,0 +1,96 @@
+"""The load that is shown against the motors' torque: what no single sample tells, both ways together do."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from sea import CRANE, SEED, TOPICS
+
+from winch_friction.compensation import CompensatorConfig
+from winch_friction.online.compensator import CompensatorService
+from winch_friction.physics.channels import GRAVITY
+from winch_friction.physics.signals import GroupSample, Sample
+
+PERIOD = 0.02  # s
+TONNE = 1e3
+NAN = math.nan
+
+
+def at_work(time: float, load: float, friction: float = 0.0, wave: float = 10.0, speed: float = 150.0) -> Sample:
+    """Heave compensation of `load` kg with `friction` N m at the shaft: the active group carries what the passive one
+    leaves, inertia too."""
+    phase = 2.0 * math.pi * time / wave
+    omega, acceleration = speed * math.sin(phase), speed * 2.0 * math.pi / wave * math.cos(phase)
+    torque = CRANE.drum_torque(load) / CRANE.gear_ratio + CRANE.inertia * acceleration
+    torque += math.copysign(friction, omega)
+    full = CRANE.max_displacement
+    passive = GroupSample(275e5, 25e5, 0.3 * full)
+    torque -= 8.0 * passive.displacement * 250e5
+    active = GroupSample(max(torque, 0.0) / (3.0 * full) + 25e5, max(-torque, 0.0) / (3.0 * full) + 25e5, full)
+    return Sample(time, omega, speed_reference=omega, groups={"active": active, "passive": passive}, hook_load=load)
+
+
+def said(seconds: float, config: CompensatorConfig | None = None, **how: float) -> list[str]:
+    """What the compensator says of each sample of a sea; `shown` kg, `rope` N and `out` m are its sensors."""
+    service = CompensatorService(CRANE, SEED, TOPICS, config)
+    shown, rope, out = (how.pop(name, NAN) for name in ("shown", "rope", "out"))
+    found = []
+    for k in range(round(seconds / PERIOD)):
+        sample = replace(at_work(k * PERIOD, **how), hook_load=shown, rope_force=rope, wire_out=out)
+        service.take_row(sample)
+        found.append("; ".join(service.contradictions))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("load", "shown"), [(55.0, 15.0), (15.0, 55.0), (100.0, 50.0), (55.0, 121.0)], ids=lambda tonnes: f"{tonnes:g} t"
+)
+def test_a_load_cell_that_is_off_by_less_than_a_dead_one_is_doubted_after_two_waves(load, shown):
+    """The last one shows pounds. Each was obeyed for good, its torque marked valid."""
+    found = said(25.0, load=load * TONNE, shown=shown * TONNE, friction=300.0)
+    assert not any(found[: round(5.0 / PERIOD)])
+    assert found[-1] == "hook_load contradicts the drive torque, hoisting and lowering"
+
+
+def test_what_shows_the_load_is_named():
+    assert said(25.0, load=55e3, rope=15e3 * GRAVITY)[-1].startswith("rope_force contradicts")
+    told = CompensatorConfig(load=15e3)
+    assert said(25.0, told, load=55e3)[-1].startswith("load (the parameter) contradicts")
+
+
+@pytest.mark.parametrize("wave", [4.0, 10.0, 20.0])
+@pytest.mark.parametrize(("load", "friction"), [(16e3, 300.0), (55e3, 700.0), (120e3, 1000.0)])
+def test_friction_and_inertia_contradict_no_load_cell(load, friction, wave):
+    """Two fifths of the load's torque are lost in the gears: that is a bad winch, and no bad load cell."""
+    for error in (0.85, 1.15):
+        assert not any(said(60.0, load=load, shown=error * load, friction=friction, wave=wave))
+
+
+def test_the_wire_beyond_a_cell_at_the_hook_is_no_error_of_it():
+    hanging = 40e3 + CRANE.wire_mass * 1500.0
+    assert not any(said(40.0, load=hanging, shown=40e3, out=1500.0))
+    assert said(40.0, load=hanging, shown=40e3, out=100.0)[-1]
+
+
+@pytest.mark.parametrize("wrong", [0.0, 15e3])
+def test_a_cell_that_was_taken_out_is_not_doubted_for_good(wrong):
+    """The load is taken from the pressures then, as on a crane without a cell; only ~/reset had brought it back."""
+    service, found = CompensatorService(CRANE, SEED, TOPICS), []
+    for k in range(round(60.0 / PERIOD)):
+        shown = 55e3 if k * PERIOD < 5.0 else wrong if k * PERIOD < 40.0 else NAN
+        given = service.take_row(replace(at_work(k * PERIOD, 55e3, 300.0), hook_load=shown))
+        found.append("; ".join(service.contradictions))
+    assert found[round(39.0 / PERIOD)]
+    assert all(each.startswith("hook_load") for each in found if each)
+    assert not found[-1]
+    assert given.valid
+
+
+def test_a_cell_that_works_again_is_believed_again():
+    service, found = CompensatorService(CRANE, SEED, TOPICS), []
+    for k in range(round(100.0 / PERIOD)):
+        sample = at_work(k * PERIOD, 55e3, 300.0)
+        service.take_row(replace(sample, hook_load=15e3) if k * PERIOD < 30.0 else sample)
+        found.append(bool(service.contradictions))
+    assert found[round(30.0 / PERIOD)]
+    assert not found[-1]

@@ -1,0 +1,145 @@
+"""Whether the load that is shown, the drive's torque and what the filter finds can be of one machine."""
+
+import math
+from dataclasses import dataclass
+
+from winch_friction.compensation.safe_output import AGAINST_SPEED
+from winch_friction.online.doubt import Doubt, span
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
+from winch_friction.physics.winch.operating_point import ChannelRanges
+
+# the load and the drive: inertia, friction and waves are a third of it at most
+TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
+SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
+# the same in the middle between hoisting and lowering: a cell and a feedback of some per cent each, a tare and wire
+# that are not weighed, of up to a tenth of the rated load. A load that is taken for 1.4 times what it is makes the
+# compensated share, 0.9, one of 1.26: from 1.3 on a winch may cycle
+MIDDLE_SHARE = 0.4  # of the larger one
+MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of one of 10 s
+# the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
+# displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
+BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
+
+
+class LoadBalance:
+    """Whether the load that the estimator finds is the one that the load cell shows.
+
+    A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
+    with m g r. It is not said which one is wrong, but that nothing may be learned from them. Nor is it before the winch
+    has turned both ways, faster than `moving` rad/s: one way, friction that the seed does not know looks like load.
+    """
+
+    def __init__(self, moving: float = AGAINST_SPEED) -> None:
+        self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
+        self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
+        self._by = ""  # the channel that showed the load last
+
+    def contradiction(self, apart: float, sample: Sample) -> str:
+        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown. A
+        sample without a load contradicts nothing: what hangs there may be another one than was shown last."""
+        dt, self._time = span(self._time, sample.time), sample.time
+        self._hoisted += dt if sample.motor_speed > self._moving else 0.0
+        self._lowered += dt if sample.motor_speed < -self._moving else 0.0
+        wrong: bool | None = False
+        if math.isfinite(sample_load(sample)):
+            self._by = _shown_by(sample)
+            wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
+        both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
+        if not both_ways and wrong is False:
+            self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
+        if not self._doubt.step(wrong, dt) or not both_ways:
+            return ""
+        return (
+            f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
+        )
+
+
+@dataclass
+class _Way:
+    """Means over the motion one way, of the shown load's torque and of the drive's, N m; `known` s of it."""
+
+    load: float = 0.0
+    drive: float = 0.0
+    known: float = 0.0
+
+    def step(self, load: float, drive: float, dt: float) -> None:
+        """`dt` s more."""
+        self.known = self.known * math.exp(-dt / MEMORY) + dt
+        share = dt / self.known if self.known else 0.0
+        self.load += share * (load - self.load)
+        self.drive += share * (drive - self.drive)
+
+
+class LoadAgainstDrive:
+    """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
+
+    A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
+    the rope's force, else `assumed` kg, which somebody has set. A winch that stands still shows nothing: its brake may
+    carry the load.
+
+    A cell that is off by less than a dead one is seen in the middle between hoisting and lowering: there friction,
+    which opposes both, cancels, and so does what accelerates the shaft from one reversal to the next.
+    """
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges, assumed: float = math.nan) -> None:
+        self._crane, self.assumed = crane, assumed
+        self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
+        self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
+        self._hoisting, self._lowering = _Way(), _Way()
+        self._by = ""  # what showed the load last
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing."""
+        at_once = both_ways = None
+        if math.isnan(self._load(sample)):  # nothing is shown that could be wrong, whatever was before
+            at_once = both_ways = False
+            self._hoisting, self._lowering = _Way(), _Way()
+        else:
+            self._by = _shown_by(sample)
+            if self._tells(sample):
+                at_once, both_ways = self._compared(sample, dt)
+        # both look at every sample
+        stand = self._at_once.step(at_once, dt), self._both_ways.step(both_ways, dt)
+        if not any(stand):
+            return ""
+        how = "" if stand[0] else ", hoisting and lowering"
+        return f"{self._by} contradicts the drive torque{how}"
+
+    def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, bool | None]:
+        """Whether load and drive differ in this sample, and in the middle between both ways."""
+        lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
+        load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
+        if not math.isfinite(drive - load):
+            return None, None
+        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
+        return self._differ(load, drive, lever), self._middles_differ(sample, lever)
+
+    def _tells(self, sample: Sample) -> bool:
+        moves = abs(sample.motor_speed) > self._moving
+        return moves and self._crane.drive.hydraulic and self._crane.drum.has(sample.wire_layer)
+
+    def _load(self, sample: Sample) -> float:
+        shown = sample_load(sample)
+        return shown if shown == shown else self.assumed
+
+    def _differ(self, load: float, drive: float, lever: float) -> bool | None:
+        large = max(abs(load), abs(drive))
+        if not large > SMALLEST_TORQUE * lever * self._rated:
+            return None
+        return abs(drive - load) > TORQUE_SHARE * large
+
+    def _middles_differ(self, sample: Sample, lever: float) -> bool | None:
+        one, other = self._hoisting, self._lowering
+        if min(one.known, other.known) < LEAST_KNOWN:
+            return None
+        load, drive = 0.5 * (one.load + other.load), 0.5 * (one.drive + other.drive)
+        wire = self._crane.wire_mass * sample.wire_out if math.isfinite(sample.wire_out) else 0.0  # kg
+        apart = max(drive - load - lever * max(wire, 0.0), load - drive)  # a cell at the hook does not weigh the wire
+        return apart > max(MIDDLE_SHARE * max(load, drive), SMALLEST_TORQUE * lever * self._rated)
+
+
+def _shown_by(sample: Sample) -> str:
+    if sample.hook_load == sample.hook_load:
+        return "hook_load"
+    return "rope_force" if sample.rope_force == sample.rope_force else "load (the parameter)"

@@ -132,3 +132,21 @@ def test_laws_that_close_much_less_than_the_best_are_not_proposed(monkeypatch):
     search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
     found = proposals.propose(SimpleNamespace(search=search), (), None, None, np.random.default_rng(0))
     assert [each.after for each in found] == [0.8, 0.7]
+
+
+@pytest.mark.parametrize(
+    ("signals", "loss", "weight", "own"),
+    [
+        (("pressure",), 100.0, 2.0, True),
+        (("pressure",), 127.0, 2.0, True),  # within a quarter of the logarithm of what the best leaves
+        (("pressure",), 140.0, 2.0, False),
+        (("pressure",), 127.0, 4.0, False),  # and no longer
+        (("motor_speed", "pressure"), 100.0, 2.0, False),  # the best one with something added
+    ],
+)
+def test_a_law_of_another_signal_that_leaves_hardly_more_is_shown_beside_the_best(signals, loss, weight, own):
+    head, law = (
+        SimpleNamespace(loss=left, law=SimpleNamespace(signals=read, weight=words))
+        for left, read, words in ((100.0, ("motor_speed",), 2.0), (loss, signals, weight))
+    )
+    assert proposals._another(law, head, 1000.0) is own

@@ -61,3 +61,21 @@ def test_the_order_of_arrival_between_inputs_does_not_matter():
     late.put("motor_speed", 0.0, 1.0)
     assert early.sample(0.0).motor_torque == late.sample(0.0).motor_torque
     assert early.sample(0.0).motor_torque == 10.0
+
+
+def test_stamps_that_differ_by_their_rounding_are_one_time():
+    """Unix times have steps of 2e-7 s: the pressure that was stamped with the speed is not a later one."""
+    hold = InputHold()
+    hold.put("hook_load", 1.7e9 + 4e-7, 5e4)
+    assert hold.sample(1.7e9).hook_load == 5e4
+    assert math.isnan(hold.sample(1.7e9 - 1e-3).hook_load)
+
+
+def test_other_age_limits_hold_from_the_next_sample_on():
+    hold = InputHold(max_age=0.1, max_ages={"hook_load": 2.0})
+    hold.put("hook_load", 0.0, 5e4)
+    assert hold.sample(1.0).hook_load == 5e4
+    hold.max_ages = {"hook_load": 0.5}
+    assert math.isnan(hold.sample(1.0).hook_load)
+    hold.max_ages, hold.max_age = {}, 3.0
+    assert hold.sample(1.0).hook_load == 5e4

@@ -26,10 +26,14 @@ def measure(smoke: bool = False) -> list[Row]:
     def evolved(generations: int = 1000) -> Any:
         return differential_evolution(counted.cost, box, seed=0, maxiter=generations)
 
+    theirs, against = fit(start, data, method="complex"), "Box's complex method"
+    fewer = theirs.evaluations / ours.evaluations
+    evaluations = Row(
+        "fit of MJ4: model evaluations", ours.evaluations, "1", against, theirs.evaluations, fewer, at_least=100.0
+    )
     if smoke:
         assert np.isfinite(evolved(2).fun)
-        return [Row("fit of MJ4: time", seconds(lambda: fit(start, data, method="least_squares")), "s")]
-    theirs = fit(start, data, method="complex")
+        return [Row("fit of MJ4: time", seconds(lambda: fit(start, data, method="least_squares")), "s"), evaluations]
     time = paired(
         lambda: fit(start, data, method="least_squares"), lambda: fit(start, data, method="complex"), repeats=3
     )
@@ -38,13 +42,11 @@ def measure(smoke: bool = False) -> list[Row]:
     evolution = evolved()
     evolving = paired(lambda: fit(start, data, method="least_squares"), evolved, repeats=1)
     how = f"scipy's defaults, {evolution.nfev} evaluations; its cost is {evolution.fun / ours.cost:.6f} x ours"
-    fewer = theirs.evaluations / ours.evaluations
-    against = "Box's complex method"
     return [
         Row("fit of MJ4: time", time.ours, "s", against, time.theirs, faster, spread, at_least=50.0, note=note),
         Row(
             "fit of MJ4: time beside evolution", evolving.ours, "s", "differential_evolution", evolving.theirs,
             *evolving.inverse, at_least=50.0, note=how,
         ),
-        Row("fit of MJ4: model evaluations", ours.evaluations, "1", against, theirs.evaluations, fewer, at_least=100.0),
+        evaluations,
     ]  # fmt: skip

@@ -28,15 +28,10 @@ def test_every_benchmark_gives_numbers(name, capsys):
     for row in rows.values():
         assert math.isfinite(row["value"])
         assert row["value"] > 0.0
+    if name == "fits":  # a hundredth of the complex method's evaluations, which no machine changes
+        assert rows["fit of MJ4: model evaluations"]["ratio"] > 100
 
 
 def test_an_unknown_benchmark_is_refused_with_those_there_are(capsys):
     assert main.run(["bench", "nothing"]) == 2
     assert "estimator" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_a_fit_takes_a_hundredth_of_the_complex_methods_evaluations(capsys):
-    assert main.run(["bench", "fits", "--json"]) == 0
-    rows = json.loads(capsys.readouterr().out)
-    assert rows["fit of MJ4: model evaluations"]["ratio"] > 100

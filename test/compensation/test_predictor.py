@@ -34,3 +34,10 @@ def test_what_accelerates_the_winch_is_not_taken_for_load(crane_150t, accelerati
     estimate = DrumTorque(crane_150t, math.nan, 5.0)
     estimate.learn(sample, 0.0, acceleration, 0.02)
     assert estimate.value(sample) == pytest.approx(crane_150t.drum_torque(load, layer), rel=1e-9)
+
+
+def test_a_stamp_that_does_not_advance_leaves_the_past_as_it_is():
+    each = SpeedPredictor(0.0, 0.0, 0.1)
+    for time, speed in ((0.0, 0.0), (0.02, 1.0), (0.04, 2.0), (0.04, 9.0), (0.03, -9.0)):
+        each.step(time, speed)
+    assert each.step(0.06, 3.0).acceleration == pytest.approx(50.0)

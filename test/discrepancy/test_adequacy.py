@@ -7,6 +7,7 @@ import pytest
 
 from winch_friction.discrepancy.adequacy import Check, long_enough, of_prepared
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 STEP = 0.1  # s
@@ -37,6 +38,16 @@ def test_each_direction_is_counted_by_itself_and_of_the_training_runs_alone():
     assert found["reversals"].value == 1.0
 
 
+def test_speeds_and_temperatures_are_judged_by_how_far_they_reach():
+    """A twentieth of the samples at either end is no speed that the runs were made at."""
+    one = prepared("a", 20.0, 20.0)
+    one.speed = one.direction * np.resize([10.0, *[50.0] * 9, *[60.0] * 9, 80.0], len(one.time))
+    one.channels = {"oil_temperature": np.linspace(40.0, 55.0, len(one.time))}
+    found = checked(one)
+    assert found["speeds, upper over lower decile"].value == pytest.approx(1.2)
+    assert found["oil temperatures, span"].value == pytest.approx(15.0)
+
+
 @pytest.mark.parametrize(
     ("value", "shown"), [(19.96, "19.96"), (19.99996, "19.99996"), (20.0, "20"), (20.04, "20"), (3.14159, "3.14")]
 )
@@ -60,3 +71,5 @@ def test_a_record_too_short_for_a_hoist_and_a_lower_is_left_out_by_name():
     found, notes = long_enough([Run("brief", {"time": time, "motor_speed": np.sin(time)})])
     assert not found
     assert "brief left out: it lasts" in notes[0]
+    with pytest.raises(InputError, match="brief: lasts 0.9 s; that is no record"):
+        long_enough([Run("brief", {"time": np.linspace(0.0, 0.9, 50), "motor_speed": np.ones(50)})])

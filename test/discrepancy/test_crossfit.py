@@ -1,14 +1,16 @@
 """Evidence that an effect has the same size whichever run is left out, and curves where no run has been."""
 
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
-from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.crossfit import CrossFit, far_less, fitted, other_start
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.table import Table, tabulated
 
 RUNS, BLOCKS = 9, 200
@@ -143,3 +145,67 @@ def test_what_is_asked_again_is_what_was_answered_first():
         assert kept.slots == slots
     assert again.explain([EFFECT]) is again.explain((EFFECT,))
     assert not again.explain((EFFECT,)).beta.flags.writeable
+
+
+@pytest.mark.parametrize(("unresolved", "gain", "inside"), [(0.0, 0.5, 0.2), (156.0, 0.159, 0.073)])
+def test_a_gain_is_of_the_held_out_error_and_inside_of_that_of_the_fit(unresolved, gain, inside):
+    """What matters to nobody is saved by nothing."""
+    problem = problem_with(np.ones(RUNS))
+    cross = CrossFit(problem)
+    cross.unresolved = unresolved
+    before = replace(cross.explain(()), losses=np.full(2, 50.0), train_loss=100.0)
+    after = replace(before, losses=np.full(2, 12.5), train_loss=64.0)
+    assert float(cross.gain(before, after)) == pytest.approx(gain, abs=1e-3)
+    assert float(cross.inside_gain(before, after)) == pytest.approx(inside, abs=1e-3)
+
+
+def test_stretches_of_a_few_runs_are_too_alike_to_be_sure_by():
+    """Though each of them has the effect of one size."""
+    few = problem_with(np.ones(RUNS)).blocks
+    own = few.run < LIMITS.fewest_runs - 1
+    some = {f.name: getattr(few, f.name)[own] for f in fields(few) if f.name != "features"}
+    problem = replace(problem_with(np.ones(RUNS)), blocks=replace(few, **some), grams=grams(replace(few, **some)))
+    assert len(CrossFit(problem).sums) == LIMITS.folds
+    assert p_value(problem) == 1.0
+
+
+@pytest.mark.parametrize(("by_part", "found"), [(False, ["b"]), (True, ["a", "b"])])
+def test_of_each_thing_that_a_law_may_speak_of_the_best_is_asked_where_they_are_told_apart(by_part, found):
+    one, other = (Slot("zero", "", (1,), law="grows", part=part) for part in "ab")
+    losses = {"a": 3.0, "b": 2.0}
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=(one, other)), train_loss=lambda slots: (losses[slots[-1].part], None)
+    )
+    assert [slot.part for slot in fitted(cross, (), set(), by_part)] == found
+
+
+def stub(slots=()):
+    """A floor of 100 blocks of noise; what is plain leaves a little less than the law itself."""
+    return SimpleNamespace(
+        floor=100.0, excess=lambda each: (each.loss - 100.0) / 100.0, problem=SimpleNamespace(slots=slots),
+        explain=lambda own: explained(own, 60.0 if own[-1].plain else 70.0),
+    )  # fmt: skip
+
+
+def explained(slots, above):
+    return SimpleNamespace(slots=tuple(slots), loss=100.0 + above)
+
+
+BENT, PLAIN = Slot("wear", "", (1,), law="bent"), Slot("wear", "", (2,), law="")
+
+
+@pytest.mark.parametrize(
+    ("laws", "above", "less"), [(1, 90.0, True), (1, 110.0, False), (2, 90.0, False), (2, 30.0, True)]
+)
+def test_a_set_of_more_laws_is_far_less_only_where_it_leaves_noise(laws, above, less):
+    anew, current = explained([PLAIN, EFFECT][:laws], above), explained([BENT], 200.0)
+    assert far_less(stub(), anew, current) is less
+
+
+@pytest.mark.parametrize(("first", "above", "anew"), [(BENT, 90.0, True), (BENT, 30.0, False), (PLAIN, 90.0, False)])
+def test_a_search_begins_anew_from_the_own_law_of_a_cause_whose_bent_one_leaves_more_than_noise(first, above, anew):
+    lacked = replace(PLAIN, plain=True)  # and leaves less, as what every machine has
+    cross = stub((BENT, lacked, PLAIN))
+    found = other_start(cross, explained([first, EFFECT], above))
+    assert (found is not None and found.slots == (PLAIN,)) is anew
+    assert other_start(cross, explained([], above)) is None

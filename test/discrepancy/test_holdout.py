@@ -19,6 +19,15 @@ def test_no_locked_run_is_learned_from():
     assert len(split.holdout) == 2
 
 
+def test_of_each_kind_one_is_locked_where_there_are_two_of_it():
+    """Three runs in heave compensation among twenty: a tenth of them is none."""
+    active = {f"active.{name}": np.ones(200) for name in ("pressure_a", "pressure_b", "displacement")}
+    some = [Run(f"ahc{k}", {**runs(1)[0].columns, **active}) for k in range(3)]
+    split = lock_holdout([*runs(20), *some], 0.1, np.random.default_rng(19))
+    assert sum(name.startswith("ahc") for name in split.holdout) == 1
+    assert len(split.holdout) == 3
+
+
 def test_of_a_few_runs_the_ends_are_locked_with_a_pause_between():
     few = lock_holdout(runs(2), 0.25, np.random.default_rng(18))
     times = {run.name: (run.time[0], run.time[-1]) for run in few.runs}

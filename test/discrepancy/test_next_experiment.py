@@ -1,9 +1,17 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import next_experiment
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
+from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
+from winch_friction.discrepancy.next_experiment import plan_experiment
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -56,3 +64,91 @@ def test_a_single_run_without_an_effect_is_no_discovery():
         moved = np.abs(np.subtract(result.model.values, model.values)) / np.array(model.std)
         assert moved.max() < 0.5
         assert result.holdout.size_after.value <= 1.01 * result.holdout.size_before.value
+
+
+# -- the plan by itself: runs in which all causes are one trace, and scenarios by what each cause does in them
+RUNS, BLOCKS, SIZE = 6, 40, 2.0  # of the effect, in its own units; the noise is 1
+TRACE = np.tile(np.sin(np.linspace(0.0, 20.0, BLOCKS)), RUNS)
+OLD = float(TRACE @ TRACE)
+
+
+def slots_of(*laws):
+    return tuple(Slot(name, "", (k,), law=law) for k, (name, law) in enumerate(laws, start=1))
+
+
+def tied(slots):
+    """Runs in which every one of these has the same trace, and one base parameter that has none."""
+    zero, run = np.zeros(RUNS * BLOCKS), np.repeat(np.arange(RUNS), BLOCKS)
+    x, position = np.column_stack([zero, *(TRACE for _ in slots)]), np.tile(np.arange(BLOCKS), RUNS)
+    blocks = Blocks(SIZE * TRACE, x, run, 2 * run + (position >= BLOCKS // 2), zero + 1.0, {}, zero + 1.0, position)
+    bound = np.full(len(slots) + 1, 100.0)
+    base = Base(("b",), 1, bound[:1], 0.0 * bound[:1], -bound[:1], bound[:1])
+    problem = Problem(
+        Layout(base, slots, 0.0 * bound + 1.0, -bound, bound), blocks, grams(blocks), dict.fromkeys(range(RUNS), 1.0)
+    )
+    return CrossFit(problem)
+
+
+def planned(monkeypatch, slots, scenarios, own=0, rivals=(1,)):
+    """The plan where each scenario has these traces of the slots, one column each, and no other can be run."""
+
+    def simulated(name, *_):
+        if name not in scenarios:
+            raise InputError("not of this crane")
+        return np.pad(np.array(scenarios[name], float).T @ np.array(scenarios[name], float), ((1, 0), (1, 0)))
+
+    monkeypatch.setattr(next_experiment, "_simulated", simulated)
+    cross = tied(slots)
+    chosen = [slots[k] for k in rivals]
+    return plan_experiment(None, SimpleNamespace(), cross, cross.explain((slots[own],)), slots[own], chosen, 0)
+
+
+ZERO, HOLD = "experiment_zero_check", "experiment_hold_times"
+
+
+def test_the_separation_is_what_the_rival_misses_of_old_and_new_runs_in_thinned_deviations(monkeypatch):
+    """Where the two are at right angles the rival keeps to the old runs and misses the new ones twice over."""
+    new = 50.0
+    plan = planned(monkeypatch, slots_of(("one", ""), ("two", "")), {ZERO: np.sqrt(new) * np.eye(2)})
+    missed = SIZE**2 * (new + OLD * new / (OLD + new))
+    assert plan.expected_z == pytest.approx(np.sqrt(missed / 10.0), rel=1e-3)
+    assert plan.separates == ("one", "two")
+    assert plan.content()["note"] == ""
+
+
+@pytest.mark.parametrize("cause", ["one", "two"])
+def test_a_cause_that_has_a_law_like_the_other_is_not_told_from_it(monkeypatch, cause):
+    """Whichever of the two is there, and although the law that was found is another one."""
+    slots = slots_of(("one", ""), ("two", ""), (cause, "bent"))
+    like = [1.0, 0.0] if cause == "two" else [0.0, 1.0]
+    plan = planned(monkeypatch, slots, {ZERO: 9.0 * np.array([[1.0, 0.0, like[0]], [0.0, 1.0, like[1]]])})
+    assert plan.expected_z < 0.1
+    assert "tied in every scenario" in plan.content()["note"]
+
+
+def test_what_is_missed_by_less_than_a_rival_may_be_worse_separates_nothing(monkeypatch):
+    """A hundredth of what the effect explains, however sure it is in a long run."""
+    slots = slots_of(("one", ""), ("two", ""))
+    plan = planned(monkeypatch, slots, {ZERO: 300.0 * np.array([[1.0, 1.0], [0.0, 0.1]])})
+    assert plan.expected_z == pytest.approx(1.0, rel=0.05)  # 3 deviations by a third of 3 %
+
+
+@pytest.mark.parametrize(
+    ("scenarios", "chosen"),
+    [
+        # both rivals parted by a little, or one of them by far
+        ({ZERO: 30.0 * np.array([[1, 0, 1], [0, 1, 0]]), HOLD: 9.0 * np.eye(3)}, HOLD),
+        # one of them either way: by far, though the other not at all, or by less
+        ({ZERO: 30.0 * np.array([[1, 0, 1], [0, 1, 0]]), HOLD: 9.0 * np.array([[1, 0, 1], [0, 1, 0.1]])}, ZERO),
+    ],
+)
+def test_most_rivals_first_and_of_those_the_nearest_farthest_away(monkeypatch, scenarios, chosen):
+    plan = planned(monkeypatch, slots_of(("one", ""), ("two", ""), ("three", "")), scenarios, rivals=(1, 2))
+    assert plan.name == chosen
+    assert plan.separates[1] in (("two", "three") if chosen == HOLD else ("two",))
+    assert set(plan.alternatives) == {ZERO, HOLD}
+    assert list(plan.alternatives.values()) == sorted(plan.alternatives.values(), reverse=True)
+
+
+def test_where_none_can_be_run_nothing_is_planned(monkeypatch):
+    assert planned(monkeypatch, slots_of(("one", ""), ("two", "")), {}) is None

@@ -1,6 +1,7 @@
 """What the equations make one thing has parallel regressors, and is never given a single name."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +13,19 @@ from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.candidates.families import literature
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.ties import TIES, _best_pair, member_candidate
+from winch_friction.discrepancy.ties import (
+    TIES,
+    Company,
+    _best_pair,
+    _covariance,
+    _partner,
+    company,
+    e_D,
+    member_candidate,
+)
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
@@ -122,6 +134,55 @@ def test_what_is_tied_is_known_as_a_combination_at_the_length_that_was_run():
 
 def test_what_is_known_alone_needs_no_combination():
     assert _best_pair(*_between(0.0, 2000.0)) is None
+
+
+@pytest.mark.parametrize(("value", "combined"), [(2.0, True), (4.0, False)])  # in deviations of each
+def test_what_is_half_tied_is_a_combination_only_where_neither_is_known_alone(value, combined):
+    std, names = np.array([50.0, 0.5]), ["m_h", "mu_w"]
+    estimates = {n: ParameterEstimate(value * s, s, u) for n, s, u in zip(names, std, ["kg", "kg/m"], strict=True)}
+    found = _best_pair(np.outer(std, std) * np.array([[1.0, -0.7], [-0.7, 1.0]]), estimates, names)
+    assert (found is not None) is combined
+    if combined:
+        assert found.expression == "m_h + 70 m * mu_w"
+        assert found.std == pytest.approx(50.0 * np.sqrt(1.0 - 0.7**2))
+
+
+def test_a_partners_size_is_what_it_needs_alone_and_its_factor_what_of_it_is_one_of_the_found():
+    own, other = (
+        SimpleNamespace(columns=(k,), origin=(SimpleNamespace(linear=(e,)), None)) for k, e in enumerate((None, e_D))
+    )
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(layout=SimpleNamespace(scales=np.array([2.0, 0.5]))),
+        covariance=lambda _: np.diag([9.0, 0.25]),
+    )
+    found, alone = (SimpleNamespace(slots=(s,), beta=np.array([7.0, b])) for s, b in ((own, 3.0), (other, 4.0)))
+    partner = _partner(TIES[0], cross, found, alone)
+    assert (partner.size.value, partner.size.std, partner.factor) == (2.0, 0.25, 3.0)
+    assert partner.parameter == "e_D"
+
+
+def test_estimates_that_were_fitted_once_more_keep_how_they_go_together():
+    """The correlation is the search's, the deviations those of the estimates."""
+    names = ["a", "b"]
+    slot = SimpleNamespace(columns=(4, 5), origin=(SimpleNamespace(linear=[SimpleNamespace(name=n) for n in names]),))
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(columns=lambda _: (0, 4, 5)),
+        covariance=lambda _: np.array([[1.0, 0.0, 0.0], [0.0, 4.0, 3.0], [0.0, 3.0, 9.0]]),
+    )
+    unnamed = SimpleNamespace(parameter_names=(), covariance=None)
+    search = SimpleNamespace(
+        cross=cross, given=SimpleNamespace(model=unnamed),
+        selection=SimpleNamespace(final=SimpleNamespace(slots=(slot,))),
+    )  # fmt: skip
+    estimates = {name: ParameterEstimate(1.0, std, "1") for name, std in (("a", 0.2), ("b", 6.0))}
+    found = _covariance(search, SimpleNamespace(slot=slot), estimates, names, unnamed)
+    np.testing.assert_allclose(found, [[0.04, 0.6], [0.6, 36.0]])
+
+
+def test_what_no_tie_speaks_of_keeps_what_a_set_has_no_room_for():
+    search = SimpleNamespace(expansion=SimpleNamespace(model=None, runs=()), train=())
+    found = Finding(Slot("wear_drift", "", (0,)), (Slot("brake_drag", "", (1,)),), 0.0, 0.1, 1.0, ("coulomb",))
+    assert company(search, found) == Company(("brake_drag",), (), ("coulomb",))
 
 
 def _traces(name, **fixed):

@@ -36,6 +36,25 @@ def test_the_gate_is_wide_for_a_while_after_it_shut_out_a_run_of_samples():
     assert not gate.admits(10.0 + 1.1 * WIDE_FOR, 6.0, 1.0)
 
 
+def test_a_clock_that_is_set_back_does_not_open_the_gate():
+    gate = InnovationGate(CONFIG)
+    shut_out(gate)
+    gate.restarted(10.0)
+    assert not gate.admits(9.9, 6.0, 1.0)
+
+
+@pytest.mark.parametrize(("passed", "again"), [(1, True), (RESTART_AFTER - 1, True), (RESTART_AFTER, False)])
+def test_one_sample_that_passes_is_no_run_of_them(passed, again):
+    """Taken anew, the speed may be so unsure that one of them is believed: the gate shut out as before."""
+    gate = InnovationGate(CONFIG)
+    shut_out(gate)
+    gate.restarted(10.0)
+    for _ in range(passed):
+        gate.accepted()
+    shut_out(gate)
+    assert gate.exhausted_again is again
+
+
 def test_a_gap_without_rejections_leaves_the_gate_as_it_was():
     gate = InnovationGate(CONFIG)
     gate.restarted(10.0)

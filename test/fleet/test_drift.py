@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from winch_friction.fleet.drift import Series, find_steps, find_unlike, month_of, month_text, monthly
+from winch_friction.fleet.drift import Series, _weights, find_steps, find_unlike, month_of, month_text, monthly
 
 MONTHS = np.arange(24) + 2024 * 12
 
@@ -70,3 +70,21 @@ def test_months_are_calendar_months():
     (own,) = monthly(rows)
     assert own.values.tolist() == [7.0, 2.0]
     assert own.stds.tolist() == pytest.approx([1.0, 2.0**-0.5])
+
+
+def test_a_month_that_says_it_is_sure_decides_no_step():
+    """One recording whose deviation came out as next to nothing; months do not differ by more than they scatter."""
+    rng = np.random.default_rng(9)
+    calm = [series(f"c{k}", rng) for k in range(6)]
+    calm[0].values[12] += 3.0
+    calm[0].stds[12] = 1e-9
+    assert find_steps(calm) == []
+    own = _weights(calm[0])
+    assert own.max() / np.median(own) == pytest.approx(2.0)
+
+
+def test_three_cranes_are_no_fleet_to_be_unlike():
+    rng = np.random.default_rng(10)
+    fleet = [*(series(f"c{k}", rng, noise=0.1) for k in range(2)), series("odd", rng, 0, 50.0)]
+    assert find_unlike(fleet) == []
+    assert [each.crane for each in find_unlike([*fleet, series("c3", rng, noise=0.1)])] == ["odd"]

@@ -27,6 +27,20 @@ def test_a_logger_under_windows_writes_capitals(tmp_path):
     assert [each.name for each in find_recordings([str(touched(tmp_path, "north/A.CSV"))])] == ["A"]
 
 
+def test_what_a_system_hides_is_no_recording(tmp_path):
+    """A Mac writes one beside each file that it copies to a share."""
+    touched(tmp_path, "north/a.csv", "north/._a.csv", "north/.a.csv")
+    assert [each.name for each in find_recordings([str(tmp_path)])] == ["a"]
+
+
+def test_the_last_file_of_a_bag_that_was_written_dates_it(tmp_path):
+    touched(tmp_path, "north/bag/metadata.yaml", "north/bag/0.mcap")
+    os.utime(tmp_path / "north/bag/metadata.yaml", ns=(10**18, 10**18))
+    os.utime(tmp_path / "north/bag/0.mcap", ns=(2 * 10**18, 2 * 10**18))
+    (found,) = find_recordings([str(tmp_path)])
+    assert found.changed == 2 * 10**18
+
+
 def test_two_recordings_of_one_crane_and_name_are_refused(tmp_path):
     touched(tmp_path, "east/north/a.csv", "west/north/a.csv")
     with pytest.raises(InputError, match="two recordings are named 'north/a'"):

@@ -7,10 +7,11 @@ import pytest
 from cycles import SPEEDS, TABLE_2, cycle, cycles
 
 from winch_friction.identification.fit_data import modelled
-from winch_friction.identification.friction_curve import curve_data, friction_curve, winch_points
-from winch_friction.identification.plateaus import find_plateaus
+from winch_friction.identification.friction_curve import _branch, curve_data, friction_curve, winch_points
+from winch_friction.identification.plateaus import Plateau, PlateauRule, find_plateaus
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Run
 
 
 def test_every_plateau_is_found_once(truth, crane):
@@ -60,6 +61,25 @@ def test_a_change_of_displacement_ends_a_plateau(truth, crane):
     plateaus = find_plateaus(replace(run, columns={**run.columns, "main.displacement": moved}), crane)
     for each in plateaus:
         assert not each.start < 3.0 < each.end
+
+
+def test_what_settles_is_no_part_of_a_plateau_and_a_change_of_layer_ends_it(crane):
+    """Two levels of 8 s: the first second of each, and what is out of the band about its end, is still on the way."""
+    time = np.arange(0.0, 16.0, 0.02)
+    level = np.where(time < 8.0, 300.0, 600.0)
+    late = np.where((time > 8.0) & (time < 10.0), -40.0, 0.0)  # 2 s of 560 rpm, of constant speed themselves
+    late += np.where((time > 10.0) & (time < 10.5), 60.0, 0.0)
+    columns = {
+        "time": time, "motor_speed": (level + late) * RPM, "main.pressure_a": np.full(len(time), 150e5),
+        "main.pressure_b": np.full(len(time), 25e5), "main.displacement": np.full(len(time), 215 * CM3_PER_REV),
+        "hook_load": np.full(len(time), 50e3), "wire_layer": np.where(time < 13.0, 2.0, 3.0),
+    }  # fmt: skip
+    found = find_plateaus(Run("steps", columns), crane, PlateauRule(slope=200.0 * RPM, drift=50.0 * RPM))
+    first, *others = [(each.start, each.end) for each in found]
+    assert first[0] == pytest.approx(1.6, abs=0.05)  # behind half of the window over which a slope is taken
+    assert first[1] < 8.0
+    assert min(start for start, _ in others) > 10.5
+    assert all(not start < 13.0 <= end for start, end in others)
 
 
 def test_curve_recovers_total_friction(truth, crane):
@@ -182,3 +202,22 @@ def test_a_slow_motor_has_its_plateaus_and_its_curve(truth, crane):
     np.testing.assert_allclose(11 * curve.friction_torque, truth.torque(x), rtol=0.03)
     ramp = np.interp(run.time, [0.0, run.time[-1]], [5.0, 60.0]) * RPM
     assert find_plateaus(replace(run, columns={**run.columns, "motor_speed": ramp}), slow) == []
+
+
+def level(speed, pressure=100.0):
+    return Plateau("t", 0.0, 5.0, 250, speed * RPM, 0.0, pressure * BAR, 0.0, 215 * CM3_PER_REV, 1e6)
+
+
+def test_speeds_within_five_rpm_of_the_first_are_one_and_a_chain_of_them_is_not():
+    speeds = (100.0, 104.0, 108.0, 300.0)
+    found = _branch([level(speed, speed) for speed in speeds], +1, "t", 5.0 * RPM)
+    np.testing.assert_allclose(found[0] / RPM, [102.0, 108.0, 300.0])
+    np.testing.assert_allclose(found[1] / BAR, [102.0, 108.0, 300.0])
+
+
+def test_tests_with_other_motors_on_the_shaft_are_fitted_apart(crane):
+    plateaus = [level(sign * speed, 100.0 + sign) for sign in (1.0, -1.0) for speed in (100.0, 300.0)]
+    curves = [friction_curve(plateaus, crane), friction_curve(plateaus, crane, "active")]
+    assert len(curve_data(curves[:1]).torque) == len(curves[0].speed)
+    with pytest.raises(InputError, match="differ in their number of motors"):
+        curve_data(curves)

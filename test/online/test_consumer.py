@@ -18,6 +18,16 @@ def test_a_torque_is_held_for_a_moment_and_let_go() -> None:
     assert values[-1] == 0.0
 
 
+@pytest.mark.parametrize("looked_at", [(), (0.5,), (0.5, 0.9, 1.2)])
+def test_what_is_let_go_does_not_hang_on_how_often_it_is_asked_for(looked_at: tuple[float, ...]) -> None:
+    """A slow controller asks before the hold is over and again behind it: only what is behind it counts."""
+    held = HeldTorque()
+    held.take(300.0, 10.0, mark(True, 1))
+    for share in looked_at:
+        held.value(10.0 + share * HOLD_TIME)
+    assert held.value(10.0 + HOLD_TIME + 0.1 * FADE_TIME) == pytest.approx(0.9 * 300.0)
+
+
 def test_after_a_silence_it_comes_back_without_a_step() -> None:
     held = HeldTorque()
     held.take(300.0, 10.0, mark(True, 1))
@@ -27,7 +37,7 @@ def test_after_a_silence_it_comes_back_without_a_step() -> None:
         held.take(300.0, 12.0 + 0.02 * k, mark(True, 2 + k))
         values.append(held.value(12.0 + 0.02 * k))
     assert max(abs(b - a) for a, b in zip([0.0, *values], values, strict=False)) <= 300.0 * 0.021 / RETURN_TIME
-    assert values[-1] == 300.0
+    assert values[-1] == values[round(RETURN_TIME / 0.02) + 1] == 300.0
 
 
 @pytest.mark.parametrize("nonsense", [math.nan, math.inf, -math.inf])

@@ -1,11 +1,12 @@
 """Latest-sample hold with an age limit per input."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 
-from winch_friction.physics.signals import Run
-from winch_friction.records.sample_stream import InputHold
+from winch_friction.physics.signals import GroupSample, Run, Sample
+from winch_friction.records.sample_stream import InputHold, SampleStream
 
 
 def test_holds_until_the_age_limit_of_the_input():
@@ -61,3 +62,58 @@ def test_the_order_of_arrival_between_inputs_does_not_matter():
     late.put("motor_speed", 0.0, 1.0)
     assert early.sample(0.0).motor_torque == late.sample(0.0).motor_torque
     assert early.sample(0.0).motor_torque == 10.0
+
+
+def test_stamps_that_differ_by_their_rounding_are_one_time():
+    """Unix times have steps of 2e-7 s: the pressure that was stamped with the speed is not a later one."""
+    hold = InputHold()
+    hold.put("hook_load", 1.7e9 + 4e-7, 5e4)
+    assert hold.sample(1.7e9).hook_load == 5e4
+    assert math.isnan(hold.sample(1.7e9 - 1e-3).hook_load)
+
+
+def test_other_age_limits_hold_from_the_next_sample_on():
+    hold = InputHold(max_age=0.1, max_ages={"hook_load": 2.0})
+    hold.put("hook_load", 0.0, 5e4)
+    assert hold.sample(1.0).hook_load == 5e4
+    hold.max_ages = {"hook_load": 0.5}
+    assert math.isnan(hold.sample(1.0).hook_load)
+    hold.max_ages, hold.max_age = {}, 3.0
+    assert hold.sample(1.0).hook_load == 5e4
+
+
+def test_what_cannot_be_is_not_preferred_to_what_is_held():
+    """A sensor that gives 1e9 Pa for one sample."""
+    hold = InputHold(groups=("main",))
+    good = Sample(0.0, 50.0, groups={"main": GroupSample(150e5, 25e5, 3e-5)})
+    assert hold.fill(good).groups["main"].pressure_a == 150e5
+    bad = Sample(0.02, 50.0, groups={"main": GroupSample(1e12, 26e5, 3e-5)})
+    filled = hold.fill(bad).groups["main"]
+    assert (filled.pressure_a, filled.pressure_b) == (150e5, 26e5)
+
+
+def test_no_input_is_younger_than_now():
+    hold = InputHold()
+    hold.put("hook_load", 1.0, 5e4)
+    assert hold.ages(0.5) == {"hook_load": 0.0}
+
+
+def says(topic, channel):
+    return SimpleNamespace(topic=topic, stamped=True, decode=lambda message: {channel: message})
+
+
+def test_a_speed_that_cannot_be_makes_no_sample():
+    stream = SampleStream(SimpleNamespace(speed_topic="speed"), InputHold())
+    assert stream.take_speed(says("speed", "motor_speed"), 1e9, 1.0, 1.0) is None
+    assert stream.last_stamp == -math.inf
+    assert stream.take_speed(says("speed", "motor_speed"), 10.0, 1.0, 1.0).motor_speed == 10.0
+    assert (stream.counts["speed"], stream.rejected["speed"]) == (2, 1)
+
+
+def test_what_waits_for_a_speed_is_forgotten_when_the_clock_jumps():
+    stream = SampleStream(SimpleNamespace(speed_topic="speed"), InputHold())
+    stream.put_off(says("load", "hook_load"), 5e4, 5.0)
+    stream.forget()
+    assert math.isnan(stream.take_speed(says("speed", "motor_speed"), 10.0, 6.0, 6.0).hook_load)
+    stream.put_off(says("load", "hook_load"), 5e4, 6.01)
+    assert stream.take_speed(says("speed", "motor_speed"), 10.0, 6.02, 6.02).hook_load == 5e4

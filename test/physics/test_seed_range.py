@@ -52,3 +52,13 @@ def test_what_lies_outside_is_refused_on_either_side():
     for value in (-1.1, 5.1):
         with pytest.raises(InputError, match="T_0"):
             refuse_outside_seed(replace(seed.with_values({"T_0": value}), name="learned"), seed, 0.5)
+
+
+@pytest.mark.parametrize(("beyond", "refused"), [(1e-11, False), (1e-6, True)])
+def test_a_value_at_the_edge_is_not_refused_for_the_rounding_of_its_file(crane2_model, beyond, refused):
+    edge = crane2_model.with_values({"K2": 1.5 * (1.0 + beyond) * crane2_model.value("K2")})
+    if refused:
+        with pytest.raises(InputError, match="parameter K2"):
+            refuse_outside_seed(edge, crane2_model, 0.5)
+    else:
+        refuse_outside_seed(edge, crane2_model, 0.5)

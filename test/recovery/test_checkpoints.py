@@ -59,6 +59,21 @@ def test_what_was_learned_comes_back(tmp_path, learned):
     np.testing.assert_allclose(again.model().covariance, learned.model().covariance, rtol=1e-9, atol=1e-300)
 
 
+def test_nothing_of_what_was_kept_is_lost_on_its_way(tmp_path, learned):
+    """The load that hangs there, how far each parameter may be believed, and whose sigma was taken back."""
+    content = learned.snapshot()
+    names, count = learned.model().parameter_names, len(content["levels"])
+    content |= {"levels": ["learned", *["learning"] * (count - 1)], "widened": [names[1], names[-1]]}
+    again = fresh()
+    again.restore(read_checkpoint(write_checkpoint(tmp_path / "c.json", content)))
+    back = again.snapshot()
+    assert back["mass"] == pytest.approx(55e3)
+    assert {each.name for each in again.parameters() if each.prior_std > 1.001 * each.seed_std} == {names[1], names[-1]}
+    for key in ("state", "covariance", "sensitivity"):
+        np.testing.assert_allclose(back.pop(key), content.pop(key), rtol=1e-9, atol=1e-12)
+    assert back == content
+
+
 def test_no_file_yet_is_no_error(tmp_path):
     assert read_checkpoint(tmp_path / "none.json") is None
 

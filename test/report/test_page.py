@@ -3,10 +3,11 @@
 import re
 
 import numpy as np
+import pytest
 
 from winch_friction.report.base import TextSection, render, write_report
 from winch_friction.report.figures import figure_html, new_figure, save_figure
-from winch_friction.report.tables import number, paragraph, table_html
+from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
 
 
 def picture(points=50):
@@ -94,3 +95,34 @@ def test_a_unit_in_a_sentence_reads_as_in_a_heading():
     assert "215\u00a0cm³/rev" in table
     assert "0.0012\u00a0m³ would" in table
     assert "x.unit=cm^3/<wbr>rev" in table_html(["command"], [["import --set x.unit=cm^3/rev"]])  # to be typed as it is
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(0.0, "0"), (0.00123456, "0.001235"), (0.000123456, "0.0001235"), (123456.0, "123456"), (1234567.0, "1.235e+06"),
+     (-54321.4, "-54321"), (float("inf"), "–")],
+)  # fmt: skip
+def test_a_number_has_no_exponent_where_it_stays_short(value, shown):
+    assert number(value) == shown
+
+
+def test_counts_are_whole_and_a_column_of_numbers_and_words_is_one_of_words():
+    text = table_html(["count", "size", "mixed"], [[12345678, 1.23456789, 3.0], [7, None, "none"]])
+    assert '<td class="number">12345678</td><td class="number">1.235</td><td>3</td>' in text
+    assert '<td class="number">7</td><td class="number">–</td><td>none</td>' in text
+
+
+def test_a_long_word_is_no_sentence():
+    words, word = "it is a sentence of more than forty characters", "a" * 50
+    assert table_html(["x"], [[words]]).count('class="words"') == 1
+    assert 'class="words"' not in table_html(["x"], [[word]])
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown", "said"),
+    [(np.pi, "rad/s", 30.0, "rpm"), (2e5, "Pa", 2.0, "bar"), (5500.0, "kg", 5.5, "t"), (3.0, "N*m", 3.0, "N·m"),
+     (40.0, "degC", 40.0, "°C"), (2.0, "kg*m^2", 2.0, "kg·m²")],
+)  # fmt: skip
+def test_a_quantity_has_the_unit_that_people_read_it_in(value, unit, shown, said):
+    assert value_for_people(value, unit) == pytest.approx(shown)
+    assert for_people(unit) == said

@@ -102,9 +102,7 @@ def _mass(crane: Crane, load: float) -> float:
 
 def _test_rows(crane: Crane, model: FrictionModel, speed: float, load: float, displacement: float) -> FloatArray:
     """Hoisting and lowering at one speed, load and displacement with all motors."""
-    motors = float(crane.motor_total(()))
-    name = max(crane.groups, key=lambda each: crane.groups[each])
-    motors = float(crane.groups[name])
+    motors = float(max(crane.groups.values()))
     torque = motors * crane.max_displacement * HOLDING_PRESSURE * load
     drop = torque / (motors * crane.max_displacement * displacement)
     both = np.array([1.0, -1.0])

@@ -97,20 +97,23 @@ class ParameterStatus:
         """Take the sigma as a share of the seed's, and what was the case for the last `dt` s."""
         self.level = self._level(share)
         settle = self._config.settle_time
-        self.frozen_for = min(self.frozen_for + dt, settle) if frozen else 0.0
+        self.frozen_for = min(self.frozen_for + dt, max(settle, dt)) if frozen else 0.0
         if at_limit:
-            self.limit_for = min(self.limit_for + dt, 2.0 * settle)
+            self.limit_for = min(self.limit_for + dt, max(2.0 * settle, dt))
         elif self.limit_for:
             self.limit_for = max(self.limit_for - dt, 0.0)
 
     @property
     def text(self) -> str:
         """The status to say."""
-        if self.limit_for >= self._config.settle_time > 0.0:
+        if self._lasts(self.limit_for):
             return "invalid"
-        if self.level != "seed" and self.frozen_for >= self._config.settle_time > 0.0:
+        if self.level != "seed" and self._lasts(self.frozen_for):
             return "frozen"
         return self.level
+
+    def _lasts(self, seconds: float) -> bool:
+        return seconds > 0.0 and seconds >= self._config.settle_time
 
     def _level(self, share: float) -> str:
         config = self._config

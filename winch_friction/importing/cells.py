@@ -89,7 +89,7 @@ def is_missing(cell: Any) -> bool:
 
 def decimal_mark(cells: Iterable[str], delimiter: str) -> tuple[str, str]:
     """Decimal mark and mark of thousands under which most cells are numbers; a point where nothing tells."""
-    texts = [cell.strip() for cell in cells if isinstance(cell, str) and any(c.isdigit() for c in cell)]
+    texts = [_signed(cell) for cell in cells if isinstance(cell, str) and any(c.isdigit() for c in cell)]
     choices = [
         (".", ""),
         (",", ""),
@@ -102,7 +102,11 @@ def decimal_mark(cells: Iterable[str], delimiter: str) -> tuple[str, str]:
         (",", "\u00a0"),
     ]
     choices = [(d, t) for d, t in choices if delimiter not in (d, t) or any(d in x or t in x for x in texts)]
-    counts = [sum(is_number(text, d, t) for text in texts) for d, t in choices]
+    counts = []
+    for decimal, thousands in choices:
+        counts.append(sum(map(bool, map(number_pattern(decimal, thousands).match, texts))))
+        if counts[-1] == len(texts):  # no other makes more of them numbers
+            break
     return choices[int(np.argmax(counts))] if counts else (".", "")
 
 

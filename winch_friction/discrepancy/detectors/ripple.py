@@ -193,7 +193,9 @@ def in_phase(
     near = minimize_scalar(lambda k: -_shared(tables, k)[0], bounds=(best - step, best + step), method="bounded")
     order = float(near.x)
     explained, amplitude, std = _shared(tables, order)
-    if explained < SHARED_PHASE * sum(_shared([table], order)[0] for table in tables):
+    # of the ripple, wherever a run has it: where the runs cancel, one wave for all is best at an order that none has
+    own = sum(max(_shared([table], each)[0] for each in (order, *orders)) for table in tables)
+    if explained < SHARED_PHASE * own:
         return None
     a, b = (ParameterEstimate(float(value), std, "1") for value in amplitude)
     return {"a_r": a, "b_r": b, "k_r": ParameterEstimate(order, float(0.1 * step), "1")}

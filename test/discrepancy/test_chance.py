@@ -1,0 +1,115 @@
+"""What may be chance: few runs and many, rivals, how often one wins, and what a signal predicts of what is left."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.chance import (
+    _frequency,
+    _near_curve,
+    chance_of_no_gain,
+    dependences,
+    rivals_of,
+    rms_with_interval,
+)
+from winch_friction.discrepancy.engine.crossfit import Explanation
+from winch_friction.discrepancy.thresholds import LIMITS
+
+RUNS, BLOCKS = 8, 60
+RUN = np.repeat(np.arange(RUNS), BLOCKS)
+SEGMENT = 2 * RUN + np.tile(np.arange(BLOCKS) >= BLOCKS // 2, RUNS)
+SIGN = np.tile([1.0, -1.0], RUNS * BLOCKS // 2)
+
+
+def loses(slot, losses):
+    return Explanation((slot,), np.asarray(losses, float), np.zeros(0), 0.0, np.zeros((0, 0)))
+
+
+@pytest.mark.parametrize(("runs", "wide"), [(3, False), (RUNS, True)])
+def test_runs_are_redrawn_only_where_there_are_many(runs, wide):
+    """Three that are unlike by plan say nothing of what a fourth would be."""
+    run = np.repeat(np.arange(runs), BLOCKS)
+    size = rms_with_interval(1.0 + run, np.arange(len(run)) // 10, run, np.random.default_rng(0))
+    assert (size.interval[1] - size.interval[0] > 0.1 * size.value) is wide
+    assert size.interval[0] <= size.value <= size.interval[1]
+
+
+def test_no_chance_is_smaller_than_so_many_draws_can_tell():
+    zero = np.zeros(RUNS * BLOCKS)
+    chance = chance_of_no_gain(zero + 5.0, zero, SEGMENT, RUN, np.random.default_rng(0))
+    assert chance == pytest.approx(1.0 / (1.0 + LIMITS.bootstrap_draws))
+
+
+@pytest.mark.parametrize(("own", "share"), [([1.0, 1.0], 0.0), ([0.1, 0.1], 1.0)])
+def test_an_effect_wins_where_it_leaves_less_than_the_best_of_the_others(own, share):
+    others = [np.array([0.5, 0.5]), np.array([2.0, 2.0])]
+    assert _frequency(np.array(own), others, np.random.default_rng(0)) == share
+
+
+@pytest.mark.parametrize(("same", "more", "rival"), [(False, 0.01, True), (True, 0.01, False), (True, 1e-4, True)])
+def test_beside_a_higher_order_only_the_same_column_is_another_name(same, more, rival):
+    """A hundredth behind does as well for any purpose, but what is left of a level beside its slope is small."""
+    own, other = Slot("level", "", (1,)), Slot("tare", "", (2,))
+    left = {None: 3.0, "level": 1.0, "tare": 1.0 + 2.0 * more}
+
+    def explain(slots):
+        name = slots[0].name if slots else None
+        return replace(loses(own, np.full(40, left[name])), slots=tuple(slots))
+
+    cross = SimpleNamespace(
+        explain=explain, floor=40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        problem=SimpleNamespace(slots=(own, other), grams=SimpleNamespace(count=np.ones(40))),
+    )  # fmt: skip
+    found, _ = rivals_of(cross, explain((own,)), explain(()), 0, np.random.default_rng(0), same)
+    assert (found == (other,)) is rival
+
+
+@pytest.mark.parametrize(("free", "near_it"), [(False, True), (True, False)])
+def test_a_curve_of_another_cause_is_measured_like_any_law(free, near_it):
+    """It bends as freely as the curve that was found: leaving more, it is no rival for its stiffness."""
+    own, other = Slot("wear", "", (1,), free=True), Slot("oil", "", (2,), free=free)
+    current, trial, without = (loses(s, np.full(40, x)) for s, x in ((own, 2.0), (other, 2.5), (own, 30.0)))
+    assert _near_curve(SimpleNamespace(floor=40.0), trial, current, without, 0) is near_it
+
+
+def remainder(features, weight=1.0, unresolved=0.0):
+    """Blocks with these signals, each run a fold, in units of the noise."""
+    zero = np.zeros(RUNS * BLOCKS)
+    blocks = Blocks(zero, zero[:, None], RUN, SEGMENT, zero + weight, features, SIGN, np.tile(np.arange(BLOCKS), RUNS))
+    return SimpleNamespace(
+        problem=SimpleNamespace(blocks=blocks), fold=np.repeat(np.arange(RUNS), 2), unresolved=unresolved
+    )
+
+
+def noise(seed=0):
+    return np.random.default_rng(seed).standard_normal(RUNS * BLOCKS)
+
+
+def told(cross, left):
+    (found,) = dependences(cross, left, np.random.default_rng(0))
+    return found
+
+
+def test_a_signal_of_which_each_run_has_one_value_predicts_the_others_by_a_line():
+    """No run says what hats between the others' values are."""
+    found = told(remainder({"oil_temperature": 1.0 * RUN}), 3.0 * (RUN - 3.5) + noise())
+    assert found.share > 0.9
+    assert found.p_value < 0.01
+
+
+def test_what_matters_to_nobody_is_a_part_of_what_is_left():
+    speed = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+    left = 3.0 * speed + noise()
+    whole = told(remainder({"speed": speed}), left)
+    half = told(remainder({"speed": speed}, unresolved=float(left @ left)), left)
+    assert half.share == pytest.approx(0.5 * whole.share)
+
+
+def test_what_a_signal_predicts_does_not_hang_on_the_gaps_unit():
+    speed = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+    bar, torque = (told(remainder({"speed": speed}, weight), 3.0 * speed**2 + noise()) for weight in (1.0, 0.02))
+    assert torque.share == pytest.approx(bar.share)
+    assert torque.size == pytest.approx(50.0 * bar.size)

@@ -1,0 +1,160 @@
+"""What of a search stands by the locked runs beside its names: side findings, delays, rivals, the model as given."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy import standing as module
+from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.assembly import Trial
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.proof import Proof
+from winch_friction.discrepancy.thresholds import LIMITS
+
+RNG = np.random.default_rng(0)
+SLOTS = tuple(Slot(name, "", (k,)) for k, name in enumerate(("one", "two", "three", "four")))
+
+
+@dataclass(frozen=True)
+class Searched:
+    """A search of these names, with what else it found."""
+
+    selection: Selection
+    verdict: Verdict = Verdict(MISSING)
+    ripple: object = None
+    flow: tuple = ()
+    reversal: object = None
+    given: object = None
+    left: tuple = ()
+    cross: object = None
+
+    @property
+    def explanation(self):
+        return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
+
+
+def explained(slots):
+    return SimpleNamespace(slots=tuple(slots), names=tuple(dict.fromkeys(slot.name for slot in slots)))
+
+
+def searched(*slots, **more):
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    cross = SimpleNamespace(explain=explained, excess=lambda _: 0.0)
+    return Searched(Selection(explained(()), explained(slots), found), **{"cross": cross, **more})
+
+
+def side(left=1.0, **more):
+    """Runs that keep so many floors."""
+    known = {"runs": (), "floor": 1.0, "excused": 1.0, "noise_floor": 1.0, "size_after": Size(left, (left, left))}
+    return SimpleNamespace(**known, **more)
+
+
+@pytest.mark.parametrize("shows", [False, True])
+def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_show_it(monkeypatch, shows):
+    """All three of them, asked of the locked runs alone."""
+    asked = []
+
+    def holds_on(*more):
+        asked.append(more)
+        return shows
+
+    monkeypatch.setattr(module.angle, "holds_on", holds_on)
+    other = SimpleNamespace(holds_on=holds_on)
+    runs = [SimpleNamespace(name=name) for name in ("train", "locked")]
+    given = SimpleNamespace(runs=runs, prepared=["of train", "of locked"], crane=None, model=None)
+    search = searched(ripple="ripple", flow=(other,), reversal=other, given=given)
+    found = module._replicated(search, SimpleNamespace(holdout=("locked",)), RNG)
+    assert (bool(found.ripple), bool(found.flow), bool(found.reversal)) == (shows,) * 3
+    assert asked[0][1:3] == asked[1] == (runs[1:], ["of locked"])
+    assert asked[2][0] == ("locked",)
+
+
+def tried_with(monkeypatch, search, left_of, worse_of=lambda _: ()):
+    """What stands of a search without names that hold; the locked runs keep what `left_of` says of each file."""
+    monkeypatch.setattr(module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(module, "_sets", lambda *_: iter(()))
+    monkeypatch.setattr(module, "dependences", lambda *_: [])
+    monkeypatch.setattr(module, "worse_runs", lambda of, _: worse_of(of))
+    monkeypatch.setattr(module, "tried", lambda *more, rng: Trial(more[3], None, side(), side(left_of(more[3]))))
+    monkeypatch.setattr(module, "as_given", lambda _, __, own, rng: Trial(own, "as given", side(), side()))
+    search = replace(search, cross=SimpleNamespace(remainder=lambda _: None))
+    return module.standing(None, None, None, search, RNG)
+
+
+@pytest.mark.parametrize(("worse", "kept"), [((), 0.5), (("run 3",), 1.0)])
+def test_a_side_finding_is_written_where_it_makes_no_locked_run_worse(monkeypatch, worse, kept):
+    search = searched(ripple="ripple")
+    stands = tried_with(
+        monkeypatch, search, lambda own: 0.5 if own.ripple else 1.0,
+        lambda of: worse if of.size_after.value == 0.5 else (),
+    )  # fmt: skip
+    assert stands.holdout.size_after.value == kept
+    assert stands.search.verdict.kind == (NOTHING if worse else MISSING)
+
+
+@pytest.mark.parametrize(("worse", "given"), [((), False), (("run 3",), True)])
+def test_a_refit_to_what_nothing_explains_is_not_written_where_it_makes_a_locked_run_worse(monkeypatch, worse, given):
+    search = searched(SLOTS[0], verdict=Verdict(UNEXPLAINED))
+    stands = tried_with(monkeypatch, search, lambda _: 3.0, lambda _: worse)
+    assert (stands.repaired == "as given") is given
+    assert stands.search.verdict.kind == UNEXPLAINED
+
+
+@pytest.mark.parametrize("beside", [{"ripple": "ripple"}, {"flow": ("leak",)}])
+def test_a_leak_is_missing_as_a_ripple_is(beside):
+    judged = module._judged(Trial(searched(**beside), None, side(), side()), "", RNG)
+    assert judged.verdict.kind == MISSING
+    assert module._judged(Trial(searched(), None, side(), side()), "", RNG).verdict.kind == NOTHING
+
+
+@pytest.mark.parametrize("worse", [(), ("run 3",)])
+def test_what_shows_just_after_reversals_makes_no_locked_run_worse(monkeypatch, worse):
+    monkeypatch.setattr(module, "worse_runs", lambda *_: worse)
+    search = searched(reversal=SimpleNamespace(slot=SLOTS[0]))
+    trial = Trial(search, None, side(), side())
+    assert module._stands(search, trial, lambda _: trial, RNG) == ((None, "run 3") if worse else (trial, ""))
+
+
+@pytest.mark.parametrize(("late", "stands"), [(0.007, False), (0.014, True)])
+def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypatch, late, stands):
+    monkeypatch.setattr(module, "prove", lambda *_: Proof())
+    monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
+    search, own = searched(Slot("signal_delay", "", (0,))), side()
+    own.runs = (SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02))
+    found = SimpleNamespace(parameters={"signal_delay": {"tau": SimpleNamespace(value=late)}})
+    trial = Trial(search, found, side(), own)
+    full, why = module._stands(search, trial, lambda _: trial, RNG)
+    assert (full is trial) is stands
+    assert ("7 ms is how a log of a sample every 20 ms is made" in why) is not stands
+
+
+@pytest.mark.parametrize(("free", "stands"), [(False, True), (True, False)])
+def test_a_curve_that_leaves_much_of_the_training_runs_does_not_stand_by_the_locked_ones(monkeypatch, free, stands):
+    monkeypatch.setattr(module, "prove", lambda *_: Proof())
+    monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
+    search = searched(replace(SLOTS[0], free=free), verdict=Verdict(UNEXPLAINED, "it leaves much", leaves=True))
+
+    def trial_of(own):
+        return Trial(own, SimpleNamespace(parameters={}), side(), side())
+
+    assert (module._stands(search, trial_of(search), trial_of, RNG)[0] is not None) is stands
+
+
+@pytest.mark.parametrize(("plain", "sets"), [(False, 2), (True, 1)])
+def test_fewer_names_are_tried_unless_one_is_what_every_machine_has(monkeypatch, plain, sets):
+    monkeypatch.setattr(module, "_with_at_most", lambda count, own, _: own)
+    assert len(list(module._sets(searched(SLOTS[0], replace(SLOTS[1], plain=plain)), RNG))) == sets
+
+
+def test_a_name_has_no_more_rivals_than_a_set_has_room_for(monkeypatch):
+    """Three dropped names do as well alone; a set has room for three in all."""
+    monkeypatch.setattr(module, "adds", lambda *_: False)
+    every, one = searched(*SLOTS), searched(SLOTS[0])
+    found = module._with_those_as_good_alone(
+        Trial(one, None, side(), side()), every, SLOTS[1:], lambda own: Trial(own, None, side(), side()), RNG
+    )
+    assert found.search.selection.found[0].rivals == SLOTS[1 : LIMITS.most_names]

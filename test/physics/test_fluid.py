@@ -1,0 +1,55 @@
+"""What leaks and what gives way: with the sign of the drop, whatever the oil, and below the atmosphere."""
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.fluid import (
+    ATMOSPHERE,
+    LEAKAGE_LAWS,
+    REFERENCE_PRESSURE,
+    air_compressed,
+    leakage_per_coefficient,
+    relaxed_compression,
+)
+from winch_friction.physics.winch.operating_point import PredictedSpeed, time_to_reversal
+
+
+@pytest.mark.parametrize("law", LEAKAGE_LAWS)
+def test_every_leak_is_stated_at_150_bar_and_turns_with_the_drop(law):
+    drop = REFERENCE_PRESSURE * np.array([1.0, -1.0, 0.0])
+    np.testing.assert_allclose(leakage_per_coefficient(law, drop, 1.0), drop)
+
+
+@pytest.mark.parametrize(
+    ("law", "thin"), [("slip_leakage", 2.0), ("orifice_leakage", 1.0), ("opening_gap_leakage", 2.0)]
+)
+def test_thin_oil_leaks_more_through_a_gap_and_as_much_through_an_orifice(law, thin):
+    drop = np.array([80e5, -200e5])
+    np.testing.assert_allclose(leakage_per_coefficient(law, drop, 2.0), thin * leakage_per_coefficient(law, drop, 1.0))
+
+
+def test_air_is_as_large_as_it_gets_at_the_atmosphere():
+    """A transducer's zero below it, and a line that cavitates, make no number that is none."""
+    high = np.array([ATMOSPHERE, -2.0e5, 0.0, ATMOSPHERE, 20.0 * ATMOSPHERE])
+    found = air_compressed(high, high - 1.0e5)
+    np.testing.assert_allclose(found[:4], 0.0)
+    assert found[4] == pytest.approx(1.0 - 20.0 ** (-1.0 / 1.4))
+
+
+def test_a_lost_pressure_is_bridged_and_the_gas_follows_what_is_left():
+    time, pressure = np.arange(0.0, 100.0, 0.1), np.full(1000, 300e5)
+    pressure[500:] = 330e5
+    whole = relaxed_compression(time, pressure, 10.0)
+    lost = pressure.copy()
+    lost[700:750] = np.nan
+    np.testing.assert_allclose(relaxed_compression(time, lost, 10.0), whole)
+    assert whole[499] == 0.0
+    assert whole[600] == pytest.approx(np.log(1.1) * (1.0 - np.exp(-10.1 / 10.0)))
+
+
+@pytest.mark.parametrize(
+    ("speed", "acceleration", "seconds"),
+    [(10.0, -5.0, 2.0), (-10.0, 5.0, 2.0), (10.0, 5.0, np.inf), (-10.0, -5.0, np.inf), (10.0, 0.0, np.inf)],
+)
+def test_a_motion_turns_only_where_it_is_braked(speed, acceleration, seconds):
+    assert time_to_reversal(PredictedSpeed(speed, acceleration)) == seconds

@@ -143,8 +143,12 @@ port_one_way = _motor(
     "port_one_way", K_po.symbol * _w**n_po.symbol * _x**m_po.symbol * (1 + b_po.symbol * s), (K_po, n_po, m_po, b_po),
     "paper 1 eq 11, of a port or a valve that oil passes one way",
 )  # fmt: skip
+# the number stands outside the root: which of the two a number inside goes to differs between versions of SymPy
+_SMALL = sp.Rational(1, 4)
+_AT_40 = float(_NU_40**-_SMALL)
 churning_viscous = _motor(
-    "churning_viscous", T_cv.symbol * _w**n_cv.symbol * (walther(oil_temperature) / _NU_40) ** sp.Rational(1, 4),
+    "churning_viscous",
+    _AT_40 * T_cv.symbol * _w**n_cv.symbol * walther(oil_temperature) ** _SMALL,
     (T_cv, n_cv), "Changenet and Velex 2007: churning grows with a small power of the viscosity",
 )  # fmt: skip
 churning_one_way = _motor(

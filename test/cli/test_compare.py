@@ -27,6 +27,27 @@ def test_a_curve_beyond_the_crane_is_said_to_be(capsys):
     assert "--load 5000: beyond what crane 'crane_150t' holds" in capsys.readouterr().err
 
 
+def test_a_small_crane_is_drawn_at_loads_of_its_own(tmp_path, monkeypatch, capsys):
+    """The papers' 15, 55 and 100 t are what a crane for 150 t carries; one for a tonne differed most at 100 t."""
+    monkeypatch.chdir(tmp_path)
+    own = ["--load", "1", "--motors", "1", "--displacement", "28", "--gear-ratio", "25", "--radius", "0.15"]
+    assert run(["init", "crane", "--name", "k", *own, "--layers", "1", "--active", "0", "--wire", "10"]) == 0
+    assert run(["init", "model", "--crane", "k.yaml"]) == 0
+    stronger = (tmp_path / "seed_k.yaml").read_text().replace("value: 1.823", "value: 2.5")
+    (tmp_path / "other.yaml").write_text(stronger.replace("name: seed_k", "name: other"))
+    capsys.readouterr()
+    found = compared(capsys, "--crane", "k.yaml", first="seed_k.yaml", second="other.yaml")
+    assert [row["load [t]"] for row in found["rows"]] == [0.1, 0.37, 0.67]
+    assert run(["show", "seed_k.yaml", "--crane", "k.yaml", "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["load_t"] == 0.37
+    assert "extrapolated" not in said.err
+    assert run(["show", "seed_k.yaml", "--crane", "k.yaml", "--out", "k.html"]) == 0
+    page = (tmp_path / "k.html").read_text()
+    assert "0.67 t" in page
+    assert "55 t" not in page
+
+
 def test_a_small_drives_curve_is_drawn_without_the_papers_load(capsys):
     assert run(["show", "emps_viscous", "--json"]) == 0
     said = capsys.readouterr()
@@ -39,8 +60,8 @@ def test_a_load_that_is_no_mass_is_refused(capsys):
     assert "hanging mass" in capsys.readouterr().err
 
 
-def compared(capsys, *options):
-    assert run(["compare", "a6vm215_crane1", "a6vm215_crane2", "--json", *options]) == 0
+def compared(capsys, *options, first="a6vm215_crane1", second="a6vm215_crane2"):
+    assert run(["compare", first, second, "--json", *options]) == 0
     return json.loads(capsys.readouterr().out)
 
 

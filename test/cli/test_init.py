@@ -52,6 +52,24 @@ def test_what_is_written_is_read(own):
         assert problems(yaml.safe_load((own / f"{name}.yaml").read_text()), schemas[kind]) == []
 
 
+@pytest.mark.parametrize(
+    ("load", "motors", "displacement", "gear", "radius"),
+    [("0.8", "1", "28", "5", "0.05"), ("1", "1", "28", "25", "0.15"), ("2", "1", "2000", "1", "0.25"),
+     ("20", "2", "5000", "1", "0.15"), ("300", "40", "215", "250", "1.1")],
+)  # fmt: skip
+def test_a_model_for_any_crane_is_read(load, motors, displacement, gear, radius, tmp_path, monkeypatch):
+    """A small gear, a large slow motor: what its shaft loses has another size than on the crane it is scaled from."""
+    monkeypatch.chdir(tmp_path)
+    own = ["--load", load, "--motors", motors, "--displacement", displacement, "--gear-ratio", gear, "--radius", radius]
+    assert run(["init", "crane", "--name", "k", *own, "--layers", "1", "--active", "0", "--wire", "10"]) == 0
+    assert run(["init", "model", "--crane", "k.yaml"]) == 0
+    model = load_model("seed_k.yaml")
+    for name in model.parameter_names:
+        lower, upper = model.bounds_of(name)
+        assert lower <= model.value(name) <= 0.5 * upper, name  # and room to learn
+    assert run(["show", "seed_k.yaml", "--crane", "k.yaml"]) == 0
+
+
 @pytest.mark.parametrize("name", ["12", "yes", "Nord: 7", "Kran # 7", "[7]"])
 def test_any_name_is_read_back_as_it_was_given(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

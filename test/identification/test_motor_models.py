@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from winch_friction.identification.fit import fit
 from winch_friction.identification.motor_models import MOTOR_MODELS, initial_model, motor_model_named
-from winch_friction.identification.supplier_table import motor_points
+from winch_friction.identification.supplier_table import SupplierTable, motor_points
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
 
@@ -106,3 +107,19 @@ def test_finite_at_standstill(name):
 def test_unknown_name():
     with pytest.raises(InputError, match=r"motor model 'dorey' is not known; known models are wilson"):
         motor_model_named("dorey")
+
+
+@pytest.mark.parametrize("cm3", [5, 10, 28, 1000, 5000])
+def test_a_motor_of_any_size_has_room_in_the_bounds(cm3):
+    """The size that paper 1's three motors give: ports of a small motor choke, a large one's bearings are large."""
+    size = cm3 / 215.0
+    own = {"K1": 4.05e-3 * size, "K2": 3.69e10 * size ** (-4 / 3), "K3": 5e-3, "K4": 14.0 * size, "K5": 1.16e-14 * size}
+    speed, pressure, part = (a.ravel() for a in np.meshgrid((50.0, 150.0, 300.0), (1e7, 2e7, 3e7), (0.4, 0.7, 1.0)))
+    displacement = part * cm3 * CM3_PER_REV
+    lost = (own["K4"] + own["K3"] * pressure * displacement + own["K1"] * speed + own["K5"] * pressure**2
+            + own["K2"] * speed**2 * displacement**3)  # fmt: skip
+    table = SupplierTable("own", speed, pressure, displacement, lost, np.ones(len(speed)), cm3 * CM3_PER_REV)
+    start = initial_model(MOTOR_MODELS["mj4"], table.max_displacement)
+    found = fit(start, table.fit_data())
+    assert found.model.as_dict() == pytest.approx(own, rel=1e-3)
+    assert not found.at_bound

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from campaign.supplier_generator import TABLE_1, write_supplier_table
+from winch_friction.cli.main import run
 from winch_friction.identification.black_box import BlackBoxMap
 from winch_friction.identification.motor_identification import identify_motor
 from winch_friction.identification.supplier_file import read_supplier_table
@@ -185,3 +186,18 @@ def test_the_map_of_a_motor_that_does_not_swing_has_two_axes(write, complete):
     assert black_box.torque_loss(speed, pressure, displacement)[0] == pytest.approx(5 + 7.5 + 3.0)
     assert black_box.outside(speed, pressure, displacement).tolist() == [False, True]
     assert black_box.outside(4.0 * speed, pressure, displacement).all()
+
+
+def test_rows_outside_the_range_of_the_fit_are_said(tmp_path, capsys):
+    """Half a fast motor's table was left out without a word."""
+    rows = [f"{n},{p},{d},{90 - n / 1000 - d / 100}" for n in (500, 1000, 2000, 4000, 6000) for p in (100, 200, 300)
+            for d in (20, 30, 45)]  # fmt: skip
+    path = tmp_path / "fast.csv"
+    head = "speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]"
+    path.write_text("\n".join([head, *rows]))
+    fit = ["identify", "motor", str(path), "--out", str(tmp_path / "m.yaml"), "--no-complex", "--overwrite"]
+    assert run([*fit]) == 0
+    said = capsys.readouterr().err
+    assert "fast.csv: 18 of 45 rows are left out: 18 by speed (400 ... 2500 rpm count)" in said
+    assert run([*fit, "--speed", "400-6000"]) == 0
+    assert "left out" not in capsys.readouterr().err

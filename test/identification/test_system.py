@@ -16,7 +16,7 @@ from winch_friction.identification.prior import supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, combined, fit_system, second_loop
 from winch_friction.identification.system_identification import identify_system, winch_seed
 from winch_friction.identification.verification import test_errors as errors_of
-from winch_friction.physics.channels import BAR, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
 from winch_friction.records.model_file import load_model, save_model
@@ -236,3 +236,25 @@ def test_nothing_on_the_hook_is_one_load_too(truth, crane, motor, spread, tonnes
     empty = [shown(one, 1.0), shown(two, 2.0)]
     with pytest.raises(InputError, match="of one load"):
         identify_system(empty, crane, motor, spread)
+
+
+@pytest.mark.parametrize("gear", [25.0, 5.0])
+def test_what_goes_with_the_load_is_found_on_a_winch_of_few_turns(gear, truth, crane, spread):
+    """One motor and a small gear: of the drum's torque its shaft loses hundreds of times what one of eleven does."""
+    share = 2750.0 / gear  # the same part of the load
+    small = replace(
+        crane, gear_ratio=gear, groups={"main": 1}, max_displacement=28 * CM3_PER_REV,
+        drum=replace(crane.drum, layer_radii=(0.006 * gear,)),
+    )  # fmt: skip
+    sizes = {"K1": 0.13, "K4": 0.13, "K5": 0.13, "C1": share, "C3": 0.13, "C5": 0.13, "C6": share}
+    values = [value * sizes.get(name, 1.0) for name, value in truth.as_dict().items()]
+    own = replace(truth, values=tuple(values), covariance=None, bounds={"C1": (0.0, 1.0), "C6": (0.0, 1.0)},
+                  constants={"max_displacement": 28 * CM3_PER_REV, "gear_ratio": gear})  # fmt: skip
+    tests = {"a": (28, 1.0), "b": (28, 0.5), "c": (20, 0.7), "d": (14, 0.3), "e": (28, 0.1)}
+    found = identify_system(
+        cycles(own, small, tests), small, replace(own.only("motor"), bounds={}), spread, resamples=4,
+        complex_options={"restarts": 1, "max_evaluations": 200},
+    )  # fmt: skip
+    for fitted in (found.first_loop, found.joint.model):
+        for name in ("C1", "C6"):
+            assert fitted.value(name) == pytest.approx(own.value(name), rel=0.15), name

@@ -173,6 +173,7 @@ def test_a_wrong_crane_is_one_clear_line(change, message):
         (lambda d: d.update(wire_mass=-24.5), "wire_mass is -24.5 kg/m.* correct the number or its unit"),
         (lambda d: d.update(wire_stiffness=3e5), r"did you mean kN \(3e\+08 N\)"),
         (lambda d: d.update(rated_pressure=450), "rated_pressure is 450 Pa.* did you mean bar"),
+        (lambda d: d.update(rated_load=150), r"rated_load is 150 kg, of motors and a gear.* did you mean t"),
         (lambda d: d.update(rated_speed=4800), "rated_speed is 4800 rad/s.* did you mean rpm"),
         (lambda d: d["groups"].update(main=1100), r"groups: main has 1100 motors, of winches 1 ... 200"),
     ],

@@ -4,6 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import sympy as sp
+
+from winch_friction.physics.friction import registered_terms
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -13,3 +17,14 @@ def test_the_committed_catalogue_is_current():
     said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
     committed = (ROOT / "docs/terms.md").read_text()
     assert committed.strip() == said.strip(), "run: winch-friction terms --markdown > docs/terms.md"
+
+
+def test_no_equation_is_written_in_another_way_by_another_sympy():
+    """SymPy 1.12 takes a number out of the root of a sum, 1.14 multiplies the sum by it: docs/terms.md would differ."""
+    committed = (ROOT / "docs/terms.md").read_text()
+    own = {name: term for name, term in registered_terms().items() if f"### `{name}`" in committed}
+    for name, term in own.items():
+        for power in term.torque.atoms(sp.Pow):
+            if power.exp.is_Rational and not power.exp.is_Integer:
+                parts = power.base.args if power.base.is_Add else (power.base,)
+                assert any(abs(part.as_coeff_Mul()[0]) == 1 for part in parts), f"{name}: {power}"

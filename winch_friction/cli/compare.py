@@ -21,7 +21,9 @@ def command(
         OptionalPaths, typer.Argument(help="Run files, or folders of them: compare on them instead of a grid.")
     ] = None,
     crane: Annotated[str, typer.Option(help="Crane file or shipped name.", autocompletion=complete_crane)] = "",
-    loads: Annotated[str, typer.Option(help="Hanging masses of the grid, t.")] = "15,55,100",
+    loads: Annotated[
+        str, typer.Option(help="Hanging masses of the grid, t; none: this crane's, as 15,55,100 of 150.")
+    ] = "",
     out: Annotated[OptionalPath, typer.Option(help="Write a page (.html) with curves and differences.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     overwrite: Overwrite = False,
@@ -37,6 +39,7 @@ def command(
     """
     from winch_friction.cli.inputs import run_paths
     from winch_friction.cli.show import curve_crane, say_beyond
+    from winch_friction.physics.winch.model_curve import usual_loads
     from winch_friction.records.model_file import load_model
 
     load_terms(terms_file)
@@ -55,7 +58,7 @@ def command(
             raise InputError("compare: the page shows the grid; leave out the runs, or leave out --out")
         content = _on_runs(one, two, machine, run_paths(runs))
     else:
-        masses = _loads(loads)
+        masses = _loads(loads) if loads else [each / 1e3 for each in usual_loads(machine)]
         say_beyond("--loads", masses, machine)
         content = _on_grid(one, two, machine, masses, out)
     if as_json:

@@ -66,7 +66,14 @@ def motor(
 
     Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
     """
-    from winch_friction.cli.console import MODEL, progress, refuse_existing, refuse_input_as_output, refuse_other_kind
+    from winch_friction.cli.console import (
+        MODEL,
+        progress,
+        refuse_existing,
+        refuse_input_as_output,
+        refuse_other_kind,
+        show_warnings,
+    )
     from winch_friction.cli.identify_output import show_motor
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
@@ -82,16 +89,17 @@ def motor(
     refuse_existing(overwrite, out)
     data = read_supplier_table(path, max_displacement * CM3_PER_REV or None)
     usual = FitRange.usual(data)
+    inside = FitRange(
+        _range(speed, RPM, "speed") if speed else usual.speed,
+        _range(pressure, BAR, "pressure"),
+        _range(displacement, CM3_PER_REV, "displacement") if displacement else usual.displacement,
+    )
     names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
     found = identify_motor(
         data,
         names,
         chosen="" if use == "best" else use,
-        fit_range=FitRange(
-            _range(speed, RPM, "speed") if speed else usual.speed,
-            _range(pressure, BAR, "pressure"),
-            _range(displacement, CM3_PER_REV, "displacement") if displacement else usual.displacement,
-        ),
+        fit_range=inside,
         weighting=weighting,
         with_complex=use_complex,
         seed=seed,
@@ -100,6 +108,7 @@ def motor(
     )
     fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
     save_model(fitted, out)
+    show_warnings(filter(None, [inside.left_out(data)]))
     show_motor(found, fitted, out, json)
 
 
@@ -217,10 +226,18 @@ def practice(
 
     Example: winch-friction identify practice practice_150t --out practice/
     """
-    from winch_friction.cli.console import progress, refuse_foreign, refuse_unwritable, show_json, stdout
+    from winch_friction.cli.console import (
+        progress,
+        refuse_foreign,
+        refuse_unwritable,
+        show_json,
+        show_warnings,
+        stdout,
+    )
     from winch_friction.cli.identify_output import seed_json, show_parameters
     from winch_friction.cli.inputs import provenance_of, refuse_copies, refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
+    from winch_friction.identification.supplier_table import FitRange
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
@@ -236,6 +253,7 @@ def practice(
         progress=progress,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
+    show_warnings(filter(None, [FitRange.usual(folder.table).left_out(folder.table)]))
     files = sorted(each for each in _example(example).iterdir() if each.is_file())
     write_practice_report(done, out / "report.html", provenance_of(files, folder.crane.name, seed=seed) | forced)
     save_model(done.motor_seed, out / "motor.yaml")

@@ -127,8 +127,7 @@ def import_logs(
     from winch_friction.cli.console import refuse_unwritable
     from winch_friction.importing.carry_out import import_log
     from winch_friction.importing.contradiction import run_contradictions
-    from winch_friction.importing.mapping import load_map, with_settings
-    from winch_friction.importing.propose import refuse_if_open
+    from winch_friction.importing.mapping import load_map, refuse_if_open, with_settings
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.runs import write_run
 

@@ -153,16 +153,18 @@ presliding: {{value: 0.2, unit: deg}}   # e-fold of the bristle at the motor sha
 
 def model_text(crane: Crane, name: str) -> str:
     """A seed model: a6vm215_crane2's parameters scaled to the crane's motors and gear."""
+    from winch_friction.identification.motor_models import GROWTH, grown, room
     from winch_friction.records.model_file import load_model
 
-    seed = load_model("a6vm215_crane2")
-    one = crane.max_displacement / (DISPLACEMENT * CM3_PER_REV)
+    seed, size = load_model("a6vm215_crane2"), crane.max_displacement
+    one = size / (DISPLACEMENT * CM3_PER_REV)
     shared = MOTORS * GEAR / (max(crane.groups.values()) * crane.gear_ratio)  # of the drum's torque, per motor
-    scale = {"K1": one, "K4": one, "K5": one, "C3": one, "C5": one, "C1": shared, "C6": shared}
+    scale = {"C3": one, "C5": one, "C1": shared, "C6": shared, **{name: grown(name, size) for name in GROWTH}}
     lines = []
     for parameter, value in zip(seed.parameters, seed.values, strict=True):
-        scaled = value * scale.get(parameter.name, 1.0)
-        entry = f'{{value: {scaled:.4g}, unit: "{parameter.unit}", std: {MODEL_SPREAD * scaled:.3g}}}'
+        scaled, upper = value * scale.get(parameter.name, 1.0), room(parameter, size)[1]
+        wider = f", upper: {upper:.4g}" if upper > parameter.upper else ""
+        entry = f'{{value: {scaled:.4g}, unit: "{parameter.unit}", std: {MODEL_SPREAD * scaled:.3g}{wider}}}'
         lines.append(f"  {parameter.name}: {entry}   # {parameter.doc}")
     body = "\n".join(lines)
     return f"""# Written by winch-friction init model: a6vm215_crane2 scaled to crane '{crane.name}'. A ROUGH SEED.

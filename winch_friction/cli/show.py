@@ -12,9 +12,6 @@ from winch_friction.cli.names import KINDS, SHOWN, complete_crane, complete_show
 from winch_friction.cli.optional import OptionalFloat, OptionalPath, Overwrite
 from winch_friction.physics.errors import InputError, meant
 
-LOADS = (0.0, 15.0, 55.0, 100.0)  # t, the loads of the papers' tests
-USUAL = 55.0  # t, the papers' middle load
-
 
 def command(
     name: Annotated[
@@ -24,7 +21,7 @@ def command(
     kind: Annotated[str, typer.Option(help=f"What it is, when a name stands for several: {', '.join(SHOWN)}.")] = "",
     crane: Annotated[str, typer.Option(help="Crane on which a model is drawn.", autocompletion=complete_crane)] = "",
     load: Annotated[
-        OptionalFloat, typer.Option(help="Hanging mass for a model's curve, t; none: 55, or 0 on a crane for less.")
+        OptionalFloat, typer.Option(help="Hanging mass for a model's curve, t; none: a third of the rated one.")
     ] = None,
     out: Annotated[OptionalPath, typer.Option(help="Also write a page (.html), for a model or a term.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
@@ -110,22 +107,22 @@ def say_beyond(option: str, loads: Sequence[float], crane: Any) -> None:
     most = most_held(crane) / 1e3
     beyond = [f"{each:g}" for each in loads if each > most]
     if beyond:
+        held = f"{most:.0f}" if most >= 10.0 else f"{most:.2g}"
         show_warnings([
-            f"{option} {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {most:.0f} t, all "
+            f"{option} {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {held} t, all "
             "motors at 450 bar or the torque limit); what the models say there is extrapolated"
         ])  # fmt: skip
 
 
 def _model(name: str, crane: str, load: float | None, out: Path | None, as_json: bool) -> None:
-    from winch_friction.importing.expectations import most_held
     from winch_friction.physics.channels import RPM
-    from winch_friction.physics.winch.model_curve import model_curve
+    from winch_friction.physics.winch.model_curve import model_curve, usual_loads
     from winch_friction.records.model_file import load_model
 
     model = load_model(name)
     machine = curve_crane(model, crane, name)
     if load is None:
-        load = USUAL if most_held(machine) >= 1e3 * USUAL else 0.0
+        load = usual_loads(machine)[1] / 1e3 if machine.drive.hydraulic else 0.0  # a drive may lift nothing
     curve = model_curve(model, machine, load=1e3 * load)
     say_beyond("--load", [load], machine)
     rpm = curve.speed / RPM
@@ -149,7 +146,8 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
     if out is not None:
         from winch_friction.report.curves import write_model_page
 
-        curves = [model_curve(model, machine, load=1e3 * each) for each in sorted({*LOADS[1:], load})]
+        drawn = (each / 1e3 for each in usual_loads(machine))
+        curves = [model_curve(model, machine, load=1e3 * each) for each in sorted({*drawn, load})]
         print(f"wrote {write_model_page(out, model, curves, machine.name)}")
 
 

@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction import FrictionModel, Parameter, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
 
 
@@ -69,11 +70,29 @@ def motor_model_named(name: str) -> MotorModel:
     return found
 
 
+# power of a motor's size with which a parameter goes, as in paper 2 Table 1 (170, 215, 280 cm^3/rev) and as of motors
+# of one shape: K2's port area grows as the square of the length, and K2 w^2 D^3 is D (w D / area)^2
+GROWTH: Mapping[str, float] = {"K1": 1.0, "K2": -4.0 / 3.0, "K4": 1.0, "K5": 1.0}
+_DECLARED_FOR = 215.0 * CM3_PER_REV  # m^3/rad; the motor that typical values and bounds are declared for
+
+
+def grown(parameter: str, max_displacement: float) -> float:
+    """How many times as large as with 215 cm^3/rev a parameter of a motor of this m^3/rad is, as a rule."""
+    return float((max_displacement / _DECLARED_FOR) ** GROWTH.get(parameter, 0.0))
+
+
+def room(parameter: Parameter, max_displacement: float) -> tuple[float, float]:
+    """Bounds of a parameter: the declared ones, for motors whose parameters are larger as much wider."""
+    return parameter.lower, parameter.upper * max(grown(parameter.name, max_displacement), 1.0)
+
+
 def initial_model(described: MotorModel, max_displacement: float, name: str = "") -> FrictionModel:
     """The model at typical values for a motor of this maximum displacement in m^3/rad: where a fit starts."""
     terms = tuple(term_named(term) for term in described.terms)
     parameters = unique_parameters(terms)
-    bounds = {each.name: (-each.upper, each.upper) for each in parameters if described.signed}
+    bounds = {p.name: room(p, max_displacement) for p in parameters if grown(p.name, max_displacement) > 1.0}
+    if described.signed:
+        bounds = {name: (-upper, upper) for name, upper in ((p.name, room(p, max_displacement)[1]) for p in parameters)}
     return FrictionModel(
         name=name or described.name,
         terms=terms,

@@ -15,6 +15,7 @@ from winch_friction.identification.motor_identification import (
     silent,
 )
 from winch_friction.identification.motor_models import MOTOR_MODELS
+from winch_friction.identification.one_group import as_main, run_as_main
 from winch_friction.identification.prior import UnitSpread, load_unit_spread
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import SupplierTable
@@ -79,13 +80,14 @@ def read_practice(folder: Path) -> PracticeFolder:
     for key, own in runs.items():
         for each in names[key]:
             with problems:
-                own.append(read_run(folder / each, crane, complete=crane is not None))
+                run = read_run(folder / each, crane, complete=crane is not None)
+                own.append(run_as_main(run, crane) if crane is not None else run)
     with problems:
         table = read_supplier_table(supplier, (crane.max_displacement if crane else 0.0) or None)
     problems.say()
     return PracticeFolder(
         name=name,
-        crane=cast(Crane, crane),
+        crane=as_main(cast(Crane, crane)),
         table=table,
         motor_model=motor_model,
         tests=tuple(runs["tests"]),

@@ -1,6 +1,7 @@
 """The supplier's data: torque loss of one motor over speed, pressure and displacement (paper 2 section 2.1)."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from winch_friction.physics.winch import operating_point
 
 # of the smallest motor of paper 2 (50 of 170 cm^3/rev) and of its speeds (400 of 2500 rpm): what is left out there
 LOW_STROKE, LOW_SPEED = 50.0 / 170.0, 400.0 / 2500.0
+_UNITS = {"speed": ("rpm", RPM), "pressure": ("bar", BAR), "displacement": ("cm^3/rev", CM3_PER_REV)}
 WEIGHTINGS = ("equal", "nominal", "column")
 
 
@@ -84,13 +86,25 @@ class FitRange:
         least = min(displacement[0], LOW_STROKE * table.max_displacement)
         return cls(speed=(slowest, speed[1]), displacement=(least, displacement[1]))
 
+    def _inside(self, table: SupplierTable, column: str) -> Any:
+        (lower, upper), values = getattr(self, column), getattr(table, column)
+        return np.asarray((values >= lower * (1 - 1e-9)) & (values <= upper * (1 + 1e-9)))
+
+    def left_out(self, table: SupplierTable) -> str:
+        """How many rows the range leaves out, and by which column, in one line; '' for none."""
+        inside = {column: self._inside(table, column) for column in _UNITS}
+        kept = int(np.all(list(inside.values()), axis=0).sum())
+        said = []
+        for column, (unit, factor) in _UNITS.items():
+            lower, upper = (each / factor for each in getattr(self, column))
+            span = f"{lower:.4g} ... {upper:.4g}" if np.isfinite(upper) else f"from {lower:.4g} on"
+            if not inside[column].all():
+                said.append(f"{(~inside[column]).sum()} by {column} ({span} {unit} count)")
+        return f"{table.name}: {len(table) - kept} of {len(table)} rows are left out: {', '.join(said)}" if said else ""
+
     def select(self, table: SupplierTable) -> SupplierTable:
         """The rows inside the range; raises `InputError` when none is."""
-        keep = np.ones(len(table), bool)
-        for column in ("speed", "pressure", "displacement"):
-            lower, upper = getattr(self, column)
-            values = getattr(table, column)
-            keep &= (values >= lower * (1 - 1e-9)) & (values <= upper * (1 + 1e-9))
+        keep = np.all([self._inside(table, column) for column in _UNITS], axis=0)
         if not keep.any():
             raise InputError(
                 f"{table.name}: no row lies inside the range of the fit; widen speed, pressure or displacement"

@@ -12,6 +12,7 @@ from winch_friction.identification.fit import FitResult
 from winch_friction.identification.fit_data import FitData, modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data, friction_curve
 from winch_friction.identification.joint_fit import JointFit, joint_fit, observations, winch_prior
+from winch_friction.identification.one_group import as_main, run_as_main
 from winch_friction.identification.plateaus import Plateau, PlateauRule, find_plateaus
 from winch_friction.identification.prior import UnitSpread, supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, EQUATION_10, Loop, fit_system, second_loop
@@ -98,10 +99,11 @@ def identify_system(
     if not runs:
         raise InputError("identify system: no logged test was given")
     as_given = crane
-    crane = corrected_crane(as_given, motor.corrections)
-    tests = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in runs)
+    crane = as_main(corrected_crane(as_given, motor.corrections))
+    right = lambda run: run_as_main(corrected(run, as_given, motor)[0], as_given)
+    tests = tuple(read_test(right(run), crane, rule) for run in runs)
     _check_loads(tests)
-    others = tuple(read_test(corrected(run, as_given, motor)[0], crane, rule) for run in held_out)
+    others = tuple(read_test(right(run), crane, rule) for run in held_out)
     data = curve_data([test.curve for test in tests])
     loops = tuple(second_loop(data, motor))
     prior = winch_prior(supplier_prior(motor, spread), loops[0].system, "joint fit")

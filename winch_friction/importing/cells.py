@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from datetime import date, datetime, time
+from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
@@ -119,8 +120,8 @@ def as_column(
         return LogColumn(name, fast, unit, note=note)
     values, bad, kept = np.full(len(cells), np.nan), [], 0
     for row, cell in enumerate(cells):
-        if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            values[row] = cell
+        if isinstance(cell, (int, float, Decimal)) and not isinstance(cell, bool):
+            values[row] = float(cell)
             continue
         if is_missing(cell) or (isinstance(cell, str) and cell.strip().lower() in NO_VALUE):
             continue

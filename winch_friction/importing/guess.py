@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from winch_friction.importing.expectations import fits
-from winch_friction.importing.log import Log, LogColumn
+from winch_friction.importing.log import Log, LogColumn, own_name
 from winch_friction.importing.names import Concepts, name_concepts, name_score, tokens
 from winch_friction.importing.units import (
     CHANNEL_UNITS,
@@ -72,7 +72,21 @@ def matches(log: Log, crane: Crane | None, taken: Iterable[str] = ()) -> dict[st
         worth = sum(m.score for m in found.values()) - 0.6 * lacking
         if worth > best[0]:
             best = (worth, found)
-    return best[1]
+    return _of_one_kind(best[1])
+
+
+def _of_one_kind(found: dict[str, Match]) -> dict[str, Match]:
+    """The matches without those of a column whose namesake is more surely another kind of channel: two pressures may
+    bear one name, a load and a temperature do not.
+    """
+    kept = dict(found)
+    for name, match in found.items():
+        kind = match.slot.channel.removesuffix("_a").removesuffix("_b")
+        for other in found.values():
+            namesakes = other is not match and own_name(other.column.name) == own_name(match.column.name)
+            if namesakes and not other.slot.channel.startswith(kind) and other.score >= match.score:
+                kept.pop(name, None)
+    return kept
 
 
 def group_sets(crane: Crane | None) -> list[tuple[str, ...]]:
@@ -113,9 +127,10 @@ def _assigned(
 def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> Match | None:
     """The best reading of a column for a slot, None when its unit belongs to something else."""
     best: Match | None = None
-    readings = header_readings(column.name)
+    name = own_name(column.name)
+    readings = header_readings(name)
     for bare, unit in sorted(readings, key=lambda reading: not reading[1]):
-        if not unit and any(says_unit(column.name, said) for _, said in readings if said):
+        if not unit and any(says_unit(name, said) for _, said in readings if said):
             break  # a unit that is said is no word of the name; a single letter may be a port
         unit = unit or column.unit
         score, why = _reading_score(column, bare, unit, slot, groups, crane.groups if crane else _GROUPS)

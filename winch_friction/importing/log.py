@@ -1,5 +1,6 @@
 """A log as it was found: columns of numbers or of text, where each cell stands, and what was noticed while reading."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 
 Place = Callable[[int], str]  # index of a row -> how a person finds it in the file
+_NUMBERED = re.compile(r" #\d+$")
 _LISTED = 60  # columns named in one message
 
 
@@ -73,6 +75,11 @@ def unique_names(names: Sequence[str]) -> list[str]:
         seen[plain] = seen.get(plain, 0) + 1
         out.append(plain if seen[plain] == 1 else f"{plain} #{seen[plain]}")
     return out
+
+
+def own_name(name: str) -> str:
+    """A column's name as it stands in the log, without the number by which `unique_names` told it from others."""
+    return _NUMBERED.sub("", name)
 
 
 def number_column(name: str, values: Any, unit: str = "", note: str = "") -> LogColumn:

@@ -33,7 +33,7 @@ def map_text(log_map: LogMap) -> str:
     if log_map.time_from:
         lines.append("\ntime:")
         lines += _time_lines(log_map)
-    lines.append(f"\n{_COLUMNS}columns:")
+    lines.append(f"\n{_COLUMNS}columns:{'' if log_map.columns else ' {}   # none was found: write them here'}")
     for name, entry in log_map.columns.items():
         unit = column_unit(name)
         lines.append(f"  {name}:{f'   # becomes {unit}' if unit not in (None, '1') else ''}")

@@ -196,3 +196,12 @@ def _changed(log_map: LogMap, name: str, attribute: str, value: str, setting: st
     }  # fmt: skip
     entry = _entry(Section(fields | {attribute: value}, f"--set '{setting}'"))
     return replace(log_map, columns={**log_map.columns, name: entry})
+
+
+def refuse_if_open(log_map: LogMap, where: str) -> None:
+    """Raise `InputError` with every open question of a map."""
+    if log_map.questions:
+        raise InputError(
+            f"{where}: {' | '.join(log_map.questions)} (answer by --set CHANNEL.FIELD=VALUE, or in the map and "
+            "remove the question; --accept imports as it stands)"
+        )

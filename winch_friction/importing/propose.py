@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.importing.contradiction import contradictions
 from winch_friction.importing.draft import Draft
-from winch_friction.importing.guess import Match, matches
+from winch_friction.importing.guess import Match, group_sets, matches
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
@@ -16,9 +16,10 @@ from winch_friction.importing.orientation import settle_orientation, speed_by_mo
 from winch_friction.importing.reading import read_log
 from winch_friction.importing.ticks import fraction_unit
 from winch_friction.importing.time_base import TimeGuess, guess_time, to_seconds
+from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, header_readings
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
@@ -55,6 +56,7 @@ def propose(
     _settle_time(draft)
     found = matches(pooled, crane, draft.log_map.time_from)
     _settle_columns(draft, found, pooled)
+    ask_twins(draft)
     if crane is not None and not {"motor_speed", "drum_speed"} & set(draft.log_map.columns):
         speed_by_motion(draft, crane)
     settle_units(draft, found, pooled)
@@ -255,7 +257,7 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
         ]
         draft.problems.append(
             f"{', '.join(lacking)}: no column found; not used are {listed(free)}; "
-            f"name one by --set {lacking[0].split()[0]}.from=COLUMN"
+            f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN"
         )
     for name, entry in draft.log_map.columns.items():
         channel = name.rpartition(".")[2]
@@ -270,6 +272,12 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
             draft.questions.append(
                 f"{name}: '{entry.source}' is in {entry.unit}; of what? --set '{name}.of=NUMBER {own}'"
             )
+
+
+def _first_channel(lacking: str, crane: Crane | None) -> str:
+    """A channel's own name of what lacks, for the command line."""
+    first = lacking.split()[0]
+    return first if column_unit(first) is not None else f"{next(iter(group_sets(crane)[0]), 'main')}.pressure_a"
 
 
 def _settle_contradictions(draft: Draft) -> None:
@@ -289,12 +297,3 @@ def _bad_cells(logs: Sequence[Log], log_map: LogMap) -> list[str]:
         for c in log.columns
         if c.bad and c.name in used
     ]
-
-
-def refuse_if_open(log_map: LogMap, where: str) -> None:
-    """Raise `InputError` with every open question of a map."""
-    if log_map.questions:
-        raise InputError(
-            f"{where}: {' | '.join(log_map.questions)} (answer by --set CHANNEL.FIELD=VALUE, or in the map and "
-            "remove the question; --accept imports as it stands)"
-        )

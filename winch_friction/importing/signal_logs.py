@@ -21,6 +21,7 @@ from winch_friction.physics.signals import FloatArray
 TIME = "time"  # the name given to the times that a file keeps beside its signals
 _SILENT, _SHORT = 5.0, 1.0  # usual steps and s that a signal may say nothing without a word
 _PEEKED = 300  # cells of a column of text whose decimal mark is looked at
+_LABELLED = {"values", "label"}  # a signal of a structure with time
 _DEEPEST = 6  # structs within structs of a .mat file
 _OBJECTS = (
     "{}, which MATLAB alone can open; save its columns: s = table2struct(timetable2table(TT), 'ToScalar', true); "
@@ -152,10 +153,19 @@ def _mat(path: Path) -> Found:
 
 
 def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
-    """Arrays of numbers in nested structs under dotted names; a matrix gives one signal per column."""
+    """Arrays of numbers in nested structs under dotted names; a matrix gives one signal per column.
+
+    Of an array of structs each is numbered, and what Simulink calls a structure with time gives its signals' labels.
+    """
+    if isinstance(value, dict) and value.keys() >= _LABELLED and str(value["label"]).strip(" []"):
+        value, name = value["values"], str(value["label"]).strip()
     if isinstance(value, dict):
         for key, part in value.items() if depth < _DEEPEST else ():
             yield from _arrays(f"{name}.{key}", part, depth + 1)
+        return
+    if isinstance(value, (list, np.ndarray)) and len(np.shape(value)) and any(isinstance(v, dict) for v in value):
+        for number, part in enumerate(value, 1) if depth < _DEEPEST else ():
+            yield from _arrays(f"{name}.{number}", part, depth + 1)
         return
     array = np.asarray(value)
     if array.dtype.kind not in "biufMU" or array.size < 2 or array.size > _MOST or array.ndim > 2:

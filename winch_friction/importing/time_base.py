@@ -7,13 +7,14 @@ two) and `clock` (a time of day alone, from midnight).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import Any
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
 from winch_friction.importing.log import LogColumn, Place
+from winch_friction.importing.summer_time import from_utc, hour_back
 from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
 from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
 from winch_friction.physics.errors import InputError
@@ -66,8 +67,15 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
         return None
     seconds = to_seconds(columns, guess.base, "", lambda row: f"row {row + 1}", strict=False)
     finite = seconds[np.isfinite(seconds)]
-    if len(finite) < 2 or finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02:
+    back = hour_back(finite) if guess.base.zone else 0
+    if len(finite) < 2 or (not back and (finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02)):
         return None
+    if back and not guess.question:
+        guess = replace(
+            guess,
+            question=f"'{_first(_joined(columns))}' goes back by an hour at row {back + 1}: the end of summer time? "
+            "set time.zone to the log's, e.g. Europe/Oslo; else cut the log there",
+        )
     ticks = rows_of_one_tick(finite)
     if ticks > 1.5:
         return replace(
@@ -189,8 +197,11 @@ def _from_numbers(values: FloatArray, base: TimeBase, where: str) -> FloatArray:
 def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool) -> FloatArray:
     cells = _joined(columns)
     if isinstance(columns[0].text, np.ndarray) and np.issubdtype(columns[0].text.dtype, np.datetime64):
-        return np.asarray(columns[0].text.astype("datetime64[ns]").astype(np.int64) * 1e-9, dtype=np.float64)
-    shift, counted = _zone_shift(cells, base, where), _counts_milliseconds(cells)
+        stamps = columns[0].text.astype("datetime64[ns]")
+        return np.where(np.isnat(stamps), np.nan, stamps.astype(np.int64) * 1e-9)
+    zone, counted = _zone(base, where), _counts_milliseconds(cells)
+    offsets = np.zeros(len(cells))  # s from UTC that the cells say themselves
+    unzoned = np.zeros(len(cells), bool)
     known: dict[tuple[Any, ...], float] = {}
     seconds = np.full(len(cells), np.nan)
     for row, cell in enumerate(cells):
@@ -204,8 +215,11 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
         key = parts[:3]
         if key not in known:
             known[key] = days_since_1970(key, base.order or "ymd", where) * _DAY if parts[0] is not None else 0.0
-        seconds[row] = known[key] + clock_seconds(parts) - (zone_seconds(parts[7]) if parts[7] else shift)
-    return _over_midnight(seconds) if base.form == "clock" else seconds
+        seconds[row] = known[key] + clock_seconds(parts)
+        offsets[row], unzoned[row] = zone_seconds(parts[7]) if parts[7] else 0.0, not parts[7]
+    if zone is not None:
+        offsets[unzoned] = from_utc(seconds[unzoned], zone)
+    return _over_midnight(seconds - offsets) if base.form == "clock" else seconds - offsets
 
 
 def _counts_milliseconds(cells: Any) -> bool:
@@ -245,22 +259,14 @@ def _first(cells: Any) -> str:
     return str(next((cell for cell in cells if cell is not None and str(cell).strip()), ""))[:40]
 
 
-def _zone_shift(cells: Any, base: TimeBase, where: str) -> float:
-    """Offset of the zone from UTC in s at the log's first date; one for the whole log, so no hour is lost in it."""
+def _zone(base: TimeBase, where: str) -> ZoneInfo | None:
+    """The zone of dates without an offset, None for UTC."""
     if not base.zone or base.zone == "UTC" or base.form != "datetime":
-        return 0.0
+        return None
     try:
-        zone = ZoneInfo(base.zone)
+        return ZoneInfo(base.zone)
     except (ZoneInfoNotFoundError, ValueError, OSError) as error:
         raise InputError(f"{where}: time.zone '{base.zone}' is not known; write e.g. UTC or Europe/Oslo") from error
-    parts = next((p for p in map(time_parts, cells) if p is not None and p[0] is not None), None)
-    if parts is None:  # no date at all: what the first cell says is told by its row
-        return 0.0
-    local = datetime(1970, 1, 1) + timedelta(
-        days=days_since_1970(parts[:3], base.order or "ymd", where), seconds=clock_seconds(parts)
-    )
-    offset = local.replace(tzinfo=zone).utcoffset()
-    return offset.total_seconds() if offset else 0.0
 
 
 def _int(text: str) -> int:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.winch.crane import SLOWEST_FOR_POWER, Crane, Drive, Drum
 from winch_friction.records.atomic import shipped
@@ -129,15 +129,15 @@ class Plausible:
     upper: float
     usual: float
     slips: Mapping[str, float]
+    of: str = "winches"
 
     def check(self, value: float, where: str) -> None:
         """Raise `InputError` where no winch has this value; what is not said (0 or infinite) is nobody's slip."""
         if value in (0.0, math.inf) or self.lower <= value <= self.upper:
             return
         unit = "" if self.unit == "1" else f" {self.unit}"
-        raise InputError(
-            f"{where} is {value:.4g}{unit}, of winches {self.lower:.4g} ... {self.upper:.4g}{unit}:{self._meant(value)}"
-        )
+        usual = f"of {self.of} {self.lower:.4g} ... {self.upper:.4g}{unit}"
+        raise InputError(f"{where} is {value:.4g}{unit}, {usual}:{self._meant(value)}")
 
     def _meant(self, value: float) -> str:
         """The slip that makes it the most usual value; a ratio upside down is one too."""
@@ -174,6 +174,21 @@ def _inertia(gear_ratio: float) -> Plausible:
     return Plausible("kg*m^2", 1e-9, upper, upper / 100.0, {"kg*cm^2": 1e-4, "g*m^2": 1e-3})
 
 
+HELD = (1.0 / 200.0, 20.0)  # of what the motors hold at 300 bar: a rated load; init asks within 0.1 and 2
+_HOLDING = 300.0 * BAR
+
+
+def _rated(crane: Crane) -> Plausible | None:
+    """A rated load beside what the motors of a hydraulic crane hold on the innermost layer; None where none is said."""
+    torque = max(crane.groups.values(), default=0) * crane.max_displacement * _HOLDING * crane.gear_ratio
+    holds = torque / (GRAVITY * crane.drum.layer_radii[0])
+    return (
+        Plausible("kg", HELD[0] * holds, HELD[1] * holds, 0.5 * holds, {"t": 1e3}, "motors and a gear like these")
+        if holds
+        else None
+    )
+
+
 def check_ranges(crane: Crane, where: str) -> Crane:
     """The crane again; raises `InputError`, a line for each number that no winch has."""
     problems = Problems()
@@ -193,4 +208,6 @@ def check_ranges(crane: Crane, where: str) -> Crane:
             with problems:
                 raise InputError(f"{where}: groups: {name} has {count} motors, of winches 1 ... {MOST_MOTORS}")
     problems.say()
+    if (rated := _rated(crane)) is not None:
+        rated.check(crane.rated_load, f"{where}: rated_load")
     return crane

@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.identification.practice import Practice
 from winch_friction.physics.channels import RPM
-from winch_friction.physics.winch.model_curve import ModelCurve, model_curve
+from winch_friction.physics.winch.model_curve import ModelCurve, model_curve, usual_loads
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.curves import curve_plot
 from winch_friction.report.decision import decision_html, list_html
@@ -17,8 +17,6 @@ from winch_friction.report.practice_motor import motor_sections
 from winch_friction.report.practice_system import system_sections
 from winch_friction.report.practice_verification import verification_sections
 from winch_friction.report.tables import for_people, number, table_html, value_for_people
-
-LOADS = (15.0, 55.0, 100.0)  # t
 
 
 def write_practice_report(practice: Practice, path: Path, provenance: Mapping[str, Any] | None = None) -> Path:
@@ -59,7 +57,7 @@ def _facts(practice: Practice) -> list[tuple[str, str]]:
     middle = _curves(practice)[1]
     return [
         (
-            f"Friction at {middle.load / 1e3:.0f} t, {where} rpm",
+            f"Friction at {middle.load / 1e3:.3g} t, {where} rpm",
             f"{number(float(middle.torque[k]), 3)} ± {number(float(middle.std[k]), 2)} N·m",
         )
         for where, k in ((f"{middle.speed[0] / RPM:.0f}", 0), (f"{middle.speed[-1] / RPM:.0f}", -1))
@@ -67,8 +65,9 @@ def _facts(practice: Practice) -> list[tuple[str, str]]:
 
 
 def _curves(practice: Practice) -> list[ModelCurve]:
-    """The seed's friction at the loads of the papers' tests."""
-    return [model_curve(practice.seed, practice.folder.crane, load=1e3 * load) for load in LOADS]
+    """The seed's friction at a light, a middle and a heavy load of its crane."""
+    crane = practice.folder.crane
+    return [model_curve(practice.seed, crane, load=load) for load in usual_loads(crane)]
 
 
 def summary_lines(practice: Practice) -> list[str]:

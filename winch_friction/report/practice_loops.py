@@ -1,6 +1,7 @@
 """Report of the practice: what the second loop and those after it change."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,10 @@ from winch_friction.report.practice_look import (
     label,
     shown,
 )
-from winch_friction.report.tables import paragraph, table_html
+from winch_friction.report.tables import number, paragraph, table_html
+
+SETTINGS = (1.0, 145.0 / 215.0, 70.0 / 215.0)  # of the largest displacement, as in paper 2 Fig 10
+EQUAL_LOADS = 0.01  # of the heaviest; a load cell tells one load twice by less
 
 
 def loop_html(practice: Practice) -> str:
@@ -63,11 +67,12 @@ def motor_change_html(practice: Practice) -> str:
     speed = np.linspace(50, 2000, 79) * RPM
     first, last = practice.system.loops[0].motor, practice.system.loops[-1].motor
     curves = []
-    for k, cm3 in enumerate((215.0, 145.0, 70.0)):
-        points = motor_points(speed, np.full_like(speed, 200 * BAR), np.full_like(speed, cm3 * CM3_PER_REV))
-        curves.append(Curve(f"{cm3:.0f} cm³/rev", speed / RPM, first.torque(points)))
-        after = last.torque(points)[::4]
-        curves.append(Curve(f"{cm3:.0f} cm³/rev, after", speed[::4] / RPM, after, kind="dots", like=k))
+    largest = practice.folder.crane.max_displacement
+    for k, share in enumerate(SETTINGS):
+        points = motor_points(speed, np.full_like(speed, 200 * BAR), np.full_like(speed, share * largest))
+        label = f"{share * largest / CM3_PER_REV:.3g} cm³/rev"
+        curves.append(Curve(label, speed / RPM, first.torque(points)))
+        curves.append(Curve(f"{label}, after", speed[::4] / RPM, last.torque(points)[::4], kind="dots", like=k))
     said = "Motor loss at 200 bar before (lines) and after the loops (dots); paper 2 Fig 10."
     return curves_html("Motor before and after", SPEED, ["torque loss [N·m]"], curves, said)
 
@@ -76,12 +81,24 @@ def _derived(curves: Sequence[FrictionCurve], motor: FrictionModel) -> list[np.n
     return [curve.friction_torque - modelled(motor, curve_data([curve])) for curve in curves]
 
 
+def _of_equal_load(curves: Sequence[FrictionCurve]) -> list[list[FrictionCurve]]:
+    """The curves in groups of one load, the lightest first."""
+    ordered = sorted(curves, key=lambda curve: curve.drum_torque)
+    apart = EQUAL_LOADS * max(abs(curve.drum_torque) for curve in ordered)
+    groups = [ordered[:1]]
+    for before, curve in pairwise(ordered):
+        if curve.drum_torque - before.drum_torque > apart:
+            groups.append([])
+        groups[-1].append(curve)
+    return groups
+
+
 def derived_html(practice: Practice) -> str:
     """Paper 2 Fig 11, 12, 14: derived system friction by load, first loop (lines) and last (dots)."""
     every = [test.curve for test in (*practice.system.tests, *practice.system.held_out)]
     figures = []
-    for load in sorted({round(curve.drum_torque, -3) for curve in every}):
-        chosen = [curve for curve in every if round(curve.drum_torque, -3) == load]
+    for chosen in _of_equal_load(every):
+        torque = f"{number(float(np.mean([curve.drum_torque for curve in chosen])) / 1e3, 4)} kN·m"
         first = _derived(chosen, practice.system.loops[0].motor)
         last = _derived(chosen, practice.system.loops[-1].motor)
         curves = []
@@ -91,16 +108,16 @@ def derived_html(practice: Practice) -> str:
                 Curve(f"{_short(curve)}, after", curve.speed / RPM, after * curve.motors, kind="dots", like=k)
             )
         said = (
-            f"T_d = {load / 1e3:.0f} kN·m: system friction derived by subtracting the motor, before (lines) and after "
+            f"T_d = {torque}: system friction derived by subtracting the motor, before (lines) and after "
             "the loops (dots); equal loads should coincide; paper 2 Fig 11, 12, 14."
         )
-        title = f"System friction at {load / 1e3:.0f} kN·m"
+        title = f"System friction at {torque}"
         figures.append(curves_html(title, SPEED, ["T_fs, all motors [N·m]"], curves, said, 280, "derived"))
     return "".join(figures)
 
 
 def _short(curve: FrictionCurve) -> str:
-    return f"{curve.displacement / CM3_PER_REV:.0f} cm³/rev"
+    return f"{curve.displacement / CM3_PER_REV:.3g} cm³/rev"
 
 
 def map_derived_html(practice: Practice) -> str:

@@ -105,7 +105,7 @@ def map_html(practice: Practice) -> str:
     curves = []
     for k, displacement in enumerate(np.unique(table.displacement.round(9))[::-1]):
         pressure, setting = np.full_like(speed, 200 * BAR), np.full_like(speed, displacement)
-        label = f"{displacement / CM3_PER_REV:.0f} cm³/rev"
+        label = f"{displacement / CM3_PER_REV:.3g} cm³/rev"
         curves.append(Curve(label, speed / RPM, model.torque(motor_points(speed, pressure, setting))))
         every = speed[::4]
         loss = practice.map.torque_loss(every, pressure[::4], setting[::4])

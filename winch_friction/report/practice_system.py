@@ -8,6 +8,7 @@ from winch_friction.identification.friction_curve import FrictionCurve, winch_po
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.system_fit import system_start
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.winch.model_curve import usual_loads
 from winch_friction.records.model_file import load_model
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
@@ -92,18 +93,19 @@ def _system_html(practice: Practice) -> str:
 
 
 def breakdown_html(practice: Practice) -> str:
-    """Paper 2 Fig 8: Coulomb, stiction and viscous parts of the system friction at 100 t."""
+    """Paper 2 Fig 8: Coulomb, stiction and viscous parts of the system friction at a heavy load, 100 t of 150 t."""
     crane, system = practice.folder.crane, practice.system.loops[0].system
     speed = np.linspace(0.0, 2000.0, 201) * RPM
     motors = practice.system.tests[0].curve.motors
-    torque = np.full_like(speed, crane.drum_torque(100e3))
+    load = usual_loads(crane)[-1]
+    torque = np.full_like(speed, crane.drum_torque(load))
     points = winch_points(speed, np.zeros_like(speed), np.full_like(speed, crane.max_displacement), torque, motors)
     parts = {term: part / motors for term, part in system.contributions(points).items()}
     papers = {f"paper 2 {k}": system_start().with_values(v).torque(points) / motors for k, v in _paper_cranes().items()}
     columns = {SPEED: speed / RPM, **{f"{key} [N·m]": value for key, value in {**parts, **papers}.items()}}
     lines = [Line(term.replace("_", " "), SPEED, f"{term} [N·m]", kind="area") for term in parts]
     lines += [Line(label, SPEED, f"{label} [N·m]") for label in papers]
-    said = "System friction at 100 t on the outer layer: fit, and the papers' two cranes; paper 2 Fig 8."
+    said = f"System friction at {load / 1e3:.3g} t on the outer layer: fit, and the papers' two cranes; paper 2 Fig 8."
     return plot_html(
         Plot("System friction", [Frame("system", columns)], lines, SPEED, ["T_fs per motor [N·m]"], said, height=320)
     )

@@ -76,6 +76,8 @@ rho = _BY_NAME["density"]
 mu = _BY_NAME["viscosity"]
 gear_ratio = _BY_NAME["gear_ratio"]
 
+ALL_OF_LOAD = 1.0  # most that one shaft loses per drum torque: all of it, where one motor turns the drum without a gear
+
 GROUP_SYMBOLS = frozenset(signal.symbol for signal in GROUP_SIGNALS)
 SIGNAL_OF_SYMBOL = {signal.symbol: signal for signal in (*WINCH_SIGNALS, *GROUP_SIGNALS, *CONSTANTS)}
 

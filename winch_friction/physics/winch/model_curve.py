@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.physics.channels import RPM
+from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
@@ -16,6 +16,9 @@ from winch_friction.physics.winch.operating_point import group_point, operating_
 
 TOP_SPEED = 2000.0 * RPM  # rad/s; supplier tables and the paper's tests end near it
 LOWEST_SPEED = 5.0 * RPM  # rad/s; at rest friction is whatever holds the load
+OF_RATED = (15.0 / 150.0, 55.0 / 150.0, 100.0 / 150.0)  # the papers' loads, of a crane rated for 150 t
+_HOLDING = 300.0 * BAR  # of the papers' motors in service
+_RATED_OF_HELD = 0.4  # of what the motors hold then on the innermost layer, a crane is rated for; 150 of 359 t theirs
 _BALANCE_STEPS = 4  # the pressure that carries the friction moves the friction by under 2 %: each step gains two digits
 
 
@@ -34,6 +37,18 @@ class ModelCurve:
     std: FloatArray
     parts: dict[str, FloatArray]
     pressure: FloatArray
+
+
+def usual_loads(crane: Crane) -> tuple[float, float, float]:
+    """A light, a middle and a heavy hanging mass of this crane in kg, two digits each: 15, 55 and 100 t of 150 t rated.
+
+    Of a crane whose file names no rated load by what its motors hold, or its torque limit.
+    """
+    lever = GRAVITY * crane.drum.layer_radii[0] / crane.gear_ratio
+    torque = max(crane.groups.values(), default=0) * crane.max_displacement * _HOLDING or crane.absolute_torque_limit
+    rated = crane.rated_load or _RATED_OF_HELD * torque / lever
+    light, middle, heavy = (float(f"{share * rated:.2g}") for share in OF_RATED)
+    return light, middle, heavy
 
 
 def model_curve(

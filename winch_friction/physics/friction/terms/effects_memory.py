@@ -2,16 +2,16 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.symbols import T_d, s, w
+from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, s, w
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 
 F_z = Parameter("F_z", "N*m", 25.0, upper=500.0, doc="friction carried by the bristles, without load")
-c_z = Parameter("c_z", "1", 3.2e-5, upper=1e-3, doc="friction carried by the bristles, per drum torque")
+c_z = Parameter("c_z", "1", 3.2e-5, upper=ALL_OF_LOAD, doc="friction carried by the bristles, per drum torque")
 d_z = Parameter("d_z", "rad", 0.03, lower=1e-3, upper=10.0, shape=True, doc="shaft travel of one e-fold")
 F_dw = Parameter("F_dw", "N*m", 5.0, upper=200.0, doc="growth of the break-away torque, without load")
-c_dw = Parameter("c_dw", "1", 8.0e-6, upper=1e-3, doc="growth of the break-away torque, per drum torque")
+c_dw = Parameter("c_dw", "1", 8.0e-6, upper=ALL_OF_LOAD, doc="growth of the break-away torque, per drum torque")
 g_dw = Parameter("g_dw", "1/s", 0.3, lower=1e-3, upper=10.0, shape=True, doc="rate of growth at rest")
 d_dw = Parameter("d_dw", "rad", 5.0, lower=0.1, upper=1e3, shape=True, doc="sliding that rejuvenates the contact")
 

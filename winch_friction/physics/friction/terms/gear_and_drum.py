@@ -3,15 +3,15 @@
 import sympy as sp
 
 from winch_friction.physics.channels import RPM
-from winch_friction.physics.friction.symbols import T_d, w
+from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
-C1 = Parameter("C1", "1", 155e-7, upper=1e-3, doc="Stribeck rise per drum torque")
+C1 = Parameter("C1", "1", 155e-7, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque")
 C2 = Parameter("C2", "N*m", 5.0, upper=200.0, doc="Coulomb friction")
 C3 = Parameter("C3", "N*m", 0.562, upper=100.0, doc="Stribeck rise without load")
 C4 = Parameter("C4", "rad/s", 229 * RPM, lower=10 * RPM, upper=2000 * RPM, shape=True, doc="Stribeck speed, one e-fold")
 C5 = Parameter("C5", "N*m*s/rad", 0.00943, upper=1e4, doc="viscous friction")
-C6 = Parameter("C6", "1", 162e-7, upper=1e-3, doc="Coulomb friction per drum torque")
+C6 = Parameter("C6", "1", 162e-7, upper=ALL_OF_LOAD, doc="Coulomb friction per drum torque")
 
 _PAPER = "paper 2 eq 8"
 

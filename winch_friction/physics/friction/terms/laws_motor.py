@@ -5,7 +5,19 @@ exponents that the literature leaves open, one port, one direction.
 import sympy as sp
 
 from winch_friction.physics.channels import BAR, RPM
-from winch_friction.physics.friction.symbols import D, T_d, X, higher_port, n, oil_temperature, p, p_sum, s, w
+from winch_friction.physics.friction.symbols import (
+    ALL_OF_LOAD,
+    D,
+    T_d,
+    X,
+    higher_port,
+    n,
+    oil_temperature,
+    p,
+    p_sum,
+    s,
+    w,
+)
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 from winch_friction.physics.friction.terms.effects_winch import walther
 
@@ -31,7 +43,9 @@ B_vv = Parameter("B_vv", "K", 800.0, lower=100.0, upper=3000.0, shape=True, doc=
 K_ve, T_ve = _amount("K_ve"), _reference("T_ve")
 b_ve = Parameter("b_ve", "1/K", 0.04, lower=0.005, upper=0.2, shape=True, doc="relative loss of viscosity per degree")
 K_vh, T_vh = _amount("K_vh"), _reference("T_vh")
-C1_h = Parameter("C1_h", "1", 1.5e-5, upper=1e-3, doc="Stribeck rise per drum torque whose speed follows the oil")
+C1_h = Parameter(
+    "C1_h", "1", 1.5e-5, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque whose speed follows the oil"
+)
 C4_h = Parameter("C4_h", "rad/s", 20.0, lower=1.0, upper=200.0, shape=True, doc="its speed at the reference")
 
 
@@ -132,8 +146,12 @@ port_one_way = _motor(
     "port_one_way", K_po.symbol * _w**n_po.symbol * _x**m_po.symbol * (1 + b_po.symbol * s), (K_po, n_po, m_po, b_po),
     "paper 1 eq 11, of a port or a valve that oil passes one way",
 )  # fmt: skip
+# the number stands outside the root: which of the two a number inside goes to differs between versions of SymPy
+_SMALL = sp.Rational(1, 4)
+_AT_40 = float(_NU_40**-_SMALL)
 churning_viscous = _motor(
-    "churning_viscous", T_cv.symbol * _w**n_cv.symbol * (walther(oil_temperature) / _NU_40) ** sp.Rational(1, 4),
+    "churning_viscous",
+    _AT_40 * T_cv.symbol * _w**n_cv.symbol * walther(oil_temperature) ** _SMALL,
     (T_cv, n_cv), "Changenet and Velex 2007: churning grows with a small power of the viscosity",
 )  # fmt: skip
 churning_one_way = _motor(

@@ -2,21 +2,21 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.symbols import T_d, gear_ratio, shaft_angle, time, w, wire_layer
+from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, gear_ratio, shaft_angle, time, w, wire_layer
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 SLIDING_TO_FORGET = 300.0  # rad of shaft, some turns of a gear wheel, after which the rest is forgotten
 LOAD_SCALE = 5e5  # N m of drum torque, some tens of tonnes: normalises powers of the load
 
-C1_g = Parameter("C1_g", "1", 1e-5, upper=1e-3, doc="Stribeck rise per drum torque")
+C1_g = Parameter("C1_g", "1", 1e-5, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque")
 C3_g = Parameter("C3_g", "N*m", 1.0, upper=100.0, doc="Stribeck rise without load")
 v_g = Parameter("v_g", "rad/s", 20.0, lower=0.5, upper=300.0, shape=True, doc="Stribeck speed")
-C1_l = Parameter("C1_l", "1", 1e-5, upper=1e-3, doc="Stribeck rise per drum torque")
+C1_l = Parameter("C1_l", "1", 1e-5, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque")
 C3_l = Parameter("C3_l", "N*m", 1.0, upper=100.0, doc="Stribeck rise without load")
 v_l = Parameter("v_l", "rad/s", 20.0, lower=0.5, upper=300.0, shape=True, doc="Stribeck speed")
 F_dv = Parameter("F_dv", "N*m", 5.0, upper=200.0, doc="growth of the break-away torque, without load")
-c_dv = Parameter("c_dv", "1", 8e-6, upper=1e-3, doc="growth of the break-away torque, per drum torque")
+c_dv = Parameter("c_dv", "1", 8e-6, upper=ALL_OF_LOAD, doc="growth of the break-away torque, per drum torque")
 g_dv = Parameter("g_dv", "1/s", 0.3, lower=1e-3, upper=10.0, shape=True, doc="rate of growth at rest")
 v_dv = Parameter("v_dv", "rad/s", 10.0, lower=0.5, upper=200.0, shape=True, doc="speed of one e-fold of its decay")
 C_ws = Parameter("C_ws", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level in the end")

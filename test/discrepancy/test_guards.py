@@ -444,6 +444,9 @@ def test_a_name_may_not_leave_a_fifth_of_the_locked_gap(left, enough):
     assert bool(leaves_too_much(after)) is enough
 
 
+LOSSES = (100.0, 20.0, 2.0)  # with none of two names, with one of them, and with both: each takes a fifth at most
+
+
 @pytest.mark.parametrize(
     ("names", "left", "excess", "stands"),
     [
@@ -460,8 +463,8 @@ def test_several_names_leave_no_more_than_noise(names, left, excess, stands):
     slots = tuple(Slot(name, "", (k,)) for k, name in enumerate(names))
     after = replace(side(3.0 * WAVE, noise(), floor=0.8), least_noise=0.0)
     after = replace(after, size_after=replace(after.size_after, value=left * after.floor))
-    cross = SimpleNamespace(excess=lambda _: excess)
-    search = SimpleNamespace(explanation=SimpleNamespace(slots=slots), cross=cross)
+    cross = SimpleNamespace(excess=lambda _: excess, explain=lambda own: SimpleNamespace(loss=LOSSES[len(own)]))
+    search = SimpleNamespace(explanation=SimpleNamespace(slots=slots, loss=LOSSES[2]), cross=cross)
     trial = SimpleNamespace(holdout=after, search=search)
     assert (several_leave_more_than_noise(trial) == "") is stands
     brought = (Slot("slope", "", (0,), brings=("level",)), Slot("level", "", (1,)))  # one effect of two orders
@@ -470,6 +473,20 @@ def test_several_names_leave_no_more_than_noise(names, left, excess, stands):
     plain = tuple(replace(slot, plain=True) for slot in slots)  # what a bare model lacks is no discovery
     trial.search.explanation.slots = plain
     assert several_leave_more_than_noise(trial) == ""
+
+
+@pytest.mark.parametrize(
+    ("size", "left", "stands"), [(2.5, 1.6, True), (0.8, 1.6, False), (2.5, 2.1, False), (2.5, 1.2, True)]
+)
+def test_two_names_of_which_each_takes_a_large_part_are_no_inexactness_of_each_other(size, left, stands):
+    """Beside 3 of a wave 2.5 of another are two fifths of the square, 0.8 are 7 %; and twice the floor is too much."""
+    cross = crossfit(3.0 * WAVE + size * OTHER + noise())
+    search = SimpleNamespace(explanation=cross.explain(SLOTS[:2]), cross=cross)
+    after = replace(side(3.0 * WAVE, noise(), floor=0.8), least_noise=0.0)
+    after = replace(after, size_after=replace(after.size_after, value=left * after.floor))
+    closed = SimpleNamespace(excess=lambda _: 1.0, explain=cross.explain)
+    trial = SimpleNamespace(holdout=after, search=SimpleNamespace(explanation=search.explanation, cross=closed))
+    assert (several_leave_more_than_noise(trial) == "") is stands
 
 
 @pytest.mark.parametrize(("alone", "rivals"), [(0.02, ["other"]), (2.0, [])])
@@ -836,7 +853,8 @@ def test_zeros_within_a_step_of_the_transducers_leave_nothing(left, there):
 @pytest.mark.parametrize(("excess", "left", "stand"), [(0.1, 0.22, True), (0.1, 0.26, False), (0.5, 0.22, False)])
 def test_names_that_close_the_training_runs_may_leave_the_zeros_of_the_transducers(excess, left, stand):
     search = SimpleNamespace(
-        explanation=SimpleNamespace(slots=SLOTS[:2]), cross=SimpleNamespace(excess=lambda _: excess)
+        explanation=SimpleNamespace(slots=SLOTS[:2], loss=LOSSES[2]),
+        cross=SimpleNamespace(excess=lambda _: excess, explain=lambda own: SimpleNamespace(loss=LOSSES[len(own)])),
     )
     why = several_leave_more_than_noise(Trial(search, None, None, leaving(left)))
     assert (why == "") is stand

@@ -12,7 +12,7 @@ from winch_friction.discrepancy.assembly import Trial, as_given, tried
 from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.chance import dependences
+from winch_friction.discrepancy.engine.chance import dependences, least_part
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.proof import (
     adds,
@@ -69,17 +69,18 @@ def several_leave_more_than_noise(trial: Trial) -> str:
     """Why several names do not stand although each takes its part of the locked gap; empty where they do.
 
     One name's law may be inexact; of several the second is as likely what the first one's law has wrong, but hardly
-    where together they close the many training runs down to their noise.
+    where together they close the many training runs down to their noise, or where each takes a large part.
     """
-    search, slots = trial.search, trial.search.explanation.slots
+    search, side, left = trial.search, trial.holdout, trial.holdout.size_after.value
+    slots = search.explanation.slots
     names = {own.name for own in slots if not own.plain and not any(own.name in each.brings for each in slots)}
-    left = trial.holdout.size_after.value
-    closed = len(names) > 1 and search.cross.excess(search.explanation) <= LIMITS.least_excess
-    side = trial.holdout
-    most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
-    if len(names) < 2 or left <= most:
+    if len(names) < 2:
         return ""
-    return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {trial.holdout.floor:.3g}"
+    closed = search.cross.excess(search.explanation) <= LIMITS.least_excess
+    most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
+    if left <= most or (not far_off(side) and least_part(search.cross, search.explanation, names) >= LIMITS.large_part):
+        return ""
+    return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {side.floor:.3g}"
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
@@ -263,8 +264,7 @@ def _without(search: Search, slot: Slot) -> Search:
 
 def _judged_anew(search: Search, rng: np.random.Generator) -> Search:
     """The search with the rivals that its names have now that others are gone."""
-    selection = search.selection
-    return _of(search, with_fewer(search.cross, selection, selection.final.slots, rng))
+    return _of(search, with_fewer(search.cross, search.selection, search.selection.final.slots, rng))
 
 
 def _of(search: Search, selection: Selection) -> Search:

@@ -137,6 +137,9 @@ class Thresholds:
     in_step: float = 0.5  # of a sample's time, by which the signals of one log may be off without being late
     # times the floor, that several names may leave: true pairs leave 0.9 to 1.15, wrong second names to 3.4 (campaign)
     several_leave: float = 1.3
+    # of what several names explain, that is no inexactness of the others: laws of the literature that are not a
+    # machine's own leave a tenth of the torque, a hundredth of its square, and bad ones a tenth of it
+    large_part: float = 0.2
     far_off_the_floor: float = 2.0  # times the floor: more is something, however few segments show it
     # -- regions
     most_regions: int = 3

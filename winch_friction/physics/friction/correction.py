@@ -168,10 +168,7 @@ _DECLARED = (
         "accumulator_warmth", Action.WARMTH, 0.02, 0.2,
         "relative excess temperature of the gas at the start, of a pressure that is calculated",
     ),
-    _gas(
-        "accumulator_slow_warmth", Action.WARMTH, 0.02, 0.2,
-        "a part of it that fades more slowly, from the bottle's wall and what it stands on",
-    ),
+    _gas("accumulator_slow_warmth", Action.WARMTH, 0.02, 0.2, "a part of it that fades more slowly"),
     _gas(
         "accumulator_heat", Action.HEAT, 1.0, 10.0,
         "share of the compression's heat that the wall takes, of a pressure that is calculated",

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.cli.gap import show_result
+from winch_friction.cli.gap import _found_as, _parameters, show_result
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.assembly import _in_the_end, _inexact, _times
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -65,3 +65,21 @@ def test_names_that_no_scenario_tells_apart_say_so(tmp_path, capsys, verdict, sa
     shown = capsys.readouterr().out
     assert ("no scenario at hand tells these apart" in shown) is said
     assert "error lower by" in shown
+
+
+@pytest.mark.parametrize(("variant", "said"), [
+    ("hook, in some runs, 5 of 10", "tare_load (hook, in some runs, 5 of 10)"),
+    ("the driving group, beyond 138 bar", "tare_load (the driving group, beyond 138 bar)"),
+    ("n_sp = 3, w = 20", "tare_load"), ("layer 2, n = 3", "tare_load (layer 2)"), ("", "tare_load"),
+])  # fmt: skip
+def test_the_table_says_where_an_effect_was_found_unless_its_parameters_do(variant, said):
+    assert _found_as({"name": "tare_load", "variant": variant}) == said
+
+
+def test_the_table_has_a_date_for_an_instant():
+    parameters = {
+        "t_wl": {"value": 1.741788e9, "std": 82800.0, "unit": "s"},
+        "k": {"value": 2.0, "std": 0.0, "unit": "1"},
+    }
+    said = _parameters({"parameters": parameters, "law_kind": "literature"})
+    assert said == "t_wl = 2025-03-12 14:00 UTC ± 23 h, k = 2"

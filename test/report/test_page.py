@@ -7,7 +7,14 @@ import pytest
 
 from winch_friction.report.base import TextSection, render, write_report
 from winch_friction.report.figures import figure_html, new_figure, save_figure
-from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
+from winch_friction.report.tables import (
+    estimate_for_people,
+    for_people,
+    number,
+    paragraph,
+    table_html,
+    value_for_people,
+)
 
 
 def picture(points=50):
@@ -121,8 +128,16 @@ def test_a_long_word_is_no_sentence():
 @pytest.mark.parametrize(
     ("value", "unit", "shown", "said"),
     [(np.pi, "rad/s", 30.0, "rpm"), (2e5, "Pa", 2.0, "bar"), (5500.0, "kg", 5.5, "t"), (3.0, "N*m", 3.0, "N·m"),
-     (40.0, "degC", 40.0, "°C"), (2.0, "kg*m^2", 2.0, "kg·m²")],
+     (40.0, "degC", 40.0, "°C"), (2.0, "kg*m^2", 2.0, "kg·m²"),
+     (0.1e-6 / (2 * np.pi), "m^3/rad/K", 0.1, "cm³/rev/K"), (2e4, "Pa/K", 0.2, "bar/K"),
+     (1e3, "Pa/K^2", 0.01, "bar/K²")],
 )  # fmt: skip
 def test_a_quantity_has_the_unit_that_people_read_it_in(value, unit, shown, said):
     assert value_for_people(value, unit) == pytest.approx(shown)
     assert for_people(unit) == said
+
+
+def test_an_instant_is_a_date_and_a_duration_a_duration():
+    assert estimate_for_people(1.741788e9, 82800.0, "s") == ("2025-03-12 14:00 UTC", 23.0, "h")
+    assert estimate_for_people(1.2e6, 3600.0, "s") == (1.2e6, 3600.0, "s")
+    assert estimate_for_people(np.pi, 0.0, "rad/s") == (pytest.approx(30.0), 0.0, "rpm")

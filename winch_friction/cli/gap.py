@@ -211,16 +211,23 @@ def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
 def _parameters(effect: dict[str, Any]) -> str:
     """Values with deviations, in the units that people read them in; of a curve that the data drew only that it is one:
     its rises by themselves say little."""
-    from winch_friction.report.tables import for_people, number, value_for_people
+    from winch_friction.report.tables import estimate_for_people, number
 
     def amount(found: dict[str, Any]) -> str:
-        value, std = (value_for_people(found[part], found["unit"]) for part in ("value", "std"))
-        sure = f" ± {number(std, 2)}" if std > 0.0 else ""
-        return f"{number(value, 3)}{sure} {for_people(found['unit'])}".removesuffix(" –")
+        value, std, unit = estimate_for_people(found["value"], found["std"], found["unit"])
+        shown = value if isinstance(value, str) else number(value, 3)
+        sure = f" ± {number(std, 2)} {unit}" if std > 0.0 else "" if isinstance(value, str) else f" {unit}"
+        return f"{shown}{sure}".removesuffix(" –")
 
     of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
     said = [f"{k} = {amount(found)}" for k, found in effect["parameters"].items() if k not in of_curve]
     return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
+
+
+def _found_as(effect: dict[str, Any]) -> str:
+    """The name, and in which signals, layers or runs it was found, where no parameter says so."""
+    said = [part for part in effect.get("variant", "").split(", ") if part and "=" not in part]
+    return f"{effect['name']} ({', '.join(said)})" if said else effect["name"]
 
 
 def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
@@ -234,7 +241,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
     rows = [
         [
-            effect["name"],
+            _found_as(effect),
             ", ".join(effect["indistinguishable_from"]) or "-",
             _parameters(effect),
             f"{100 * effect['evidence']['cv_gain']:.0f} %",

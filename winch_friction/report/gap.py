@@ -19,7 +19,14 @@ from winch_friction.report.equations import latex_html, term_html
 from winch_friction.report.gap_plots import heat_plot, run_plots, speed_plot
 from winch_friction.report.gap_words import facts, next_steps, shown_unit, verdict_sentence
 from winch_friction.report.plots import plot_html
-from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
+from winch_friction.report.tables import (
+    estimate_for_people,
+    for_people,
+    number,
+    paragraph,
+    table_html,
+    value_for_people,
+)
 
 __all__ = ["GapResult", "Side", "gap_sections", "verdict_sentence", "write_gap_report"]
 
@@ -72,7 +79,7 @@ def _effect(effect: Effect, result: GapResult) -> str:
     if not drawn:
         drawn, curve = _by_run(effect, result)
     rows = [
-        (name, value_for_people(e.value, e.unit), value_for_people(e.std, e.unit), for_people(e.unit))
+        (name, *estimate_for_people(e.value, e.std, e.unit))
         for name, e in effect.parameters.items()
         if name not in drawn
     ]

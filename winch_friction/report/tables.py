@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
 from html import escape
 from math import isfinite
 from typing import Any
@@ -49,7 +50,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # the unit that people read a quantity in; one per quantity on every page and in every table
 _PEOPLE = {"rad/s": ("rpm", 1.0 / RPM), "Pa": ("bar", 1.0 / BAR), "kg": ("t", 1e-3), "degC": ("°C", 1.0),
            "1": ("–", 1.0),
-           "": ("–", 1.0), "m^3/rad": ("cm³/rev", 1.0 / CM3_PER_REV)}  # fmt: skip
+           "": ("–", 1.0), "m^3/rad": ("cm³/rev", 1.0 / CM3_PER_REV), "m^3/rad/K": ("cm³/rev/K", 1.0 / CM3_PER_REV),
+           "Pa/K": ("bar/K", 1.0 / BAR), "Pa/K^2": ("bar/K²", 1.0 / BAR)}  # fmt: skip
+_A_DATE = 1e9  # s since 1970; no duration of a winch is 32 years
 
 
 def for_people(unit: str) -> str:
@@ -62,6 +65,13 @@ def for_people(unit: str) -> str:
 def value_for_people(value: float, unit: str) -> float:
     """An SI value in the unit of `for_people`."""
     return value * _PEOPLE[unit][1] if unit in _PEOPLE else value
+
+
+def estimate_for_people(value: float, std: float, unit: str) -> tuple[Any, float, str]:
+    """Value, standard deviation and unit as people read them; an instant, s since 1970, as its date, uncertain by h."""
+    if unit == "s" and value > _A_DATE:
+        return f"{datetime.fromtimestamp(value, UTC):%Y-%m-%d %H:%M} UTC", std / 3600.0, "h"
+    return value_for_people(value, unit), value_for_people(std, unit), for_people(unit)
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:

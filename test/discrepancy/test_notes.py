@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.cli.gap import _found_as, _parameters, show_result
+from winch_friction.discrepancy.adequacy import Check, of_names
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.assembly import _in_the_end, _inexact, _times
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -16,6 +17,7 @@ from winch_friction.discrepancy.proof import nothing_compared
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
+from winch_friction.report.gap_words import facts
 
 RUNS = [Run(f"run_{k}", {"time": 1000.0 * k + np.arange(11.0), "motor_speed": np.ones(11)}) for k in range(3)]
 MODEL = FrictionModel("m", (term_named("coulomb"),), (50.0,))
@@ -83,3 +85,17 @@ def test_the_table_has_a_date_for_an_instant():
     }
     said = _parameters({"parameters": parameters, "law_kind": "literature"})
     assert said == "t_wl = 2025-03-12 14:00 UTC ± 23 h, k = 2"
+
+
+def test_what_runs_lack_is_said_once_and_names_are_not_counted(tmp_path, capsys):
+    checks = [of_names("churning or viscous"), Check("moving samples", 12.0, 15.0, "s", False)]
+    gap = {"unit": "bar", "holdout": {"before": None, "after": None, "noise_floor": None}}
+    show_result(
+        {"verdict": "insufficient", "effects": [], "gap": gap, "adequacy": [vars(each) for each in checks], "notes": [],
+         "next_experiment": None}, tmp_path,
+    )  # fmt: skip
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[1] == "lacking: runs that tell more effects apart (churning or viscous)"
+    assert shown[2] == "lacking: moving samples: 12 s, needed 15 s"
+    told = facts(SimpleNamespace(holdout=nothing_compared(), unit="bar", adequacy=checks))
+    assert told == [(checks[0].what, "none of these"), ("moving samples", "12 s, needed 15 s")]

@@ -236,7 +236,7 @@ def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
 
 def show_result(content: dict[str, Any], out: Path) -> None:
     """The verdict for a person."""
-    from winch_friction.discrepancy.adequacy import told_apart
+    from winch_friction.discrepancy.adequacy import Check
 
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
     rows = [
@@ -255,8 +255,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
         if not check["met"]:
-            value, unit_of = told_apart(check["value"], check["needed"]), "" if check["unit"] == "1" else check["unit"]
-            print(f"lacking: {check['what']} {value} {unit_of}".rstrip() + f", needed {check['needed']:g}")
+            print(f"lacking: {Check(**check).sentence}")
     if gap["before"] is not None:
         print(
             f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "

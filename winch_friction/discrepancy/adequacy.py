@@ -37,6 +37,8 @@ class Check:
     @property
     def sentence(self) -> str:
         """What is lacking, in words."""
+        if self.what.startswith(TELLING):
+            return self.what  # there are some or there are none
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.what}: {told_apart(self.value, self.needed)}{unit}, needed {self.needed:g}{unit}"
 

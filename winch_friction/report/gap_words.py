@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import told_apart
 from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
@@ -44,7 +43,7 @@ def facts(result: "GapResult") -> list[tuple[str, str]]:
     side, unit = result.holdout, shown_unit(result)
     if not side.blocks.y.size:
         return [
-            (each.what, f"{told_apart(each.value, each.needed)}, needed {each.needed:g}")
+            (each.what, "none of these" if each.sentence == each.what else each.sentence.removeprefix(f"{each.what}: "))
             for each in result.adequacy
             if not each.met
         ]

@@ -11,8 +11,15 @@ from winch_friction.physics.friction.term import load_file
 
 
 def test_unknown_name_lists_the_known_ones():
-    with pytest.raises(InputError, match="'coulom' is not known; known terms are .*coulomb"):
-        term_named("coulom")
+    with pytest.raises(InputError, match="'friktion' is not known; known terms are .*coulomb"):
+        term_named("friktion")
+
+
+def test_a_slip_in_a_name_is_answered_by_what_was_meant_alone():
+    with pytest.raises(InputError) as said:
+        term_named("gear_load_los")
+    assert "is not known; did you mean gear_load_loss" in str(said.value)
+    assert "stribeck" not in str(said.value)
 
 
 def test_duplicate_name_is_refused():

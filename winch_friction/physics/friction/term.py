@@ -180,8 +180,9 @@ def term_named(name: str) -> Term:
     """The term of that name; an unknown one raises `InputError` with the names there are."""
     _load_shipped()
     if name not in _TERMS:
+        near = meant(name, _TERMS) or f" known terms are {', '.join(sorted(_TERMS))};"
         raise InputError(
-            f"term '{name}' is not known; known terms are {', '.join(sorted(_TERMS))};{meant(name, _TERMS)} "
+            f"term '{name}' is not known;{near} "
             "one of your own needs its file (--terms-file; gap: --effects; nodes: terms_file)"
         )
     return _TERMS[name]

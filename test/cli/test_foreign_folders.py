@@ -95,3 +95,12 @@ def test_what_a_killed_search_has_left_is_its_own(tmp_path):
     assert run(words) == 0
     found = json.loads((tmp_path / "gap.json").read_text())["next_experiment"]
     assert {each.name for each in tmp_path.iterdir()} == {"gap.json", "model.yaml", found["scenario"]}
+
+
+@pytest.mark.parametrize("name", ["check.html", "gap.JSON", "model.yaml"])
+def test_a_folder_is_not_made_under_the_name_of_a_file(tmp_path, name):
+    with pytest.raises(InputError, match="writes a folder of files; give a name without"):
+        refuse_foreign(tmp_path / name, ("check.html",), "check.json")
+    refuse_foreign(tmp_path / "run.3", ("check.html",), "check.json")
+    (tmp_path / name).mkdir()  # somebody's own
+    refuse_foreign(tmp_path / name, ("check.html",), "check.json")

@@ -164,8 +164,11 @@ def refuse_existing(overwrite: bool, *places: Path | None) -> None:
 def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: str = "") -> None:
     """Raise `InputError` where a folder holds files that a verb writes, and they are not those of an earlier call.
 
-    An earlier call has left `mark`, which says `schema`; the names may be patterns.
+    An earlier call has left `mark`, which says `schema`; the names may be patterns. A folder that is to be made under
+    the name of a file is refused as well.
     """
+    if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv"):
+        raise InputError(f"--out {out}: this verb writes a folder of files; give a name without {out.suffix}")
     if out is None or not out.is_dir():
         return
     made = out / mark

@@ -38,6 +38,11 @@ def fed(bench: Bench) -> tuple[Bench, list]:
     return bench, torque
 
 
+# whoever starts the tests by nohup has SIGHUP ignored, the nodes inherit that, and rightly do not end
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 def alive(bench: Bench, name: str = "compensator") -> bool:
     return bench.processes[name].poll() is None
 

@@ -49,7 +49,8 @@ def searched(*slots, **more):
 
 def side(left=1.0, **more):
     """Runs that keep so many floors."""
-    known = {"runs": (), "floor": 1.0, "excused": 1.0, "noise_floor": 1.0, "size_after": Size(left, (left, left))}
+    size = Size(left, (left, left))
+    known = {"runs": (), "floor": 1.0, "excused": 1.0, "noise_floor": 1.0, "size_before": size, "size_after": size}
     return SimpleNamespace(**known, **more)
 
 

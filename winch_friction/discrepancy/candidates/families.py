@@ -61,7 +61,8 @@ def literature() -> list[Candidate]:
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
         # at lower speeds and in proportion to the pressure it is a Stribeck curve
         _of("high_pressure_mixed", "high_pressure_film", {"n_hf": (1.5, 2.0, 3.0), "w_hf": (20.0, 60.0, 180.0)}),
-        _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0, 2000.0)}),
+        # that does not fade within the speeds of a motor is the convex curve's: it took up what two runs differ by
+        _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},

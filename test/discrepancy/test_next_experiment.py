@@ -30,24 +30,27 @@ def recorded(scenario: str, seed: int) -> Run:
 
 @pytest.mark.long
 def test_running_the_proposed_scenarios_resolves_the_ambiguity():
-    """Each experiment parts the two that it was proposed for, and a few of them leave the one that is there."""
+    """Each experiment parts the two that it was proposed for, or, where more names than a set holds do as well, leaves
+    fewer; and a few of them leave the one that is there."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     runs = [recorded("test_02", seed) for seed in range(6)]  # one load, one displacement
-    result, at_first = find_gap(runs, crane, model), None
+    result, asked = find_gap(runs, crane, model), []
     for k in range(MOST):
-        if result.verdict != "ambiguous":
+        if result.verdict not in ("ambiguous", "insufficient"):
             break
         plan = result.content()["next_experiment"]
-        assert plan["expected_z"] > 3.0
-        together = {result.effects[0].name, *result.effects[0].rivals}
-        at_first = at_first or together
-        assert set(plan["separates"]) <= together
-        scenario = plan["scenario"].removesuffix(".yaml")
-        runs += [recorded(scenario, 50 + 10 * k + j) for j in range(3)]
+        asked.append(plan["scenario"].removesuffix(".yaml"))
+        parted = set(plan["separates"])
+        if result.verdict == "ambiguous":
+            assert plan["expected_z"] > 3.0
+            assert parted <= {result.effects[0].name, *result.effects[0].rivals}
+        else:
+            assert "more effects apart" in result.refused
+        runs += [recorded(asked[-1], 50 + 10 * k + j) for j in range(3)]
         result = find_gap(runs, crane, model)
-        assert not set(plan["separates"]) <= {result.effects[0].name, *result.effects[0].rivals}
-    assert at_first, "it was ambiguous"
-    assert len(at_first) > 1
+        assert result.verdict != "insufficient"
+        assert not parted or not parted <= {result.effects[0].name, *result.effects[0].rivals}
+    assert asked, "six runs at one load and one displacement tell nothing apart"
     assert result.verdict == "missing_effect"
     assert [effect.name for effect in result.effects] == ["pressure_offset"]
 

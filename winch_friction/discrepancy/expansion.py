@@ -1,6 +1,6 @@
 """Runs prepared around a point: the seed model, or the best explanation so far."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -91,6 +91,14 @@ def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: Friction
     ]
     found = with_corrections(own, crane, model, loads, prepared, [run.name for run in own])
     return Given(right, own_crane, model, loads, found)
+
+
+def met_in_turn(given: Given, model: FrictionModel, modes: Mapping[str, Mode]) -> Iterator[PreparedRun]:
+    """The runs one after the other as another model sees them, with wires of these modes: all at once fill a memory."""
+    right, own_crane = _corrected(given.runs, given.crane, model)
+    loads = estimated_loads(right, own_crane, model)
+    for run in right:
+        yield prepare(run, own_crane, model, loads.get(run.name, NAN), mode=modes[run.name])
 
 
 def swings(given: Given) -> bool:

@@ -27,8 +27,9 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence, dependences, near
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Selection, select
-from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet
+from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet, met_in_turn
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -53,10 +54,12 @@ def without_delay(
     late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted)
     shapes = [_shape(size * factor, late) for factor in AROUND]
     columns = {}
-    for shape in shapes:
+    modes: Mapping[str, Mode] = {}  # told once, of the first estimate, for a delay hides a swing; then only it differs
+    for shape in sorted(shapes, key=lambda each: abs(each.values["delay"] - size)):
         delay = shape.values["delay"]
         model = replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
-        for old, new in zip(given.prepared, meet(given.runs, given.crane, model, ()).prepared, strict=True):
+        modes = modes or {run.name: run.wire_mode for run in meet(given.runs, given.crane, model, ()).prepared}
+        for old, new in zip(given.prepared, met_in_turn(given, model, modes), strict=True):
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             columns[old.name, delay] = (old.gap - gap)[:, None] / delay
     return [

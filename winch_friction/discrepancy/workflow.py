@@ -82,7 +82,7 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     where it leaves nothing that is anybody's of any run none.
     """
     search = trial.search
-    slots = [slot for slot in search.explanation.slots if not slot.plain]
+    slots = _on_their_own(search.explanation.slots)
     left = search.cross.excess(search.explanation)
     causes = {slot.name for slot in slots}
     asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
@@ -95,6 +95,11 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
         return trial
     refit = tried(split, crane, options, nameless(search), rng)
     return replace(refit, search=unexplained(refit.search, why, rng))
+
+
+def _on_their_own(slots: Sequence[Slot]) -> list[Slot]:
+    """Those of a name of their own: not what a bare model lacks, nor what another of them always brings along."""
+    return [own for own in slots if not own.plain and not any(own.name in each.brings for each in slots)]
 
 
 def _closed(trial: Trial, rng: np.random.Generator) -> bool:
@@ -116,7 +121,7 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     speaks for it, if the first of the `laws` does not take half of what that one leaves.
     """
     named = selection.final
-    slots = [slot for slot in named.slots if not slot.plain]
+    slots = _on_their_own(named.slots)
     if not laws or not slots:
         return ""
     law = laws[0]

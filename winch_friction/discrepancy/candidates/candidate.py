@@ -32,6 +32,7 @@ MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flo
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
 LINE, CHURNING = "line_pressure_drop", "churning"
+OF_WINCH = ("torque_offset", "direction_asymmetry")
 CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
 SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
@@ -104,9 +105,10 @@ def correction(name: str, estimate: ParameterEstimate, factor: float = 1.0, **ti
 
 def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
-    motor's torque with its displacement, masses with what the winch lifts at one pressure, a resistance (also one that
-    is stated at a fixed flow, under `LINE`) with the square of its flow, and what is stated at a fixed speed, under
-    `CHURNING`, as much at a slow machine's own top speed. Empty where no run shows motors.
+    motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
+    winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
+    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Empty
+    where no run shows motors.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
@@ -118,7 +120,7 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
     top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
     churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
-    stated_at = {LINE: whole**-2, CHURNING: churned}
+    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole)}
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 

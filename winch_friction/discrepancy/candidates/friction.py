@@ -6,12 +6,14 @@ cause's, and the name would be given for what it does not say.
 
 import itertools
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import (
+    REFERENCE_MOTORS,
     REVERSALS,
     Candidate,
     Possible,
@@ -74,9 +76,9 @@ def shipped_friction() -> list[Candidate]:
         _of("brake_drag", presumes=COULOMB),
         _of("coulomb", plain=True, reversal_rival=True),
         _of("viscous", plain=True, reversal_rival=True),
-        _of("torque_offset", plain=True),
+        _of_winch("torque_offset", plain=True),
         # marginality: the slope of what depends on direction is never taken without its intercept
-        _of("direction_asymmetry", plain=True, brings=("torque_offset",)),
+        _of_winch("direction_asymmetry", plain=True, brings=("torque_offset",)),
         # every imperfection of timing looks like a little presliding, and a very short travel is within its blur
         _of("presliding", {"d_z": BRISTLE_TRAVEL}, regime=REVERSALS, reversal_gain=0.3, reversal_rival=True,
             shortest=("d_z", min(BRISTLE_TRAVEL))),
@@ -85,6 +87,12 @@ def shipped_friction() -> list[Candidate]:
 
 def _of(name: str, grid: Grid | None = None, **more: Any) -> Candidate:
     return friction_candidate(term_named(name), grid or {}, **more)
+
+
+def _of_winch(name: str, **more: Any) -> Candidate:
+    """A torque of the whole winch, of which a term states what is typical of one motor."""
+    linear = [replace(p, typical=REFERENCE_MOTORS * p.typical) for p in term_named(name).parameters]
+    return _of(name, linear=tuple(linear), **more)
 
 
 def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Candidate:
@@ -103,7 +111,7 @@ def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Can
         "hydraulic": any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     }
     linear = tuple(p for p in term.parameters if not p.shape)
-    return Candidate(term.name, "", linear, partial(term_columns, term), term=term, **(fields | more))
+    return Candidate(term.name, columns=partial(term_columns, term), term=term, **({"linear": linear} | fields | more))
 
 
 def _grid(term: Term, given: Grid) -> Grid:

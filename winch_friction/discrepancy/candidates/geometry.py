@@ -108,7 +108,9 @@ def layers_apart(runs: Sequence[PreparedRun]) -> list[Candidate]:
 
     def corrects(found: Estimates, _: Shape, sides: Sides) -> list[Correction]:
         radii = dict(enumerate(sides.crane.drum.layer_radii, start=1))
-        return [correction("layer_radius", found[p.name], radii[int(k)], layers=(int(k),)) for k, p in own.items()]
+        # a layer that only locked runs are on is known to nothing
+        known = {int(k): found[p.name] for k, p in own.items() if p.name in found}
+        return [correction("layer_radius", each, radii[k], layers=(k,)) for k, each in known.items()]
 
     return [
         Candidate(

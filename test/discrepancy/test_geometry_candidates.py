@@ -73,3 +73,5 @@ def test_every_layer_may_have_an_error_of_its_own_where_there_are_three():
     found = {p.name: ParameterEstimate(0.01 * k, 0.001, "1") for k, p in enumerate(law.linear, start=1)}
     written = law.corrects(found, Shape(""), sides)
     assert {each.layers: each.value for each in written} == pytest.approx({(1,): 0.008, (2,): 0.018, (4,): 0.033})
+    del found["e_R2"]  # on which no run that taught has been
+    assert {each.layers for each in law.corrects(found, Shape(""), sides)} == {(1,), (4,)}

@@ -77,6 +77,9 @@ def test_typical_sizes_are_those_of_the_machine():
         2.0**1.9 * churning.scale(churning.linear[0], small), rel=0.01
     )
     assert {name for name in slow if slow[name] != pytest.approx(small[name], rel=0.01)} == {"churning"}
+    offset = next(each for each in all_candidates() if each.name == "torque_offset")  # of the shaft, by all its motors
+    assert offset.plausible * offset.scale(offset.linear[0], reference) == pytest.approx(66.0, rel=0.01)
+    assert offset.scale(offset.linear[0], small) == pytest.approx(11.0 * whole)
     assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
     assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)
     assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical

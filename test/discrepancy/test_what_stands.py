@@ -43,7 +43,7 @@ def explained(slots):
 
 def searched(*slots, **more):
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
-    cross = SimpleNamespace(explain=explained, excess=lambda _: 0.0)
+    cross = SimpleNamespace(explain=explained, excess=lambda _: 1.0)
     return Searched(Selection(explained(()), explained(slots), found), **{"cross": cross, **more})
 
 

@@ -27,6 +27,7 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.tolerances import within_a_sample, within_a_step
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
@@ -78,7 +79,9 @@ def several_leave_more_than_noise(trial: Trial) -> str:
         return ""
     closed = search.cross.excess(search.explanation) <= LIMITS.least_excess
     most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
-    if left <= most or (not far_off(side) and least_part(search.cross, search.explanation, names) >= LIMITS.large_part):
+    share = search.cross.excess(search.explanation) / max(search.cross.excess(search.cross.explain(())), 1e-9)
+    near = not far_off(side) or share <= LIMITS.several_share
+    if left <= most or (near and least_part(search.cross, search.explanation, names) >= LIMITS.large_part):
         return ""
     return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {side.floor:.3g}"
 
@@ -127,8 +130,15 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
         worse = "".join(worse_runs(full.holdout, rng))
         return (None, worse) if worse else (full, "")
+    if nobodys(refit.holdout) and search.cross.excess(search.selection.base) <= 0.0:
+        return None, f"{names}: what a mere refit of the model leaves of either runs is less than anybody's effect"
     proof = prove(names, refit.holdout, full.holdout, rng)
-    why = proof.why or leaves_too_much(full.holdout) or leaves_most(full.train) or _within_a_sample(full)
+    why = proof.why or leaves_too_much(full.holdout) or leaves_most(full.train)
+    why = (
+        why
+        or within_a_sample(full.repaired.parameters, full.holdout)
+        or within_a_step(search.cross, search.explanation)
+    )
     return (None, why) if why else (full, "")
 
 
@@ -147,21 +157,6 @@ def _stands_though_refused(
     if full is None or full.holdout.size_after.value > LIMITS.several_leave * full.holdout.floor or far_off(full.train):
         return None, "; ".join(filter(None, (search.verdict.refused, why)))
     return full, ""
-
-
-def _within_a_sample(trial: Trial) -> str:
-    """Why a delay is no name although it takes something off the locked gap; empty where it is one, or there is none.
-
-    Signals of one log are in step to half a sample: a counting encoder's mean is as old, and an analogue input waits
-    for the next one.
-    """
-    found = trial.repaired.parameters.get(DELAY, {})
-    if not found:
-        return ""
-    step, most = max(run.dt for run in trial.holdout.runs), max(abs(each.value) for each in found.values())
-    if most > LIMITS.in_step * step:
-        return ""
-    return f"a delay of {1e3 * most:.2g} ms is how a log of a sample every {1e3 * step:.3g} ms is made"
 
 
 def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Search:

@@ -31,7 +31,7 @@ from winch_friction.physics.friction.term import Parameter
 DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
 SMALL = 0.8  # of the typical delay: the largest that the columns of a small one can be
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
-DELAY = "signal_delay"
+DELAY, ZERO = "signal_delay", "pressure_offset"
 OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 # K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line
@@ -253,17 +253,17 @@ def signal_candidates() -> list[Candidate]:
     """Offset, gain and delay; the feedback of the displacement stands in a file of its own."""
     offset = r"\sum_g n_g D_g\,"
     return [
-        in_groups("pressure_offset", offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
+        in_groups(ZERO, offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
                   to(("pressure_offset", p_0))),
-        in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
+        in_groups(ZERO, offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
                   group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
                   law_name="thermal zero shift", needs=OIL),
         # a bridge is compensated at two temperatures: what is left between and beyond them is a bow
-        in_groups("pressure_offset", offset + r"(p_0 + p_T(\vartheta-40) + p_{TT}(\vartheta-40)^2)", (p_0, p_T, p_TT),
+        in_groups(ZERO, offset + r"(p_0 + p_T(\vartheta-40) + p_{TT}(\vartheta-40)^2)", (p_0, p_T, p_TT),
                   partial(bowed_warm_columns, _offset), group_shapes,
                   to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T), ("pressure_thermal_bow", p_TT)),
                   law_name="thermal zero that bends", needs=OIL, blind=_one_warmth),
-        in_groups("pressure_offset", offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
+        in_groups(ZERO, offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
         in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,

@@ -882,7 +882,7 @@ def test_nothing_is_missing_only_where_the_training_runs_are_near_their_floor_to
     trial = Trial(search, None, side(noise(), kept * WAVE + noise(1)), side(noise(), noise(1)))
     judged = standing_module._judged(trial, "no name", np.random.default_rng(0))
     assert judged.verdict.kind == kind
-    assert ("training runs keep" in judged.verdict.refused) is (kind == UNEXPLAINED)
+    assert ("leaves the training runs" in judged.verdict.refused) is (kind == UNEXPLAINED)
 
 
 @pytest.mark.parametrize(("train", "locked", "kind"), [

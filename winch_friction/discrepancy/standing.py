@@ -285,7 +285,7 @@ def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
         found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
     side, which = (trial.train, "training") if at_the_floor(trial.holdout) else (trial.holdout, "locked")
-    kept = f"the {which} runs keep {side.size_after.value:.3g} where their noise is {side.noise_floor:.3g}"
+    kept = f"a refit without a name leaves the {which} runs {side.size_after.value:.3g}, noise {side.noise_floor:.3g}"
     return unexplained(search, "; ".join(filter(None, (why, kept))), rng)
 
 

@@ -55,7 +55,7 @@ def literature() -> list[Candidate]:
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
         _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, 1.0)},
-            continuous=("n_po",)),
+            continuous=("n_po", "m_po")),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("churning", "churning_one_way", {"n_cw": (1.5, 2.0, 3.0), "b_cw": (-1.0, 1.0)}, continuous=("n_cw",)),
         _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
@@ -87,6 +87,8 @@ def literature() -> list[Candidate]:
         _of("sheave_bending", "sheave_saturating", shapes=friction.loads("T_ss"), continuous=("T_ss",),
             presumes=("gear_load_loss",), blind=friction.no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
+        _of("gear_asymmetry", "gear_one_way", {"n_gw": (0.5, 2.0), "b_gw": (-1.0, 1.0)}, continuous=("n_gw",),
+            blind=friction.no_load),
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
             needs=("hook_load",), blind=friction.one_load),

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, gear_ratio, shaft_angle, time, w, wire_layer
+from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, gear_ratio, s, shaft_angle, time, w, wire_layer
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
@@ -42,6 +42,9 @@ T_ss = Parameter("T_ss", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum
 C_st = Parameter("C_st", "N*m", 30.0, upper=1e3, doc="loss whatever hangs there, at the shaft")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+e_gw = Parameter("e_gw", "1", 0.01, lower=-0.2, upper=0.2, doc="half the loss one way at 500 kN m, share of T_d/i")
+n_gw = Parameter("n_gw", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
+b_gw = Parameter("b_gw", "1", 1.0, lower=-1.0, upper=1.0, shape=True, doc="1: hoisting alone, -1: lowering alone")
 e_lb = Parameter("e_lb", "1", 0.01, lower=-0.2, upper=0.2, doc="per layer below, at 500 kN m, share of T_d/i")
 n_lb = Parameter("n_lb", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 e_ly = Parameter("e_ly", "1", 0.01, lower=-0.2, upper=0.2, doc="of one layer below, at 500 kN m, share of T_d/i")
@@ -144,6 +147,13 @@ gear_asymmetry_power = register(
     Term(
         "gear_asymmetry_power", e_gp.symbol * LOAD_SCALE / gear_ratio * _load**n_ep.symbol, (e_gp, n_ep),
         Scope.SHAFT, "gear efficiency by direction, a power of the load", "gear and drum", opposing=False,
+    )
+)  # fmt: skip
+gear_one_way = register(
+    Term(
+        "gear_one_way", e_gw.symbol * LOAD_SCALE / gear_ratio * _load**n_gw.symbol * (s**2 + b_gw.symbol * s),
+        (e_gw, n_gw, b_gw), Scope.SHAFT, "gear flanks of which one side alone carries more, a power of the load",
+        "gear and drum", opposing=False,
     )
 )  # fmt: skip
 

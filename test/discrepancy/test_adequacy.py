@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import Check, long_enough, of_prepared
+from winch_friction.discrepancy.adequacy import Check, apart, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
@@ -73,3 +73,37 @@ def test_a_record_too_short_for_a_hoist_and_a_lower_is_left_out_by_name():
     assert "brief left out: it lasts" in notes[0]
     with pytest.raises(InputError, match="brief: lasts 0.9 s; that is no record"):
         long_enough([Run("brief", {"time": np.linspace(0.0, 0.9, 50), "motor_speed": np.ones(50)})])
+
+
+def logged(name, *stretches):
+    """A record of a sample every tenth of a second in these stretches of s."""
+    time = np.concatenate([np.arange(start, end, STEP) for start, end in stretches])
+    return Run(name, {"time": time, "motor_speed": time}, {"mine": time, "note": ["a"]})
+
+
+def test_a_record_is_another_run_after_a_long_hole():
+    (whole, *parts), notes = apart(
+        [logged("whole", (0.0, 40.0), (65.0, 90.0)), logged("two", (0.0, 40.0), (2000.0, 2100.0))]
+    )
+    assert (whole.name, len(whole)) == ("whole", 650)  # a hole of 25 s is one in a run
+    assert [(each.name, len(each)) for each in parts] == [("two, part 1", 400), ("two, part 2", 1000)]
+    for each in parts:
+        np.testing.assert_array_equal(each["motor_speed"], each.time)
+        np.testing.assert_array_equal(each.aside["mine"], each.time)
+        assert each.aside["note"] == ["a"]
+    assert notes == ["two: nothing was logged for up to 1.96e+03 s; looked at as 2 runs"]
+
+
+def test_what_is_no_record_between_two_holes_is_no_run():
+    parts, notes = apart([logged("two", (0.0, 40.0), (100.0, 100.5), (200.0, 230.0))])
+    assert [(each.name, each.time[0]) for each in parts] == [("two, part 1", 0.0), ("two, part 2", 200.0)]
+    assert "2 runs" in notes[0]
+
+
+def test_a_hole_makes_no_log_slow():
+    """10 Hz with 29 s of silence after every second; over the whole of it there are 0.4 samples a second."""
+    holed = logged("holed", *((30.0 * k, 30.0 * k + 1.05) for k in range(8)))
+    kept, notes = long_enough([holed])
+    assert (kept, notes) == ([holed], [])
+    (rate,) = (each.value for each in of_records([holed], kept) if each.what == "fastest log")
+    assert rate == pytest.approx(10.0, rel=0.05)

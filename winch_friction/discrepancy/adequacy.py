@@ -3,12 +3,14 @@
 Some of them are locked away before anything else is looked at, for the proof.
 """
 
+import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.preparation.grid import HOLE
 from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
@@ -53,6 +55,37 @@ def _at_least(what: str, value: float, needed: float, unit: str = "1") -> Check:
     return Check(what, float(value), needed, unit, bool(value >= needed))
 
 
+def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
+    """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
+    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
+    found, notes = list[Run](), list[str]()
+    for run in runs:
+        steps = np.diff(run.time)
+        ends = np.flatnonzero(steps > LIMITS.longest_hole) + 1
+        if not len(ends):
+            found.append(run)
+            continue
+        bounds = [0, *ends.tolist(), len(run)]
+        whole = [(a, b) for a, b in itertools.pairwise(bounds) if run.time[b - 1] - run.time[a] >= LIMITS.no_record]
+        found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
+        longest = float(steps[ends - 1].max())
+        notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
+    return found, notes
+
+
+def _part(run: Run, name: str, start: int, end: int) -> Run:
+    columns = {each: values[start:end] for each, values in run.columns.items()}
+    aside = {each: values[start:end] if len(values) == len(run) else values for each, values in run.aside.items()}
+    return replace(run, name=name, columns=columns, aside=aside)
+
+
+def _rate(time: FloatArray) -> float:
+    """Samples per second where there are any: a hole is no slow log."""
+    steps = np.diff(time)
+    known = steps[steps <= HOLE * np.median(steps)]
+    return len(known) / float(known.sum()) if known.sum() > 0.0 else float("inf")
+
+
 def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     """The records that can be looked at, and what is said of those that cannot: too short, or too sparse to tell a
     speed from its change. A record of less than a second is no record and raises `InputError`.
@@ -63,7 +96,7 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         lasts = float(time[-1] - time[0]) if len(time) > 1 else 0.0
         if lasts < LIMITS.no_record:
             raise InputError(f"{run.name}: lasts {lasts:.2g} s; that is no record of a winch at work")
-        rate = (len(time) - 1) / lasts
+        rate = _rate(time)
         if lasts < LIMITS.shortest_record:
             needed = LIMITS.shortest_record
             notes.append(f"{run.name} left out: it lasts {told_apart(lasts, needed)} s, needed {needed:g} s")
@@ -82,7 +115,7 @@ def _steady(run: Run) -> bool:
 def of_records(runs: Sequence[Run], kept: Sequence[Run]) -> list[Check]:
     """What can be said before the balance is closed."""
     lengths = [float(run.time[-1] - run.time[0]) for run in runs]
-    rates = [(len(run) - 1) / length for run, length in zip(runs, lengths, strict=True)]
+    rates = [_rate(run.time) for run in runs]
     usable = sum(float(run.time[-1] - run.time[0]) for run in kept)
     return [
         _at_least("longest record", max(lengths), LIMITS.shortest_record, "s"),

@@ -201,8 +201,10 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     options = options or GapOptions()
     _check(runs, options)
     # by name: which runs are locked must not hang on the order in which they are given
-    every = against_simulations([thinned(run) for run in sorted(runs, key=lambda run: run.name)], model, crane)
+    parts, holes = adequacy.apart(sorted(runs, key=lambda run: run.name))
+    every = against_simulations([thinned(run) for run in parts], model, crane)
     runs, notes = adequacy.long_enough(every)
+    notes = [*holes, *notes]
     checks = adequacy.of_records(every, runs)
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model)

@@ -59,9 +59,12 @@ def test_what_shows_the_load_is_named():
 
 
 @pytest.mark.parametrize("wave", [4.0, 10.0, 20.0])
-@pytest.mark.parametrize(("load", "friction"), [(16e3, 300.0), (55e3, 700.0), (120e3, 1000.0)])
+@pytest.mark.parametrize(
+    ("load", "friction"), [(300.0, 700.0), (5e3, 1000.0), (16e3, 300.0), (55e3, 700.0), (120e3, 1000.0)]
+)
 def test_friction_and_inertia_contradict_no_load_cell(load, friction, wave):
-    """Two fifths of the load's torque are lost in the gears: that is a bad winch, and no bad load cell."""
+    """Two fifths of the load's torque are lost in the gears: that is a bad winch, and no bad load cell. An empty hook
+    weighs less than the friction that moves it: after a second of hoisting the feedforward was gone, for good."""
     for error in (0.85, 1.15):
         assert not any(said(60.0, load=load, shown=error * load, friction=friction, wave=wave))
 

@@ -21,6 +21,11 @@ class Doubt:
     _right: float = field(default=0.0, init=False)
     stands: bool = field(default=False, init=False)
 
+    @property
+    def pending(self) -> bool:
+        """Whether something was wrong last, though it may not count yet."""
+        return self.stands or self._wrong > 0.0
+
     def step(self, wrong: bool | None, dt: float) -> bool:
         """Whether it counts, after `dt` s more that were wrong, right, or (None) showed nothing."""
         if wrong:

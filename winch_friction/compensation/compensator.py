@@ -64,8 +64,9 @@ class FeedforwardCompensator:
     (True, 1)
     >>> compensator.configure(type(compensator.config)(scale=0.5))
     >>> end = outputs[-1].time
-    >>> compensator.expire(end + 5.0).state, compensator.decay(end + 9.0).friction_torque == 0.0
-    ('stale', True)
+    >>> silent = compensator.decay(end + 5.0)  # what a watchdog publishes where no sample comes
+    >>> silent.state, silent.valid, silent.friction_torque
+    ('stale', False, 0.0)
     >>> compensator.set_enabled(False)
     >>> compensator.reset()
     """
@@ -188,16 +189,6 @@ class FeedforwardCompensator:
         )  # fmt: skip
         self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
-
-    def expire(self, time: float) -> Feedforward | None:
-        """What remains at `time` s when no sample came since; changes nothing. None before the first sample."""
-        if self._last is None:
-            return None
-        if time - self._last.time <= self.config.max_age:
-            return self._last
-        torque = self.output.remaining(time)
-        pressure = torque * self._pressure_per_torque
-        return self._last._replace(time=time, friction_torque=torque, pressure=pressure, state="stale", valid=False)
 
     def decay(self, time: float, state: str = "stale") -> Feedforward:
         """Publish what remains at `time` s: for a watchdog, and for the end."""

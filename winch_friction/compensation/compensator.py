@@ -22,6 +22,7 @@ from winch_friction.physics.winch.operating_point import (
     time_to_reversal,
 )
 
+TOO_SLOW = 3  # samples in a row after the age limit: a sender that is slower, no gap
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
 
 
@@ -197,13 +198,13 @@ class FeedforwardCompensator:
 
     def status(self) -> dict[str, float | str]:
         """State, counts and the model's name: numbers as numbers, for diagnostics."""
-        last = self._last
+        last, slow = self._last, self._too_slow()
         return {
-            "state": last.state if last else "waiting",
+            "state": "stale" if slow else last.state if last else "waiting",
             "enabled": self._enabled,
             "model": self.model.name,
             "past_corrections": past_corrections(self._correct),
-            "missing": ", ".join(self._lost),
+            "missing": ", ".join(self._lost) or slow,
             "fade": self.output.fade.value,
             "friction_torque": self.output.torque,
             "drum_torque": self._target.drum_torque,
@@ -212,6 +213,13 @@ class FeedforwardCompensator:
             **self._counts,
             "time_steps_back": self.output.steps_back,
         }
+
+    def _too_slow(self) -> str:
+        """What to say where no sample comes before the one before is too old: each begins anew, at no torque."""
+        output = self.output
+        if output.late < TOO_SLOW:
+            return ""
+        return f"speeds within max_age {output.hold:g} s: they come {output.apart:.2g} s apart"
 
     # -- parts of a step
     def _needed(self) -> Needs:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque
+from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque, withheld
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
@@ -209,6 +209,8 @@ class FeedforwardCompensator:
             "friction_torque": self.output.torque,
             "drum_torque": self._target.drum_torque,
             "slew_limit": self.output.limits.slew,
+            "torque_limit": self.output.limits.absolute,
+            "withheld": withheld(self.output.limits.absolute, self.output.absolute, self.output.slew),
             **{f"{name}_clamps": count for name, count in self.output.limits.counts.items()},
             **self._counts,
             "time_steps_back": self.output.steps_back,

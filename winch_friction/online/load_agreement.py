@@ -127,11 +127,13 @@ class LoadAgainstDrive:
             return None, None
         by_friction = (drive - load) * sample.motor_speed > 0.0
         (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
-        return self._differ(load, drive, lever, by_friction), self._middles_differ(sample, lever)
+        # a worm that holds its load by itself leaves an electric motor nothing of it lowering; its middle is the load
+        at_once = self._differ(load, drive, lever, by_friction) if self._crane.drive.hydraulic else None
+        return at_once, self._middles_differ(sample, lever)
 
     def _tells(self, sample: Sample) -> bool:
         moves = abs(sample.motor_speed) > self._moving
-        return moves and self._crane.drive.hydraulic and self._crane.drum.has(sample.wire_layer)
+        return moves and self._crane.drum.has(sample.wire_layer)
 
     def _load(self, sample: Sample) -> float:
         shown = sample_load(sample)

@@ -222,11 +222,6 @@ class SampleStream:
         self._unstamped = []
         self.last_stamp = float("-inf")
 
-    def _within_stroke(self, column: str, value: float) -> bool:
-        """Whether it is no displacement that the motors do not have, as far as those are known."""
-        full = self.topics.max_displacement
-        return not (full and column.endswith(".displacement")) or abs(value) <= MOST_STROKE * full
-
     def put(self, source: Input, stamp: float, message: Any) -> bool:
         """Hold what a message with this stamp in s says; whether its first channel was believed."""
         taken, first = False, True
@@ -241,3 +236,8 @@ class SampleStream:
         if not taken:
             self.rejected[source.topic] += 1
         return taken
+
+    def _within_stroke(self, column: str, value: float) -> bool:
+        """Whether it is no displacement that the motors do not have, as far as those are known."""
+        full = self.topics.max_displacement
+        return not (full and column.endswith(".displacement")) or abs(value) <= MOST_STROKE * full

@@ -176,17 +176,16 @@ def test_returning_in_the_middle_of_the_ramp_with_the_opposite_sign_is_bumpless(
     assert torques[-1] == pytest.approx(-torques[0], rel=1e-9)
 
 
-def test_expiry_fades_the_output_and_changes_nothing():
+def test_silence_fades_the_output():
     each = compensator(max_age=0.1)
-    outputs, time = run_up(each)
+    outputs, _ = run_up(each)
     last = outputs[-1]
-    assert each.expire(last.time + 0.09) is last
-    assert each.expire(last.time + 0.2).friction_torque == pytest.approx(0.5 * last.friction_torque)
-    assert each.expire(last.time + 0.2).pressure == pytest.approx(0.5 * last.pressure)
-    assert each.expire(last.time + 5.0).friction_torque == 0.0
-    twin = compensator(max_age=0.1)
-    run_up(twin)
-    assert each.step(ahc_sample(time, 100.0)) == twin.step(ahc_sample(time, 100.0))
+    assert each.decay(last.time + 0.09).friction_torque == last.friction_torque
+    half = each.decay(last.time + 0.2)
+    assert half.friction_torque == pytest.approx(0.5 * last.friction_torque)
+    assert half.pressure == pytest.approx(0.5 * last.pressure)
+    assert (half.state, half.valid) == ("stale", False)
+    assert each.decay(last.time + 5.0).friction_torque == 0.0
 
 
 def test_a_silent_spell_counts_as_expired_whether_or_not_a_watchdog_looked():

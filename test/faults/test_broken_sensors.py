@@ -95,7 +95,7 @@ def test_silence_is_answered_by_a_ramp_to_zero(samples, crane_150t, crane2_model
     compensator = FeedforwardCompensator(crane_150t, crane2_model, CONFIG)
     for sample in samples[:300]:
         last = compensator.step(sample)
-    after = [compensator.expire(last.time + CONFIG.max_age + t) for t in (0.0, 0.25 * RAMP, 0.5 * RAMP, RAMP, 10.0)]
+    after = [compensator.decay(last.time + CONFIG.max_age + t) for t in (0.0, 0.25 * RAMP, 0.5 * RAMP, RAMP, 10.0)]
     sizes = [abs(out.friction_torque) for out in after]
     assert sizes == sorted(sizes, reverse=True)
     assert max(sizes[-2:]) < 1e-9

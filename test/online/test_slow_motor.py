@@ -11,7 +11,8 @@ from winch_friction.compensation import CompensatorConfig
 from winch_friction.estimation import FrictionEstimator
 from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.physics.channels import RPM
+from winch_friction.physics.channels import CM3_PER_REV, RPM
+from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "estimation"))
@@ -72,3 +73,17 @@ def test_what_is_set_by_hand_and_the_shipped_cranes_stay_as_they_are():
     assert service.law.config == by_hand
     service.configure(CompensatorConfig())
     assert service.law.config.reversal_speed == pytest.approx(3.0 * SLOW.rated_speed / 100.0)
+
+
+@pytest.mark.parametrize("litres", [8.0, 300.0])
+def test_the_feedback_of_a_large_radial_motor_is_believed(litres: float) -> None:
+    """Above 6.3 l/rev it was never held: the node waited for it for good. A crane file may say 300 l/rev."""
+    full = litres * 1e3 * CM3_PER_REV
+    service = CompensatorService(replace(SLOW, max_displacement=full), SEED, TOPICS, CompensatorConfig(ramp_time=0.2))
+    for k in range(20):
+        sample = replace(swell(k * PERIOD), motor_speed=3.0, speed_reference=3.0, hook_load=NAN)
+        for group in sample.groups.values():
+            group.displacement = 1.04 * full
+        given = service.take_row(sample)
+    assert service.status(20 * PERIOD)["missing"] == ""
+    assert given.valid

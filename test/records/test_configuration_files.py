@@ -65,7 +65,11 @@ def edited(change):
             lambda d: d["parameters"]["K4"].update(value=-3),
             r"model.yaml: parameters: K4: value -3 N\*m is outside 0 ... ",
         ),
-        (lambda d: d["parameters"]["K4"].update(upper=3), r"K4: value 14 N\*m is outside 0 ... 3 N\*m"),
+        (lambda d: d["parameters"]["K4"].update(upper=3), r"K4: value 14 N\*m is outside 0 ... 3 N\*m$"),
+        (
+            lambda d: d["parameters"]["K4"].update(value=520),
+            r"outside 0 ... 200 N\*m; a machine of another size states its own lower and upper beside it$",
+        ),
         (
             lambda d: d["parameters"]["K4"].update(std=-1),
             "model.yaml: parameters: K4: std must be 0 or above .*found -1",

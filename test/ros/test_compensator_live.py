@@ -179,3 +179,14 @@ def test_two_cranes_in_two_namespaces(bench: Bench) -> None:
     bench.spin(0.2)
     assert len(north) >= 0.8 * len(sent)
     assert south == []
+
+
+def test_what_the_slew_limit_withholds_of_a_large_winch_is_said_at_the_start(bench: Bench, tmp_path: Path) -> None:
+    shipped = Path(__file__).parents[2] / "config" / "cranes" / "crane_150t.yaml"
+    large = shipped.read_text().replace("value: 2000, unit: N*m", "value: 60, unit: kN*m")
+    (tmp_path / "large.yaml").write_text(large)
+    bench.start("compensator", crane=tmp_path / "large.yaml")
+    seen = bench.listen("/diagnostics", DiagnosticArray, 10)
+    assert bench.spin(10.0, lambda: bool(seen))
+    assert "leaves 3000 of 60000 N*m" in bench.log("compensator")
+    assert float(diagnostics(seen, "feedforward")["torque_limit"]) == 3000.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque
+from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque, withheld
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
@@ -22,6 +22,7 @@ from winch_friction.physics.winch.operating_point import (
     time_to_reversal,
 )
 
+TOO_SLOW = 3  # samples in a row after the age limit: a sender that is slower, no gap
 UNSURE = 0.3  # below this direction a target says too little about the friction's size to be turned with the motion
 
 
@@ -64,8 +65,9 @@ class FeedforwardCompensator:
     (True, 1)
     >>> compensator.configure(type(compensator.config)(scale=0.5))
     >>> end = outputs[-1].time
-    >>> compensator.expire(end + 5.0).state, compensator.decay(end + 9.0).friction_torque == 0.0
-    ('stale', True)
+    >>> silent = compensator.decay(end + 5.0)  # what a watchdog publishes where no sample comes
+    >>> silent.state, silent.valid, silent.friction_torque
+    ('stale', False, 0.0)
     >>> compensator.set_enabled(False)
     >>> compensator.reset()
     """
@@ -189,16 +191,6 @@ class FeedforwardCompensator:
         self._last = self._feedforward(sample.time, self._state(usable), usable and self._enabled)
         return self._last
 
-    def expire(self, time: float) -> Feedforward | None:
-        """What remains at `time` s when no sample came since; changes nothing. None before the first sample."""
-        if self._last is None:
-            return None
-        if time - self._last.time <= self.config.max_age:
-            return self._last
-        torque = self.output.remaining(time)
-        pressure = torque * self._pressure_per_torque
-        return self._last._replace(time=time, friction_torque=torque, pressure=pressure, state="stale", valid=False)
-
     def decay(self, time: float, state: str = "stale") -> Feedforward:
         """Publish what remains at `time` s: for a watchdog, and for the end."""
         self.output.decay(time)
@@ -206,21 +198,30 @@ class FeedforwardCompensator:
 
     def status(self) -> dict[str, float | str]:
         """State, counts and the model's name: numbers as numbers, for diagnostics."""
-        last = self._last
+        last, slow = self._last, self._too_slow()
         return {
-            "state": last.state if last else "waiting",
+            "state": "stale" if slow else last.state if last else "waiting",
             "enabled": self._enabled,
             "model": self.model.name,
             "past_corrections": past_corrections(self._correct),
-            "missing": ", ".join(self._lost),
+            "missing": ", ".join(self._lost) or slow,
             "fade": self.output.fade.value,
             "friction_torque": self.output.torque,
             "drum_torque": self._target.drum_torque,
             "slew_limit": self.output.limits.slew,
+            "torque_limit": self.output.limits.absolute,
+            "withheld": withheld(self.output.limits.absolute, self.output.absolute, self.output.slew),
             **{f"{name}_clamps": count for name, count in self.output.limits.counts.items()},
             **self._counts,
             "time_steps_back": self.output.steps_back,
         }
+
+    def _too_slow(self) -> str:
+        """What to say where no sample comes before the one before is too old: each begins anew, at no torque."""
+        output = self.output
+        if output.late < TOO_SLOW:
+            return ""
+        return f"speeds within max_age {output.hold:g} s: they come {output.apart:.2g} s apart"
 
     # -- parts of a step
     def _needed(self) -> Needs:

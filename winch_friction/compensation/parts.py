@@ -180,6 +180,16 @@ def check_gains(gains: Mapping[str, float]) -> None:
 
 
 # -- its bounds
+def withheld(most: float, granted: float, slew: float) -> str:
+    """What a slew limit, N m/s, takes of a torque that was granted where it leaves `most`, N m, in words."""
+    if not most < granted < math.inf:
+        return ""
+    return (
+        f"slew_limit {slew:g} N*m/s leaves {most:g} of {granted:g} N*m: "
+        f"what cannot be let go within {most / slew:g} s is not published"
+    )
+
+
 @dataclass
 class TorqueLimits:
     """Absolute, envelope and slew limit of a torque; N m and N m/s."""

@@ -49,6 +49,8 @@ class SafeOutput:
     time: float = field(default=math.nan, init=False)  # stamp of what was published last, s
     sequence: int = field(default=0, init=False)
     steps_back: int = field(default=0, init=False)
+    late: int = field(default=0, init=False)  # samples in a row that came after `hold`
+    apart: float = field(default=0.0, init=False)  # s between the last two samples
 
     def __post_init__(self) -> None:
         self.limits = TorqueLimits(min(self.absolute, self.slew * LONGEST_AGAINST), self.slew)
@@ -110,6 +112,8 @@ class SafeOutput:
         the moment that it takes. Stamps that fall behind it by more than `hold` hold up no way out: a fade to zero is
         then as quick as the steady clock.
         """
+        self.apart = time - self._fed
+        self.late = self.late + 1 if self.apart > self.hold + ROUNDING else 0
         anew, ramped = self._new_time, self.time > self._fed  # what has passed since the last sample is used up already
         self._gap = abs(time - self.time) if self.time == self.time else 0.0
         self._dt, self._overdue, self._passed = self._elapsed(time), 0.0, self._gap

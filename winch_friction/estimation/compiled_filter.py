@@ -1,6 +1,7 @@
 """The filter with its step compiled, where numba is installed and can keep what it compiled."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from struct import Struct
 
 import numpy as np
@@ -57,3 +58,13 @@ class CompiledFilter(StateFilter):
                 parameters.upper,
             )  # fmt: skip
         )
+
+
+@lru_cache(maxsize=1)
+def filter_class() -> type[StateFilter]:
+    """The compiled filter, or NumPy's without numba or a place to keep what it compiled: it takes seconds."""
+    try:
+        kernels()
+    except (ImportError, RuntimeError, OSError):
+        return StateFilter
+    return CompiledFilter

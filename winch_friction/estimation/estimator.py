@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import Any
 
 from winch_friction.estimation.answers import (
@@ -13,13 +12,11 @@ from winch_friction.estimation.answers import (
     parameter_estimates,
 )
 from winch_friction.estimation.checkpoint import Kept, filter_state, restored_state
-from winch_friction.estimation.compiled_filter import CompiledFilter
+from winch_friction.estimation.compiled_filter import filter_class
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.conflict import SeedConflict
 from winch_friction.estimation.dynamics import FIRST_PARAMETER, fresh_motion
-from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import FrictionFunctions, Intervals
-from winch_friction.estimation.kernels import kernels
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
@@ -32,16 +29,6 @@ from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_driv
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
-
-
-@lru_cache(maxsize=1)
-def filter_class() -> type[StateFilter]:
-    """The compiled filter, or NumPy's without numba or a place to keep what it compiled: it takes seconds."""
-    try:
-        kernels()
-    except (ImportError, RuntimeError, OSError):
-        return StateFilter
-    return CompiledFilter
 
 
 class FrictionEstimator:
@@ -75,6 +62,7 @@ class FrictionEstimator:
     >>> kept = estimator.snapshot()  # what a checkpoint holds
     >>> estimator.reset()  # back to the seed
     >>> estimator.restore(kept)
+    >>> estimator.take_back(kept)  # of the parameters, and no more
     >>> estimator.set_enabled(False)
     >>> estimator.status()["enabled"]
     False
@@ -283,9 +271,8 @@ class FrictionEstimator:
         return filter_state(self.crane, self.seed, kept)
 
     def restore(self, content: Mapping[str, Any]) -> None:
-        """Go on from a `snapshot` of the same crane and seed; raises `InputError`, and changes nothing, for any
-        other."""
-        kept = restored_state(content, self.crane, self.seed, self._filter.size, len(self._filter.sensitivity))
+        """Go on from a `snapshot` of the same crane and seed; `InputError`, and nothing changed, for any other."""
+        kept = self._kept(content)
         counts = self.counts
         self.reset()
         self.counts = counts
@@ -297,3 +284,17 @@ class FrictionEstimator:
         self._load.mass = kept.mass
         self._statuses.levels = kept.levels
         self._begun = True
+
+    def take_back(self, content: Mapping[str, Any]) -> None:
+        """Know of the parameters what a `snapshot` says, and no more; the motion goes on. Raises as `restore`."""
+        kept = self._kept(content)
+        self._parameters.widen_only(kept.widened)
+        self._filter.take_parameters(kept.x[:, 0], kept.covariance, kept.sensitivity)
+        if not self._load_is_known:  # what it was found to be, with friction that is not believed any more
+            load = self.drum_torque / self.crane.gear_ratio
+            self._filter.begin_load((self.config.load_std * load) ** 2, self._filter.load_torque)
+        self._conflict = SeedConflict(self.config, self._parameters)
+        self._statuses.levels = kept.levels
+
+    def _kept(self, content: Mapping[str, Any]) -> Kept:
+        return restored_state(content, self.crane, self.seed, self._filter.size, len(self._filter.sensitivity))

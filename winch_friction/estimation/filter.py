@@ -229,6 +229,14 @@ class StateFilter:
         """Another load: its torque beyond the measured load's, N m, and its variance."""
         self.take_anew([(LOAD, torque, variance)])
 
+    def take_parameters(self, x: FloatArray, covariance: FloatArray, sensitivity: FloatArray) -> None:
+        """Other parameters, out of a state (n,) with its covariance (n, n) and sensitivity (errors, n); the states that
+        move are kept, correlated with none of them."""
+        phi = self._phi
+        self.P[:, phi] = self.P[phi, :] = 0.0
+        self.P[phi, phi], self.sensitivity[:, phi] = covariance[phi, phi], sensitivity[:, phi]
+        self._flat[phi] = self.parameters.projected(x, covariance, FIRST_PARAMETER)[phi]
+
     def take_anew(self, fresh: Sequence[FreshState]) -> None:
         """Take these states as given, correlated with nothing; the rest is kept."""
         for state, value, variance in fresh:

@@ -12,6 +12,10 @@ from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import sample_operating_point
 
+# the friction of a step is taken at its middle; between samples that are far apart its mean is anywhere within plus and
+# minus what it changes by, whichever way drive and shaft went from one to the other: of that change squared
+WITHIN = 1.0 / 3.0
+
 Point = tuple[float, ...]  # an operating point in the order of `symbols.layout`
 
 
@@ -93,12 +97,20 @@ class Intervals:
         unknown = 0.0
         if stick:
             unknown = (STICK_IGNORANCE * self._friction.magnitude(point, theta, len(sample.groups))) ** 2
+        elif abs(now.speed - last.speed) > config.stick_speed:
+            unknown = WITHIN * self._change(point, last.speed, now.speed, theta, len(sample.groups)) ** 2
         step = Step(
             drive - measured_load, torque_variance(sample, self._crane, config), unknown, friction, gradient,
             self._errors.by(sample, drive), self._wire(sample, extra, duration), 0.5 * (last.heave + now.heave),
             duration, stick, self._load.doubted,
         )  # fmt: skip
         return step, point
+
+    def _change(self, point: Point, before: float, after: float, theta: Sequence[float], groups: int) -> float:
+        """By how much the friction differs between two speeds, rad/s, at an operating point otherwise, N m."""
+        ends = [(math.copysign(1.0, speed), abs(speed), speed, *point[3:]) for speed in (before, after)]
+        one, other = (self._friction.at(end, theta, groups)[0] for end in ends)
+        return other - one
 
     def point(self, sample: Sample, speed: float, before: float, measured_load: float, extra: float) -> Point:
         """Operating point of a sample, taken at `speed` after the speed `before`, rad/s; loads in N m at the shaft."""

@@ -72,6 +72,11 @@ class ScaledParameters:
         places = {self.seed.parameter_names[free]: place for place, free in enumerate(self.free.tolist())}
         self.widen([places[name] for name in names if name in places])
 
+    def widen_only(self, names: Iterable[str]) -> None:
+        """The same, the seed's sigma of all others believed again."""
+        self.widened = ()
+        self.widen_named(names)
+
     @property
     def widened_names(self) -> tuple[str, ...]:
         """Names of the parameters whose sigma was taken back."""

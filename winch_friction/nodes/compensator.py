@@ -61,6 +61,8 @@ class CompensatorNode(WinchNode):
         self.service.set_enabled(self._wanted)
         if past := self.service.law.status()["past_corrections"]:
             self.get_logger().warning(f"model '{model.name}': over, and not taken out: {past}")
+        if withheld := self.service.law.status()["withheld"]:
+            self.get_logger().warning(str(withheld))
         self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
         self.inputs = Inputs(self, self.service, self._answer, self._latest(config))
         patience = self.options.watchdog_timeout

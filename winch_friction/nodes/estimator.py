@@ -95,10 +95,10 @@ class EstimatorNode(WinchNode):
 
     def save(self) -> None:
         """Write the checkpoint; a full disk is said, not fatal."""
-        if not hasattr(self, "law") or not self.own.checkpoint:
+        if not hasattr(self, "service") or not self.own.checkpoint:
             return
         try:
-            write_checkpoint(self.own.checkpoint, self.law.snapshot())
+            write_checkpoint(self.own.checkpoint, self.service.snapshot())
         except (InputError, OSError) as error:
             self.get_logger().error(f"checkpoint not written: {error}")
 
@@ -127,7 +127,7 @@ class EstimatorNode(WinchNode):
     def _save(self) -> str:
         if not self.own.checkpoint:
             raise InputError("parameter 'checkpoint' is empty: name a file")
-        write_checkpoint(self.own.checkpoint, self.law.snapshot())
+        write_checkpoint(self.own.checkpoint, self.service.snapshot())
         return f"saved to {self.own.checkpoint}"
 
     # -- outputs
@@ -147,7 +147,7 @@ class EstimatorNode(WinchNode):
         try:
             snapshot = read_checkpoint(self.own.checkpoint)
             if snapshot is not None:
-                self.law.restore(snapshot)
+                self.service.restore(snapshot)
                 self.get_logger().info(f"continues from {self.own.checkpoint}")
         except InputError as error:
             kept = set_aside(self.own.checkpoint)  # it may be another crane's, or no checkpoint at all

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 LONGEST_SPAN = 0.1  # s between two samples that count: a gap shows nothing
+FORGOTTEN = 30.0  # s that show nothing, longer than half of any wave: what was wrong before, and did not count, is over
 CALM = 1.0  # s of agreement, where something is to be seen, before a doubt ends
 
 
@@ -19,13 +20,23 @@ class Doubt:
     forgiven: float = 0.0
     _wrong: float = field(default=0.0, init=False)
     _right: float = field(default=0.0, init=False)
+    _unseen: float = field(default=0.0, init=False)  # s that showed nothing since it was wrong
     stands: bool = field(default=False, init=False)
+
+    @property
+    def pending(self) -> bool:
+        """Whether something was wrong last, though it may not count yet."""
+        return self.stands or self._wrong > 0.0
 
     def step(self, wrong: bool | None, dt: float) -> bool:
         """Whether it counts, after `dt` s more that were wrong, right, or (None) showed nothing."""
         if wrong:
-            self._wrong, self._right = self._wrong + dt, 0.0
-        elif wrong is not None:
+            self._wrong, self._right, self._unseen = self._wrong + dt, 0.0, 0.0
+        elif wrong is None:
+            self._unseen += dt
+            if self._unseen > FORGOTTEN:
+                self._wrong = self._wrong if self.stands else 0.0
+        else:
             self._right += dt
             self._wrong = self._wrong if self._right < self.forgiven else 0.0
         self.stands = self._wrong >= self.patience or (self.stands and self._right < self.calm)

@@ -1,6 +1,7 @@
 """The estimator as a service: what the node and the replay share. It knows no ROS; it is told what time it is."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -8,6 +9,7 @@ from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
+from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.doubt import span
 from winch_friction.online.inertia_balance import InertiaBalance
@@ -28,7 +30,8 @@ class EstimatorService:
     """Messages, or rows of a run, in; estimates and, now and then, a learned model out.
 
     While the measured load contradicts the balance of torques, or the drive's torque has changed its gain, nothing is
-    learned, the seed is published in the place of what was, and every parameter that was learned is invalid.
+    learned, the seed is published in the place of what was, and every parameter that was learned is invalid. What was
+    learned while that came to light is taken back, and neither published nor kept meanwhile (`BeforeDoubt`).
     """
 
     def __init__(
@@ -46,6 +49,7 @@ class EstimatorService:
         self._watch_loads()
         self._enabled, self._seen = True, math.nan
         self._gain = InertiaBalance(self.law.crane)
+        self._before = BeforeDoubt(self.law)
         self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
 
@@ -85,8 +89,16 @@ class EstimatorService:
         if accepted:
             gain = self._gain.contradiction(sample)
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
+        if (lost or self._slow) and not self.contradiction:
+            self.law.take_back(self._before.believed.content)
         self.contradiction = lost or self._slow
+        self._before.step(sample.time, self._pending)
         self.law.set_enabled(self._enabled and not self.contradiction)
+
+    @property
+    def _pending(self) -> bool:
+        """Whether a doubt stands, or may come to."""
+        return bool(self.contradiction) or any(each.pending for each in (self._load, self._balance, self._gain))
 
     def model_due(self, now: float) -> FrictionModel | None:
         """The learned model when it is time to publish it: every `model_period` s of the samples, and no faster than
@@ -96,7 +108,9 @@ class EstimatorService:
         if self.options.paced and now < self._published_at + FASTEST_MODELS:
             return None
         self._published, self._published_at = self.last.time, now
-        learned = self.law.seed if self.contradiction else self.law.model()
+        learned = self._before.believed.model if self._pending else self.law.model()
+        if self.contradiction:
+            learned = self.law.seed
         return replace(learned, provenance={**learned.provenance, LEARNED_AT: self.last.time})
 
     def set_enabled(self, enabled: bool) -> None:
@@ -111,7 +125,18 @@ class EstimatorService:
         self._watch_loads()
         self._gain.forget()
         self.law.set_enabled(self._enabled)
+        self._before.begin()
         self.forget()
+
+    def snapshot(self) -> Mapping[str, Any]:
+        """What a checkpoint needs: what is known, or was before a doubt that stands or may come to."""
+        return self._before.believed.content if self._pending else self.law.snapshot()
+
+    def restore(self, content: Mapping[str, Any]) -> None:
+        """Go on from a `snapshot` of the same crane and seed; raises `InputError`, and changes nothing, for any
+        other."""
+        self.law.restore(content)
+        self._before.begin()
 
     def forget(self) -> None:
         """After a jump of time: nothing held; the filter restarts its speed by itself and keeps what it learned."""

@@ -97,6 +97,11 @@ class InertiaBalance:
             self._doubt.step(self._look(), passed)
         return self._words()
 
+    @property
+    def pending(self) -> bool:
+        """Whether the gain seems changed, though it may not be said yet."""
+        return self._doubt.pending
+
     def _is_other(self, load: float, sample: Sample) -> bool:
         if self._mass != self._mass or frozenset(sample.groups) != self._groups:
             return True

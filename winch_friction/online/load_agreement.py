@@ -12,6 +12,9 @@ from winch_friction.physics.winch.operating_point import ChannelRanges
 # the load and the drive: inertia, friction and waves are a third of it at most
 TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
 SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
+# the same of what friction may add hoisting, and take lowering: an empty hook is moved by friction alone (30 % of the
+# nominal torque of hydraulic manipulators, Lischinsky et al. 1999)
+MOST_FRICTION = 0.3
 # the same in the middle between hoisting and lowering: a cell and a feedback of some per cent each, a tare and wire
 # that are not weighed, of up to a tenth of the rated load. A load that is taken for 1.4 times what it is makes the
 # compensated share, 0.9, one of 1.26: from 1.3 on a winch may cycle
@@ -53,6 +56,11 @@ class LoadBalance:
         return (
             f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
         )
+
+    @property
+    def pending(self) -> bool:
+        """Whether the two loads are apart, though it may not be said yet."""
+        return self._doubt.pending
 
 
 @dataclass
@@ -106,28 +114,38 @@ class LoadAgainstDrive:
         how = "" if stand[0] else ", hoisting and lowering"
         return f"{self._by} contradicts the drive torque{how}"
 
+    @property
+    def pending(self) -> bool:
+        """Whether they differ, though it may not be said yet."""
+        return self._at_once.pending or self._both_ways.pending
+
     def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, bool | None]:
         """Whether load and drive differ in this sample, and in the middle between both ways."""
         lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
         load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
         if not math.isfinite(drive - load):
             return None, None
+        by_friction = (drive - load) * sample.motor_speed > 0.0
         (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
-        return self._differ(load, drive, lever), self._middles_differ(sample, lever)
+        # a worm that holds its load by itself leaves an electric motor nothing of it lowering; its middle is the load
+        at_once = self._differ(load, drive, lever, by_friction) if self._crane.drive.hydraulic else None
+        return at_once, self._middles_differ(sample, lever)
 
     def _tells(self, sample: Sample) -> bool:
         moves = abs(sample.motor_speed) > self._moving
-        return moves and self._crane.drive.hydraulic and self._crane.drum.has(sample.wire_layer)
+        return moves and self._crane.drum.has(sample.wire_layer)
 
     def _load(self, sample: Sample) -> float:
         shown = sample_load(sample)
         return shown if shown == shown else self.assumed
 
-    def _differ(self, load: float, drive: float, lever: float) -> bool | None:
-        large = max(abs(load), abs(drive))
+    def _differ(self, load: float, drive: float, lever: float, by_friction: bool) -> bool | None:
+        large, apart = max(abs(load), abs(drive)), abs(drive - load)
         if not large > SMALLEST_TORQUE * lever * self._rated:
             return None
-        return abs(drive - load) > TORQUE_SHARE * large
+        if by_friction and TORQUE_SHARE * large < apart < MOST_FRICTION * lever * self._rated:
+            return None
+        return apart > TORQUE_SHARE * large
 
     def _middles_differ(self, sample: Sample, lever: float) -> bool | None:
         one, other = self._hoisting, self._lowering

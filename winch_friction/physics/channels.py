@@ -90,8 +90,8 @@ CHANNELS = (
     Channel("pressure_a", "Pa", "bar", "port A, gauge", _PRESSURES, topic=Topic.PRESSURE, of_group=True),
     Channel("pressure_b", "Pa", "bar", "port B, gauge", _PRESSURES, topic=Topic.PRESSURE, of_group=True),
     Channel(
-        "displacement", "m^3/rad", "cm^3/rev", "per motor", (-1.0e-3, 1.0e-3), topic=Topic.SWASH, of_group=True
-    ),  # 6300 cm^3/rev
+        "displacement", "m^3/rad", "cm^3/rev", "per motor", (-0.06, 0.06), topic=Topic.SWASH, of_group=True
+    ),  # 380 l/rev, the largest radial piston motor; a crane file says 300 at most, and a feedback a little more
     Channel(
         "pressure_drop_simulated", "Pa", "bar", "p_A - p_B of a user's own simulation", _PRESSURES, of_group=True,
         live=False,

@@ -119,7 +119,8 @@ class _Entry:
         low, high = self.bounds or (parameter.lower, parameter.upper)
         if not low <= self.value <= high:
             unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-            raise InputError(f"{where}: value {self.value:g}{unit} is outside {low:g} ... {high:g}{unit}")
+            other = "" if self.bounds else "; a machine of another size states its own lower and upper beside it"
+            raise InputError(f"{where}: value {self.value:g}{unit} is outside {low:g} ... {high:g}{unit}{other}")
 
     def _bounds(self, parameter: Parameter, lower: Any, upper: Any, where: str) -> tuple[float, float] | None:
         if lower is None and upper is None:

@@ -22,6 +22,7 @@ from winch_friction.records.topics import Input, TopicMap, stamp_time
 # -- holding
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
 DEPTH = 1024  # values kept per input: all that a node which was paused for five seconds at 200 Hz finds waiting
+MOST_STROKE = 2.0  # of max_displacement: a feedback in per cent shows more, and no scale that is off so much
 
 
 @dataclass
@@ -225,7 +226,8 @@ class SampleStream:
         """Hold what a message with this stamp in s says; whether its first channel was believed."""
         taken, first = False, True
         for channel, value in source.decode(message).items():
-            accepted = self._admit(channel, stamp, value) and self.hold.put(channel, stamp, value)
+            possible = self._admit(channel, stamp, value) and self._within_stroke(channel, value)
+            accepted = possible and self.hold.put(channel, stamp, value)
             if accepted:
                 self._on_held(channel)
             if first:
@@ -234,3 +236,8 @@ class SampleStream:
         if not taken:
             self.rejected[source.topic] += 1
         return taken
+
+    def _within_stroke(self, column: str, value: float) -> bool:
+        """Whether it is no displacement that the motors do not have, as far as those are known."""
+        full = self.topics.max_displacement
+        return not (full and column.endswith(".displacement")) or abs(value) <= MOST_STROKE * full

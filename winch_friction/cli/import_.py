@@ -152,8 +152,8 @@ def import_logs(
     else:
         problems += against
     if problems:
-        hint = "" if force else " (nothing written; --force imports what contradicts the crane)"
-        raise InputError(" | ".join(problems) + hint)
+        hint = "nothing written; --force imports what contradicts the crane" if problems == against else "nothing written"
+        raise InputError(f"{' | '.join(problems)} ({hint})")
     written = [str(write_run(run, target)) for run, target in zip(runs, targets, strict=True)]
     for run in runs:
         show_warnings(run.warnings)

@@ -107,7 +107,8 @@ def propose_map(
 def _show(log_map: LogMap) -> None:
     """The guesses for a person, one a line."""
     form = f"{log_map.time.form} {log_map.time.unit}" if log_map.time.form in ("seconds", "unix") else log_map.time.form
-    print(f"time <- {' + '.join(log_map.time_from)} ({form}), {log_map.time_confidence:.2f}: {log_map.time_because}")
+    said = f"({form}), {log_map.time_confidence:.2f}: {log_map.time_because}"
+    print(f"time <- {' + '.join(log_map.time_from)} {said}" if log_map.time_from else "time <- no column found")
     for name, entry in log_map.columns.items():
         unit = ("-1 * " if entry.sign < 0 else "") + (entry.unit or "-")
         print(f"{name} <- {entry.constant or entry.source} ({unit}), {entry.confidence:.2f}: {entry.because}")
@@ -152,7 +153,9 @@ def import_logs(
     else:
         problems += against
     if problems:
-        hint = "nothing written; --force imports what contradicts the crane" if problems == against else "nothing written"
+        hint = (
+            "nothing written; --force imports what contradicts the crane" if problems == against else "nothing written"
+        )
         raise InputError(f"{' | '.join(problems)} ({hint})")
     written = [str(write_run(run, target)) for run, target in zip(runs, targets, strict=True)]
     for run in runs:

@@ -1,11 +1,9 @@
-"""Logs that are no run of the winch, or hold more than one: what was taken for something else, or ended in a traceback."""
+"""Logs that are no run of the winch: what ended in a traceback, and what is said of a log that lacks a channel."""
 
 import numpy as np
-import pytest
 from importing.logs import example, rows_of, write_text
 
 from winch_friction.cli.main import run
-from winch_friction.records.runs import read_run
 
 HEAVE = "time [s],heave [m],roll [deg]\n" + "".join(
     f"{k},{np.sin(0.6 * k):.3f},{np.cos(0.6 * k):.2f}\n" for k in range(100)

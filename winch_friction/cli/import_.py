@@ -15,7 +15,8 @@ HELP = """Bring logs of any origin into run files.
 
 First propose a map: what each column is, in which unit, sign and zone, with reason and confidence. Read it (change it
 in an editor, or with --set), then import.
-Logs may be .csv .txt .tsv (also .gz, .zip), .xlsx, .parquet, .mat, .tdms, .mf4.
+Logs may be .csv .txt .tsv .asc .log .prn .lvm (also .gz, .zip), .xlsx .xlsm, .parquet, .mat, .tdms, .mf4 .mdf, .mcap,
+    .db3 or a rosbag2 folder.
 
 Examples:
 

@@ -100,3 +100,21 @@ def test_what_is_of_the_winch_is_still_found(header, channel, lean, tmp_path, cr
     assert proposal(lean, tmp_path, crane_150t, header, rising if channel == "wire_out" else None)[0] == [
         channel
     ] * bool(channel)
+
+
+SIZES = {
+    "Schluckvolumen [ccm]": (11.0, "2380 ccm is no usual size (4.3 to 247 ccm)"),
+    "Windendrehzahl [1/min]": (0.0, "0 1/min is no usual size (9.55 to 4.77e+03 1/min)"),
+    "Druck A [bar]": (100.0, "bar is no usual size (5 to 600 bar)"),
+}
+
+
+@pytest.mark.parametrize("header", SIZES)
+def test_a_usual_size_is_told_in_the_unit_of_the_log(header, lean, tmp_path, crane_150t):
+    """A log in cm^3/rev was answered in m^3/rad."""
+    factor, said = SIZES[header]
+    place = lean[0].index(header)
+    scaled = lambda cell: f"{factor * float(cell.replace(',', '.')):.3f}".replace(".", ",")
+    rows = [lean[0], *([*row[:place], scaled(row[place]), *row[place + 1 :]] for row in lean[1:])]
+    made = propose([write_text(tmp_path / "log.csv", rows)], crane_150t, "crane_150t")
+    assert any(said in each for each in made.problems), made.problems

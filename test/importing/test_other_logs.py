@@ -37,3 +37,27 @@ def test_force_is_named_only_where_it_helps(tmp_path, capsys):
     assert "lacks main.pressure_a" in said
     assert "nothing written" in said
     assert "--force" not in said
+
+
+def test_a_slip_in_a_setting_is_told_as_such(tmp_path, capsys):
+    """`key 'from' is missing` was all that was said."""
+    log = write_text(tmp_path / "log.csv", rows_of(example("test_02")))
+    assert proposed(log, tmp_path) == 0
+    for setting, said in (
+        ("hook_load.unti=t", "did you mean unit?"),
+        ("hook_laod.unit=t", "the map has no channel 'hook_laod'"),
+        ("rope_force.unit=kN", "--set rope_force.from=COLUMN"),
+    ):
+        assert imported(log, tmp_path, "--set", setting) == 2
+        assert said in capsys.readouterr().err
+
+
+def test_signals_of_one_run_in_two_files_are_to_be_joined(tmp_path, capsys):
+    rows = rows_of(example("test_02"))
+    one = write_text(tmp_path / "speed.csv", [row[:2] for row in rows])
+    two = write_text(tmp_path / "pressures.csv", [[row[0], *row[2:]] for row in rows])
+    assert (
+        run(["import", str(one), str(two), "--propose", "--map", str(tmp_path / "m.yaml"), "--crane", "crane_150t"])
+        == 2
+    )
+    assert "join them by time into one file first" in capsys.readouterr().err

@@ -86,7 +86,8 @@ def _refuse_different_names(draft: Draft) -> None:
         if missing:
             draft.problems.append(
                 f"{log.path.name} has other columns than {first.path.name}: {listed(sorted(missing))} are not in it; "
-                "propose a map for each kind of log"
+                "propose a map for each kind of log; if they hold different signals of one run, join them by time into "
+                "one file first"
             )
 
 

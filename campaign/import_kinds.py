@@ -127,7 +127,7 @@ def _texts() -> list[Kind]:
         Kind("header twice", with_lines(lambda rows: [rows[0], *rows])),
         Kind("header again in the middle", with_lines(repeated_header)),
         Kind("header behind a #", with_lines(lambda rows: ["# logger 3.1", f"# {rows[0]}", *rows[1:]])),
-        Kind("one name twice", with_columns(renamed({2: "Pressure [bar]", 3: "Pressure [bar]"}))),
+        Kind("one name twice", with_columns(renamed({2: "Pressure [bar]", 3: "Pressure [bar]"})), ("bear one name",)),
         Kind("a delimiter at every end", with_lines(lambda rows: [row + ";" for row in rows], EN, ";")),
         Kind("every cell quoted", with_lines(lambda rows: [",".join(f'"{c}"' for c in row.split(",")) for row in rows])),
         Kind("blanks around cells", with_lines(lambda rows: [" ; ".join(row.split(";")) for row in rows], EN, ";")),

@@ -97,6 +97,21 @@ def test_a_reader_that_has_gone_is_no_defect(arguments):
         assert (started.wait(60), said) == (0, b"")
 
 
+def test_a_reader_that_has_gone_leaves_the_status_of_bad_input(tmp_path):
+    """`check runs/ 2>&1 | head -1` ended with 1, the status of a defect."""
+    call = [
+        sys.executable,
+        "-u",
+        "-c",
+        "from winch_friction.cli.main import main; main()",
+        "check",
+        str(tmp_path / "a"),
+    ]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as started:
+        started.stderr.close()
+        assert (started.stdout.read(), started.wait(60)) == (b"", 2)
+
+
 @pytest.mark.parametrize(("given", "used"), [(None, "1"), ("3", "3")])
 def test_small_matrices_take_one_thread_unless_somebody_says_otherwise(given, used, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["winch-friction", "--version"])

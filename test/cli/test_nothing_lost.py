@@ -92,6 +92,26 @@ def test_a_kind_that_cannot_be_written_is_said_before_the_others_are(here, capsy
     assert not (here / "new.parquet").exists()
 
 
+def test_a_replay_makes_no_bag_under_the_name_of_a_spreadsheet(here, capsys):
+    """`--out replayed.xlsx` became a folder with a bag in it."""
+    assert run(["replay", "run.csv", *MODEL, "--out", "replayed.xlsx"]) == 2
+    assert "replayed.xlsx: cannot write this kind of file" in capsys.readouterr().err
+    assert not (here / "replayed.xlsx").exists()
+
+
+def test_a_log_that_is_no_run_file_is_sent_to_import(here, capsys):
+    (here / "log.csv").write_text("time,ground_speed,force\n" + "".join(f"{k},1.0,2.0\n" for k in range(9)))
+    (here / "log.xlsx").write_bytes(b"PK")
+    for name in ("log.csv", "log.xlsx"):
+        assert run(["check", name, "--crane", "crane_150t"]) == 2
+        assert "winch-friction import" in capsys.readouterr().err
+
+
+def test_a_practice_that_is_not_there_is_said_to_be_none(here, capsys):
+    assert run(["identify", "practice", "practise_150t", "--out", "done"]) == 2
+    assert "practise_150t: no such folder, and no shipped example" in capsys.readouterr().err
+
+
 def test_copies_of_a_run_prove_nothing(here, capsys):
     """A copy among the locked runs would prove the model on what it was fitted to."""
     for name in ("a", "b", "c"):

@@ -18,6 +18,8 @@ from winch_friction.physics.signals import Run
 
 MENDED = (
     "Dutch",
+    "row of units in parentheses",
+    "one name twice",
     "French",
     "Swedish",
     "units behind underscores",

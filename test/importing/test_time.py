@@ -7,7 +7,7 @@ from winch_friction.importing.cells import as_column
 from winch_friction.importing.log import LogColumn
 from winch_friction.importing.ticks import spread_ticks
 from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
-from winch_friction.importing.time_text import clock_seconds, time_parts, zone_seconds
+from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
 from winch_friction.physics.errors import InputError
 
 NOON_2024 = 1_718_452_800.0  # 15 June 2024, 12:00 UTC
@@ -125,3 +125,8 @@ def test_milliseconds_behind_a_colon_are_counted():
         assert seconds(texts(*cells), guess.base) == pytest.approx(43_210.0 + 1e-3 * millis)
     hundredths = texts("12:00:05:07", "12:00:05:12", "12:00:06:02")
     assert seconds(hundredths, TimeBase("clock")) == pytest.approx([43_205.07, 43_205.12, 43_206.02])
+
+
+def test_a_date_as_it_is_spoken_is_read():
+    assert days_since_1970(time_parts("17. März 2026 10:00:00")[:3], "dmy", "log") == 20_529
+    assert time_parts("1. 3. 2026 10:00:00")[:3] == ("1", "3", "2026")

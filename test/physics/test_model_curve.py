@@ -7,7 +7,8 @@ import pytest
 
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.winch import group_point, operating_point
-from winch_friction.physics.winch.model_curve import model_curve
+from winch_friction.physics.winch.model_curve import LOWEST_SPEED, TOP_SPEED, model_curve
+from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
 MODEL = load_model("a6vm215_crane2")
@@ -49,3 +50,22 @@ def test_bristles_have_turned_over_in_a_winch_that_turns_steadily(crane_150t, sp
     assert found.parts["presliding"] == pytest.approx(0.0, abs=1e-9)
     assert found.torque == pytest.approx(without.torque)
     assert found.std == pytest.approx(without.std)
+
+
+@pytest.mark.parametrize(
+    ("model", "crane", "fastest"),
+    [("emps_viscous", "emps", 100.0 / 243.0), ("rope_force_alone", "winch_100kw", 12.0),
+     ("worm_viscous", "worm_drive", TOP_SPEED)],
+)  # fmt: skip
+def test_a_curve_ends_where_its_machine_does(model, crane, fastest):
+    """A drive of 100 N was drawn to 209 m/s and 42 kN."""
+    machine = load_crane(crane)
+    curve = model_curve(load_model(model), machine)
+    assert curve.speed[-1] == pytest.approx(fastest, rel=0.25)
+    assert 0.0 < curve.speed[0] < 0.01 * curve.speed[-1]
+    assert np.abs(curve.torque).max() <= 1.1 * machine.absolute_torque_limit
+
+
+def test_a_hydraulic_crane_is_drawn_to_the_top_of_the_papers_tests(crane_150t):
+    speed = model_curve(MODEL, crane_150t).speed
+    assert (speed[0], speed[-1]) == pytest.approx((LOWEST_SPEED, TOP_SPEED))

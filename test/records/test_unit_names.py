@@ -90,3 +90,18 @@ def test_a_unit_that_is_a_sum_to_work_out_is_refused_at_once(unit):
     with pytest.raises(InputError, match="cannot be read as rad/s"):
         conversion_to_si(unit, "rad/s", "log.csv")
     assert time.monotonic() - began < 2.0
+
+
+PRESSURES = [("kPa(g)", 1e3, 0.0), ("bar (a)", 1e5, -101325.0), ("bar(Ü)", 1e5, 0.0), ("MPa abs.", 1e6, -101325.0),
+             ("bar, abs", 1e5, -101325.0), ("mbar rel", 100.0, 0.0), ("Pa_absolute", 1.0, -101325.0)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("unit", "scale", "offset"), PRESSURES)
+def test_a_pressure_says_from_what_it_counts_in_any_unit(unit, scale, offset):
+    assert conversion_to_si(unit, "Pa", "here") == (pytest.approx(scale), pytest.approx(offset))
+
+
+@pytest.mark.parametrize("unit", ["kg/cm2 abs", "(a)", "abs", "kNabs"])
+def test_what_is_no_pressure_from_the_vacuum_is_refused(unit):
+    with pytest.raises(InputError, match="cannot be read as Pa"):
+        conversion_to_si(unit, "Pa", "here")

@@ -9,8 +9,8 @@ from winch_friction.estimation import ParameterEstimate
 from winch_friction.physics.signals import Run
 from winch_friction.records.model_file import load_model
 from winch_friction.replay.recording import Replayed
-from winch_friction.report.replay_page import facts, learned_html, sentence
-from winch_friction.report.replay_picture import most_learned
+from winch_friction.report.replay_page import facts, learned_html, sentence, torque_plot
+from winch_friction.report.replay_picture import most_learned, replay_figure
 
 SEED = load_model("a6vm215_crane2")
 CONTENT = {
@@ -62,3 +62,23 @@ def test_a_recording_without_an_active_feedforward_says_so():
 @pytest.mark.parametrize("inside", [None, float("nan")])
 def test_an_unknown_consistency_is_not_shown(inside):
     assert dict(facts({**CONTENT, "nis_share_inside": inside}))["Innovations inside their 95 % band"] == ""
+
+
+def turning(taken):
+    """A motor that turns at 100 rad/s, and a feedforward that takes this speed."""
+    time, zeros = np.arange(3.0), np.zeros(3)
+    fed = Run("c", {"time": time, "friction_torque": zeros, "speed": np.full(3, taken)})
+    parameters = {name: values for name, values in learned().columns.items() if name != "time"}
+    return fed, Run("e", {"time": time, "friction_torque": zeros, "speed": np.full(3, 100.0), **parameters})
+
+
+@pytest.mark.parametrize(("taken", "labels"), [(0.0, ["speed"]), (90.0, ["speed", "speed that the feedforward took"])])
+def test_a_motor_that_turns_is_drawn_turning_while_the_feedforward_waits(taken, labels):
+    """The page drew a speed of zero under runs at 1000 rpm."""
+    plot = torque_plot(*turning(taken))
+    speeds = [line for line in plot.lines if line.row == 1]
+    assert [line.label for line in speeds] == labels
+    drawn = plot.frames[speeds[0].frame].columns[speeds[0].y]
+    assert drawn == pytest.approx(100.0 * 30.0 / np.pi)
+    shown = replay_figure(*turning(taken), SEED).axes[1].lines
+    assert shown[1].get_ydata() == pytest.approx(100.0 * 30.0 / np.pi)

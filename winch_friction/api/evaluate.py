@@ -69,7 +69,7 @@ def friction_curve(
 
     Columns: `torque` N m at the motor shaft, `std` N m (NaN where the model has no covariance), `pressure` Pa (the drop
     that carries load and friction), and each term. `load` kg, `displacement` m^3/rad per motor (default: the largest),
-    `speed` rad/s (default 5 ... 2000 rpm hoisting). Raises `InputError`.
+    `speed` rad/s (default hoisting, 5 ... 2000 rpm or as far as the crane can run). Raises `InputError`.
 
     >>> import winch_friction as wf
     >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")

@@ -98,10 +98,12 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
     import numpy as np
 
     from winch_friction.physics.channels import RPM
-    from winch_friction.physics.winch.model_curve import model_curve
+    from winch_friction.physics.winch.model_curve import model_curve, usual_speeds
     from winch_friction.report.curves import joint_std
 
-    pairs = [(model_curve(one, crane, load=1e3 * t), model_curve(two, crane, load=1e3 * t)) for t in loads]
+    speed = usual_speeds(one, crane)
+    drawn = lambda each, t: model_curve(each, crane, load=1e3 * t, speed=speed)
+    pairs = [(drawn(one, t), drawn(two, t)) for t in loads]
     rows: list[dict[str, Any]] = []
     for a, b in pairs:
         difference, spread = b.torque - a.torque, joint_std(a, b)

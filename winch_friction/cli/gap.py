@@ -250,7 +250,7 @@ def show_result(content: dict[str, Any], out: Path) -> None:
     ]
     print(f"verdict: {content['verdict']}")
     if rows:
-        show_table("missing effects", ["effect", "or", "parameters", "error lower by"], rows)
+        show_table("missing effects", ["effect", "or", "parameters ± σ", "error lower by"], rows)
     if content["verdict"] == "unexplained":
         print(_unexplained(**content["unexplained"]))
     for check in content["adequacy"] if content["verdict"] == "insufficient" else []:

@@ -15,7 +15,8 @@ HELP = """Bring logs of any origin into run files.
 
 First propose a map: what each column is, in which unit, sign and zone, with reason and confidence. Read it (change it
 in an editor, or with --set), then import.
-Logs may be .csv .txt .tsv (also .gz, .zip), .xlsx, .parquet, .mat, .tdms, .mf4.
+Logs may be .csv .txt .tsv .asc .log .prn .lvm (also .gz, .zip), .xlsx .xlsm, .parquet, .mat, .tdms, .mf4 .mdf, .mcap,
+    .db3 or a rosbag2 folder.
 
 Examples:
 
@@ -107,7 +108,8 @@ def propose_map(
 def _show(log_map: LogMap) -> None:
     """The guesses for a person, one a line."""
     form = f"{log_map.time.form} {log_map.time.unit}" if log_map.time.form in ("seconds", "unix") else log_map.time.form
-    print(f"time <- {' + '.join(log_map.time_from)} ({form}), {log_map.time_confidence:.2f}: {log_map.time_because}")
+    said = f"({form}), {log_map.time_confidence:.2f}: {log_map.time_because}"
+    print(f"time <- {' + '.join(log_map.time_from)} {said}" if log_map.time_from else "time <- no column found")
     for name, entry in log_map.columns.items():
         unit = ("-1 * " if entry.sign < 0 else "") + (entry.unit or "-")
         print(f"{name} <- {entry.constant or entry.source} ({unit}), {entry.confidence:.2f}: {entry.because}")
@@ -152,8 +154,10 @@ def import_logs(
     else:
         problems += against
     if problems:
-        hint = "" if force else " (nothing written; --force imports what contradicts the crane)"
-        raise InputError(" | ".join(problems) + hint)
+        hint = (
+            "nothing written; --force imports what contradicts the crane" if problems == against else "nothing written"
+        )
+        raise InputError(f"{' | '.join(problems)} ({hint})")
     written = [str(write_run(run, target)) for run, target in zip(runs, targets, strict=True)]
     for run in runs:
         show_warnings(run.warnings)

@@ -186,7 +186,10 @@ def _bad_input(*problems: str) -> int:
 
 
 def _said(message: str, status: int) -> int:
-    print(f"winch-friction: {message}", file=sys.stderr)
+    try:
+        print(f"winch-friction: {message}", file=sys.stderr, flush=True)
+    except BrokenPipeError:  # `2>&1 | head`: the status is still what it is
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     return status
 
 

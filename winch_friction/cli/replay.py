@@ -52,7 +52,7 @@ def command(
     from winch_friction.cli.inputs import load_terms, machine_of, provenance_of, refuse_implausible
     from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.model import ASSUMED_STD, unstated
-    from winch_friction.records.runs import bag_options_of
+    from winch_friction.records.runs import bag_options_of, refuse_unknown_kind
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary
@@ -67,6 +67,8 @@ def command(
     refuse_input_as_output(out, [recording, model, crane])
     refuse_input_as_output(picture, [recording, model, crane])
     refuse_existing(overwrite, out, picture)
+    if out is not None:
+        refuse_unknown_kind(out)
     options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
     load_terms(terms_file)
     settings = settings_from_file(params_file) if params_file else None

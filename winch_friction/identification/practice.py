@@ -62,6 +62,8 @@ def read_practice(folder: Path) -> PracticeFolder:
     """Read a practice folder; raises `InputError` for anything that is missing or cannot be read."""
     folder = Path(folder)
     path = folder / "practice.yaml"
+    if not folder.exists():
+        raise InputError(f"{folder}: no such folder, and no shipped example; a practice is a folder with practice.yaml")
     if not path.is_file():
         raise InputError(f"{folder}: 'practice.yaml' is missing; it names crane, supplier table and tests")
     top = Section(read_yaml(path), str(path))

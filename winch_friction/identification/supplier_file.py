@@ -12,6 +12,10 @@ from winch_friction.records.table import Table, read_table
 
 _AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
 LEAST_BEST_EFFICIENCY = 0.1  # any piston motor reaches several times that somewhere in its table
+_MOST_LOST = 0.5  # of the largest D dp of a table: a piston motor loses a tenth there
+_MAY_BE = {"torque_loss": "name it 'torque' if it is the torque at the shaft",
+           "torque": "name it 'torque_loss' if it is what is lost",
+           "efficiency": "an efficiency is what is left, not what is lost"}  # fmt: skip
 _UNITS = {"efficiency": "1", "torque": "N*m", "torque_loss": "N*m"}
 _LOSSES = tuple(_UNITS)
 _CHANNELS = {"speed": "motor_speed", "pressure": "pressure_a", "displacement": "displacement",
@@ -37,9 +41,11 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
                 table.column(name, _UNITS[name])
     problems.say()
     displacement = axes["displacement"]
+    loss = _torque_loss(table, axes["pressure"] * displacement)
+    _refuse_another_torque(table, loss, axes["pressure"] * displacement)
     return SupplierTable(
         name=table.name,
-        torque_loss=_torque_loss(table, axes["pressure"] * displacement),
+        torque_loss=loss,
         weight=_positive(table, "weight", "1") if "weight" in table else np.ones(len(displacement)),
         max_displacement=float(max_displacement or displacement.max()),
         **axes,
@@ -58,10 +64,25 @@ def _torque_loss(table: Table, nominal: FloatArray) -> FloatArray:
     return (1.0 - _efficiency(table)) * nominal
 
 
+def _refuse_another_torque(table: Table, loss: FloatArray, nominal: FloatArray) -> None:
+    """Where a motor loses least, at its largest torque, half of it is not lost: the column is another, or its unit."""
+    most, given = int(np.argmax(nominal)), next(name for name in _LOSSES if name in table)
+    share = loss[most] / nominal[most]
+    if share > _MOST_LOST:
+        raise InputError(
+            f"{table.path} row {table.rows[most]}: column '{given}': {100.0 * share:.3g} % of the largest torque D dp, "
+            f"{nominal[most]:.4g} N*m, would be lost, which no motor does; {_MAY_BE[given]}, or correct the unit in "
+            "the header"
+        )
+
+
 def _efficiency(table: Table) -> FloatArray:
-    values = table.column("efficiency", "1")
-    table.refuse("efficiency", values > 1.0, "is above 1 (100 %); a motor cannot give more torque than D dp")
-    table.refuse("efficiency", values <= 0.0, "is not above 0; leave such rows out")
+    values, problems = table.column("efficiency", "1"), Problems()
+    with problems:
+        table.refuse("efficiency", values > 1.0, "is above 1 (100 %); a motor cannot give more torque than D dp")
+    with problems:
+        table.refuse("efficiency", values <= 0.0, "is not above 0; leave such rows out")
+    problems.say()
     if values.max() < LEAST_BEST_EFFICIENCY:
         raise InputError(
             f"{table.path}: column 'efficiency': {100.0 * values.max():.3g} % at best is no motor's; a fraction under "
@@ -92,11 +113,12 @@ def _plausible(table: Table, column: str, values: FloatArray) -> FloatArray:
     lower, upper = channel.limits
     if column in _AXES:
         lower = _NEXT_TO_NONE * upper
+    said = f" ('{table.units[column]}')" if table.units[column] else " (none: SI)"
     factor = factor_to_si(channel.display, channel.unit)
     table.refuse(
         column,
         (values < lower) | (values > upper),
         f"is no motor's: {lower / factor:.4g} ... {upper / factor:.4g} {channel.display}; correct the number or the "
-        "unit in the header",
+        f"unit in the header{said}",
     )
     return values

@@ -102,12 +102,23 @@ class FitRange:
                 said.append(f"{(~inside[column]).sum()} by {column} ({span} {unit} count)")
         return f"{table.name}: {len(table) - kept} of {len(table)} rows are left out: {', '.join(said)}" if said else ""
 
+    def _off(self, table: SupplierTable) -> str:
+        """Where the table and the range lie, of the columns that leave rows out."""
+        said = []
+        for column, (unit, factor) in _UNITS.items():
+            values, (lower, upper) = getattr(table, column) / factor, (each / factor for each in getattr(self, column))
+            if not self._inside(table, column).all():
+                span = f"{lower:.4g} ... {upper:.4g}" if np.isfinite(upper) else f"from {lower:.4g} on"
+                said.append(f"{column} {values.min():.4g} ... {values.max():.4g} {unit} ({span} count)")
+        return ", ".join(said)
+
     def select(self, table: SupplierTable) -> SupplierTable:
         """The rows inside the range; raises `InputError` when none is."""
         keep = np.all([self._inside(table, column) for column in _UNITS], axis=0)
         if not keep.any():
             raise InputError(
-                f"{table.name}: no row lies inside the range of the fit; widen speed, pressure or displacement"
+                f"{table.name}: no row lies inside the range of the fit: {self._off(table)}; widen the range, or "
+                "correct the unit in the header (none there: SI)"
             )
         return table.where(keep)
 

@@ -16,8 +16,7 @@ def contradictions(logs: Mapping[str, Mapping[str, FloatArray]], crane: Crane) -
     """What in these logs (name -> columns in SI) cannot be this crane, the likeliest mistake first."""
     said = [text for name, columns in logs.items() for text in _of_clock(name, columns)]
     timed = {name: _with_time(columns) for name, columns in logs.items()}
-    runs = [Run(name, columns) for name, columns in timed.items() if _is_complete(columns, crane)]
-    return said or run_contradictions(runs, crane)
+    return said or run_contradictions([Run(name, columns) for name, columns in timed.items()], crane)
 
 
 def _of_clock(name: str, columns: Mapping[str, FloatArray]) -> list[str]:
@@ -41,11 +40,12 @@ def _with_time(columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
 
 
 def run_contradictions(runs: Sequence[Run], crane: Crane) -> list[str]:
-    """The same for runs.
+    """The same for runs; one without a drive, such as a ship's motion, contradicts no crane.
 
     Of a hydraulic winch the commissioning check knows what friction is usual; of another drive only that its power is
     the load times the speed but for its losses.
     """
+    runs = [run for run in runs if _is_complete(run.columns, crane)]
     if not runs:
         return []
     if crane.drive.hydraulic:

@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from winch_friction.physics.channels import GRAVITY, limits_of
+from winch_friction.physics.channels import FASTEST_ROPE, GRAVITY, limits_of
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
 _PRESSURE = (5.0e5, 6.0e7)  # Pa: above the boost of an idle line, below a burst hose
 _HYDRAULIC_SPEED = (1.0, 500.0)  # rad/s: a winch hardly moving, an axial piston motor at 4800 rpm
-_FASTEST_ROPE = 12.0  # m/s: three times the fastest hoist at sea
 _LIGHTEST = 1e-3  # of what a drive's torque limit holds: less is no load that a person would log
 _HIGHEST_PRESSURE = 4.5e7  # Pa, of the largest motors; what a crane's load is bounded by
 
@@ -34,12 +33,12 @@ def usual_size(channel: str, crane: Crane | None) -> tuple[float, float]:
     if crane is None:
         return table.get(channel, (0.0, top))
     if channel in ("motor_speed", "speed_reference") and crane.drive.hydraulic:
-        fastest = _FASTEST_ROPE * crane.gear_ratio / crane.drum.layer_radii[0]
+        fastest = FASTEST_ROPE * crane.gear_ratio / crane.drum.layer_radii[0]
         return _HYDRAULIC_SPEED[0], min(_HYDRAULIC_SPEED[1], fastest)
     if channel == "displacement":
         return 0.02 * crane.max_displacement, 1.15 * crane.max_displacement
     if channel == "drum_speed":
-        return 0.0, _FASTEST_ROPE / crane.drum.layer_radii[0]
+        return 0.0, FASTEST_ROPE / crane.drum.layer_radii[0]
     if channel == "wire_layer":
         return 1.0, float(len(crane.drum.layer_radii))
     if channel == "hook_load" and crane.drive.hydraulic:

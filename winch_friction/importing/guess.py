@@ -28,11 +28,16 @@ _UNIT_ALONE = 0.22  # score of a column whose unit fits and whose name says noth
 _NO_UNIT = 0.9
 _WRONG_SIZE = 0.4  # what is left of a score when no reading of the numbers has a plausible size
 _OTHER_GROUP, _NO_GROUP, _NO_PORT = 0.02, 0.75, 0.6
+_NAMED = 0.5  # how well a name must fit a channel to be its name, whatever it is the unit of
+_SURELY = 0.92  # a whole word or part of a compound, no short form and no misspelling
 _EXACT = 1.2  # a column that bears the contract's own name
 
 _HYDRAULIC = ("motor_speed", "drum_speed", "rope_speed", "speed_reference", "hook_load", "rope_force", "heave_velocity",
               "oil_temperature", "wire_layer", "wire_out", "shaft_angle")  # fmt: skip
 _GROUPS = ("main", "active", "passive")  # of motors, where no crane names them
+# channels that a run can do without: one that is wrong misleads, one that is missing does not
+_EXTRAS = frozenset({"speed_reference", "rope_force", "heave_velocity", "oil_temperature", "wire_layer", "wire_out",
+                     "shaft_angle"})  # fmt: skip
 _ELECTRIC = (*_HYDRAULIC, "motor_torque", "load_torque", "mechanical_power", "motor_current")
 
 
@@ -155,18 +160,30 @@ def _reading_score(
     concepts = _concepts(bare)
     if slot.channel == "rope_speed" and not unit and not any("rope" in token for token in concepts):
         return 0.0, ""
+    if slot.channel in _EXTRAS and _is_elsewhere(slot.channel, concepts):
+        return 0.0, ""
     score = max(name_score(slot.channel, concepts), 0.9 * name_score(slot.channel, _concepts(column.note)))
     why = f"name '{bare}'"
-    if unit and score < _UNIT_ALONE and _unit_tells(slot.channel, unit) and not _is_other(concepts):
+    if unit and score < _UNIT_ALONE and _unit_tells(slot.channel, unit) and not _is_other(slot, concepts):
         score, why = _UNIT_ALONE, f"unit '{unit}' alone, the name '{bare}' says nothing known"
     if slot.group and score:
         score *= _group_factor(concepts, bare, slot, groups)
     return score * (1.0 if unit else _NO_UNIT), why + (f", unit '{unit}'" if unit and "unit" not in why else "")
 
 
-def _is_other(concepts: Sequence[Concepts]) -> bool:
-    """Whether a name says something that no channel is (a valve, a wind, an energy)."""
-    return any(token.get("other", 0.0) > 0.7 or token.get("energy", 0.0) > 0.7 for token in concepts)
+def _is_other(slot: Slot, concepts: Sequence[Concepts]) -> bool:
+    """Whether a name says something else: what no channel is (a valve, a wind, an energy), or another channel."""
+    if any(token.get("other", 0.0) > 0.7 or token.get("energy", 0.0) > 0.7 for token in concepts):
+        return True
+    return any(name_score(c, list(concepts)) > _NAMED for c in CHANNEL_UNITS if c != slot.channel)
+
+
+def _is_elsewhere(channel: str, concepts: Sequence[Concepts]) -> bool:
+    """Whether a name says what is beside the winch, such as the sea's temperature, or of a reference only a speed."""
+    if channel == "speed_reference" and not any("reference" in token for token in concepts):
+        return True
+    fits = {"oil"} if channel == "oil_temperature" else set()  # the oil of the case, of the pump
+    return any(token.get("other", 0.0) > _SURELY for token in concepts) and not any(fits & set(t) for t in concepts)
 
 
 @lru_cache(maxsize=512)

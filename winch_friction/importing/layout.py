@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from winch_friction.importing.cells import is_missing, is_number, is_time
-from winch_friction.importing.units import looks_like_unit
+from winch_friction.importing.units import bare_unit, looks_like_unit
 
 _SEEN = 300  # rows looked at for the beginning of the values
 _RUN = 4  # rows of values in a row that make a beginning
@@ -96,5 +96,5 @@ def _is_labelled_unit_row(row: Row, width: int) -> bool:
 
 
 def _is_unit_row(row: Row) -> bool:
-    cells = [str(cell).strip() for cell in row if not is_missing(cell)]
+    cells = [bare_unit(str(cell)) for cell in row if not is_missing(cell)]
     return len(cells) >= 2 and sum(looks_like_unit(cell) for cell in cells) >= 0.6 * len(cells)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.importing.time_base import FORMS, ORDERS, TimeBase
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, unknown_key
 from winch_friction.records.strict_yaml import Section, read_yaml
 
 SCHEMA = "winch_friction.map/1"
@@ -14,6 +14,7 @@ LARGEST = 1 << 18  # bytes: a map of a thousand columns has a quarter of it
 BAD_CELLS = ("missing", "refuse")
 PLACES = ("motor", "drum", "rope")
 _NUMBERS = ("names_row", "unit_row", "first_row")
+_FIELDS = ("from", "unit", "sign", "factor", "of", "at", "differentiate", "constant", "confidence", "because")
 _TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace")
 
 
@@ -189,6 +190,12 @@ def _changed(log_map: LogMap, name: str, attribute: str, value: str, setting: st
         section.close()
         return changed
     old = log_map.columns.get(name)
+    if attribute not in _FIELDS:
+        raise InputError(f"--set '{setting}': {unknown_key(attribute, _FIELDS)}")
+    if old is None and attribute not in ("from", "constant"):
+        raise InputError(
+            f"--set '{setting}': the map has no channel '{name}'; say its column first: --set {name}.from=COLUMN"
+        )
     fields = {} if old is None else {
         "from": old.source, "unit": old.unit, "sign": old.sign, "factor": old.factor, "of": old.of, "at": old.at,
         "differentiate": old.differentiate, "constant": old.constant, "confidence": old.confidence,

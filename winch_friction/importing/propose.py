@@ -9,16 +9,16 @@ import numpy as np
 from winch_friction.importing.contradiction import contradictions
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import Match, group_sets, matches
-from winch_friction.importing.log import Log, LogColumn, listed
+from winch_friction.importing.log import Log, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.reading import read_log
-from winch_friction.importing.ticks import fraction_unit
-from winch_friction.importing.time_base import TimeGuess, guess_time, to_seconds
+from winch_friction.importing.time_base import to_seconds
+from winch_friction.importing.time_columns import settle_time
 from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
-from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, header_readings
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 
@@ -53,7 +53,7 @@ def propose(
     _refuse_different_names(draft)
     _refuse_rows_of_values(draft)
     pooled = _pooled(logs)
-    _settle_time(draft)
+    settle_time(draft)
     found = matches(pooled, crane, draft.log_map.time_from)
     _settle_columns(draft, found, pooled)
     ask_twins(draft)
@@ -86,7 +86,8 @@ def _refuse_different_names(draft: Draft) -> None:
         if missing:
             draft.problems.append(
                 f"{log.path.name} has other columns than {first.path.name}: {listed(sorted(missing))} are not in it; "
-                "propose a map for each kind of log"
+                "propose a map for each kind of log; if they hold different signals of one run, join them by time into "
+                "one file first"
             )
 
 
@@ -114,83 +115,6 @@ def _pooled(logs: Sequence[Log]) -> Log:
         thin = [c.values[:: max(1, len(c.values) // _POOLED)] for c in same]
         columns.append(replace(column, values=np.concatenate(thin)))
     return replace(logs[0], columns=tuple(columns))
-
-
-def _settle_time(draft: Draft) -> None:
-    best: tuple[float, tuple[LogColumn, ...], TimeGuess] | None = None
-    for columns in _time_candidates(draft.logs[0]):
-        bare, unit = _time_reading(columns[0])
-        if unit and fitting_si_unit("time", unit) is None:
-            continue
-        named = name_score("time", name_concepts(bare))
-        guess = guess_time(columns, unit)
-        if guess is None or (not named and not _steady(draft.logs[0], columns)):
-            continue
-        worth = 0.3 + named + 0.2 * (not columns[0].numeric) + 0.1 * (len(columns) > 1) + guess.confidence
-        if best is None or worth > best[0]:
-            because = f"name '{columns[0].name}', {guess.because}" if named else f"rises steadily, {guess.because}"
-            best = (
-                worth,
-                tuple(columns),
-                replace(guess, because=because, confidence=guess.confidence * (1.0 if named else 0.7)),
-            )
-    if best is None:
-        falling, names = _falling(draft.logs[0]), listed(c.name for c in draft.logs[0].columns)
-        draft.problems.append(
-            f"time: '{falling}' falls from row to row, the newest first; sort the log by time"
-            if falling else f"time: no column of times found among {names}"
-        )  # fmt: skip
-        return
-    _, columns, guess = best
-    columns, guess = _with_fraction(draft.logs[0], columns, guess)
-    draft.log_map = replace(
-        draft.log_map, time_from=tuple(c.name for c in columns), time=guess.base, time_confidence=guess.confidence,
-        time_because=guess.because,
-    )  # fmt: skip
-    if guess.question:
-        draft.questions.append(f"time: {guess.question}")
-
-
-def _falling(log: Log) -> str:
-    """The column that is a time from the last row to the first."""
-    turned = lambda c: replace(c, values=c.values[::-1], text=None if c.text is None else c.text[::-1])
-    named = [c for c in log.columns if name_score("time", name_concepts(_time_reading(c)[0]))]
-    return next((c.name for c in named if guess_time([turned(c)], _time_reading(c)[1]) is not None), "")
-
-
-def _with_fraction(
-    log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess
-) -> tuple[tuple[LogColumn, ...], TimeGuess]:
-    """The time with the column that holds its fractions of a second, where the log keeps them apart."""
-    whole = to_seconds(columns, replace(guess.base, spread=False), "time", log.place, strict=False)
-    for column in log.columns:
-        unit = "" if column in columns else fraction_unit(whole, column)
-        if unit:
-            because = f"{guess.because.partition('; about')[0]}; '{column.name}' holds their fractions in {unit}"
-            base = replace(guess.base, spread=False, fraction=unit)
-            return (*columns, column), replace(guess, base=base, because=because)
-    return columns, guess
-
-
-def _time_reading(column: LogColumn) -> tuple[str, str]:
-    """Name and unit of a column, the unit one of time where the header has several readings."""
-    readings = [(bare, unit or column.unit) for bare, unit in header_readings(column.name)]
-    return next((r for r in readings if not r[1] or fitting_si_unit("time", r[1]) is not None), readings[0])
-
-
-def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:
-    single = [(c,) for c in log.columns]
-    texts = [c for c in log.columns if not c.numeric]
-    return single + [(a, b) for a in texts for b in texts if a is not b]
-
-
-def _steady(log: Log, columns: Sequence[LogColumn]) -> bool:
-    """Whether a column without the name of a time rises like one: by the same step from row to row, or as dates."""
-    if not columns[0].numeric:
-        return True
-    steps = np.diff(columns[0].values)
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    return usual > 0.0 and float(np.mean(np.abs(steps - usual) < 0.5 * usual)) > 0.9 and columns[0] is log.columns[0]
 
 
 def _settle_columns(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:

@@ -10,7 +10,7 @@ from winch_friction.importing.cells import as_column, plain_numbers
 from winch_friction.importing.layout import Layout
 from winch_friction.importing.log import LogColumn, unique_names
 from winch_friction.importing.text_rows import TextRows
-from winch_friction.importing.units import looks_like_unit
+from winch_friction.importing.units import bare_unit, looks_like_unit
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 
@@ -70,8 +70,7 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
     if "unit" in units[0].lower() and not looks_like_unit(units[0]):
         units[0] = ""  # the label of a row of units
     heads = [
-        (name, units[k].strip().strip("[]()"), remarks[k].strip())
-        for k, name in enumerate(unique_names(padded(names, width)))
+        (name, bare_unit(units[k]), remarks[k].strip()) for k, name in enumerate(unique_names(padded(names, width)))
     ]
     found = {k: LogColumn(heads[k][0], values, heads[k][1], note=heads[k][2])
              for k, values in _numbers(body, marks).items()}  # fmt: skip

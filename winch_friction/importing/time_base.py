@@ -2,7 +2,7 @@
 
 Forms: `seconds` (any unit, from any origin), `unix` (counted since 1970), `excel` and `matlab` (days), `filetime` and
 `dotnet` (tenths of a microsecond since 1601 and since year 1), `datetime` (dates with a time of day, in one column or
-two) and `clock` (a time of day alone, from midnight).
+two) and `clock` (a time of day alone, from midnight, as a text or as a number such as 95959.5).
 """
 
 from collections.abc import Sequence
@@ -16,6 +16,7 @@ import numpy as np
 from winch_friction.importing.log import LogColumn, Place
 from winch_friction.importing.summer_time import from_utc, hour_back
 from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
+from winch_friction.importing.time_numbers import clock_of_numbers, is_clock, seconds_of_one
 from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
@@ -60,9 +61,14 @@ class TimeGuess:
     question: str = ""
 
 
+def guess_form(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
+    """How the cells of a column, or of a date and a clock beside it, can be read as times, whether they rise or not."""
+    return _guess_text(columns) if not columns[0].numeric else _guess_numbers(columns[0], unit)
+
+
 def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     """The time base of a column, or of a date and a clock beside it; None when the values are no time."""
-    guess = _guess_text(columns) if not columns[0].numeric else _guess_numbers(columns[0], unit)
+    guess = guess_form(columns, unit)
     if guess is None:
         return None
     seconds = to_seconds(columns, guess.base, "", lambda row: f"row {row + 1}", strict=False)
@@ -103,6 +109,8 @@ def _guess_numbers(column: LogColumn, unit: str) -> TimeGuess | None:
         return TimeGuess(TimeBase("matlab", "day"), 0.9, f"values of {low:.6g} are days as MATLAB counts them")
     if unit:
         return TimeGuess(TimeBase("seconds", unit), 0.97, f"unit '{unit}'")
+    if is_clock(values):
+        return TimeGuess(TimeBase("clock"), 0.85, f"numbers such as {values[0]:.10g} are times of day, from midnight")
     return _guess_bare_numbers(values)
 
 
@@ -186,12 +194,13 @@ def _from_numbers(values: FloatArray, base: TimeBase, where: str) -> FloatArray:
         return (values - _MATLAB_EPOCH) * _DAY
     if base.form in _EPOCHS:
         return _TICK * values - _EPOCHS[base.form]
+    if base.form == "clock":
+        return _over_midnight(clock_of_numbers(values))
     if base.form not in ("seconds", "unix"):
         raise InputError(
             f"{where}: time.form is '{base.form}', but the column holds plain numbers; use seconds or unix"
         )
-    scale, _ = conversion_to_si(base.unit or "s", "s", where)
-    return values * scale
+    return values * seconds_of_one(base.unit or "s", where)
 
 
 def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: Place, strict: bool) -> FloatArray:

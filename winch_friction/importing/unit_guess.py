@@ -13,8 +13,10 @@ from winch_friction.importing.expectations import usual_size
 from winch_friction.importing.guess import Match, plausible_units
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.importing.log import Log
-from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, usual_units
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, conversion, usual_units
 from winch_friction.physics.channels import CM3_PER_REV
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
 
 _COMBINATIONS = 300  # of units tried against the torque balance
 _ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")
@@ -76,6 +78,17 @@ def _ask_odd_pair(draft: Draft, members: Mapping[str, list[str]]) -> None:
         )
 
 
+def _usual_in(channel: str, unit: str, crane: Crane | None) -> str:
+    """The usual size of a channel in the log's unit, in SI where the unit alone does not lead there."""
+    low, high = usual_size(channel, crane)
+    of = crane.max_displacement if crane is not None and channel == "displacement" else 1.0
+    try:
+        found = conversion(channel, unit, "", of=of or 1.0)
+    except InputError:
+        return f"{low:.3g} to {high:.3g} {CHANNEL_UNITS[channel][0]}"
+    return f"{(low - found.offset) / found.scale:.3g} to {(high - found.offset) / found.scale:.3g} {unit}"
+
+
 def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
     column = pooled.column(match.column.name)
     options = plausible_units(column, match.unit, match.slot.channel, draft.crane)
@@ -83,13 +96,11 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
         others = [u for u in usual_units(match.slot.channel) if u != match.unit]
         likely = [u for u in others if plausible_units(column, u, match.slot.channel, draft.crane)]
         likely.sort(key=lambda u: -_closing(draft, {name: u}))  # as usual ones as they close the balance alike
-        low, high = usual_size(match.slot.channel, draft.crane)
         size = float(np.nanpercentile(np.abs(column.values), 95.0))
         hint = f"; '{likely[0]}' would give a usual size: set {name}.unit={likely[0]}" if likely else ""
-        own = CHANNEL_UNITS[match.slot.channel][0]
         draft.questions.append(
             f"{name}: '{match.column.name}' says '{match.unit}', but {size:.4g} {match.unit} is no usual size "
-            f"({low:.3g} to {high:.3g} {own}){_of_crane(draft, match.slot.channel)}{hint}"
+            f"({_usual_in(match.slot.channel, match.unit, draft.crane)}){_of_crane(draft, match.slot.channel)}{hint}"
         )
         return [match.unit]
     if match.unit or options:

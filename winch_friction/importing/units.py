@@ -40,6 +40,11 @@ _SUFFIX = re.compile(r"^(.+?)[_\s\-]+([^\s_]{1,9}(?:_per_[a-z]+)?)$")
 # a unit of two words behind an underscore: displacement_cc_rev, speed_rad_s, torque_N_m
 _LONG_SUFFIX = re.compile(r"^(.+?)[_\s\-]+([^\s_/]{1,6}_(?:rev|rad|min|s|h|u|o|omdr|m|cm2))$", re.IGNORECASE)
 _OVER = re.compile(r"^(.+)_(rev|rad|min|s|h|u|o|omdr|cm2)$", re.IGNORECASE)
+# units of what no channel is; those with a slash are told by pint, the others by their spelling (casefolded)
+_FOREIGN_SI = ("m^3/s", "m^2/s", "kg/m^3", "kg/s", "m/s^2", "Pa/s", "K/s", "N/m")
+_FOREIGN = frozenset({"v", "mv", "kv", "volt", "va", "kva", "wh", "kwh", "mwh", "j", "kj", "mj", "ah", "ohm", "cst",
+                      "l", "ltr", "liter", "litre", "gal", "lpm", "gpm", "slpm", "m3", "m^3", "kg/m3", "ppm", "db",
+                      "dba", "rh", "%rh"})  # fmt: skip
 _WORDED = (("_per_", "/"), (" per ", "/"), (" pro ", "/"))
 
 
@@ -57,15 +62,31 @@ def header_readings(name: str) -> list[tuple[str, str]]:
     match = _BRACKETED.match(name)
     if match:
         bare, unit = f"{match[1]} {match[3]}".strip(), match[2].strip()
-        return [(bare, worded(unit)), (name, "")] if looks_like_unit(unit) else [(name, ""), (bare, "")]
+        told = looks_like_unit(unit) or is_foreign(unit)
+        return [(bare, worded(unit)), (name, "")] if told else [(name, ""), (bare, "")]
     readings = []
     for pattern in (_AFTER_MARK, _LONG_SUFFIX, _SUFFIX):
         match = pattern.match(name)
         parts = match.groups() if match else ()
         bare, unit = next((pair for pair in zip(parts[::2], parts[1::2], strict=True) if pair[0]), ("", ""))
-        if looks_like_unit(unit, marked=pattern is _AFTER_MARK):
+        if looks_like_unit(unit, marked=pattern is _AFTER_MARK) or (pattern is _AFTER_MARK and is_foreign(unit)):
             readings.append((bare.strip(" ,;:/"), worded(unit)))
     return [*dict.fromkeys(readings), (name, "")]
+
+
+@lru_cache(maxsize=4096)
+def is_foreign(text: str) -> bool:
+    """Whether a text is a unit of what no channel is: a flow, a viscosity, a voltage."""
+    plain = worded(text)
+    return plain_spelling(plain) in _FOREIGN or any(_converts(plain, si) for si in _FOREIGN_SI if "/" in plain)
+
+
+def bare_unit(cell: str) -> str:
+    """The unit in a cell of a row of units, without the brackets around it: `[bar(a)]` is bar(a)."""
+    text = cell.strip()
+    while text[:1] in ("[", "(") and text[-1:] == {"[": "]", "(": ")"}[text[0]]:
+        text = text[1:-1].strip()
+    return text
 
 
 def says_unit(name: str, unit: str) -> bool:

@@ -10,6 +10,7 @@ from winch_friction.importing.cells import as_column, decimal_mark, is_missing
 from winch_friction.importing.layout import Layout, find_layout
 from winch_friction.importing.log import Log, LogColumn, Place, listed, unique_names
 from winch_friction.importing.optional import library
+from winch_friction.importing.units import bare_unit
 from winch_friction.physics.errors import InputError
 
 LARGEST = 400 << 20  # bytes unpacked: Excel's million rows of ten numbers have less
@@ -131,8 +132,7 @@ def _columns(rows: Sequence[Sequence[Any]], body: Sequence[Sequence[Any]], layou
     names, units, remarks = unique_names(head(layout.names)), head(layout.units), head(layout.notes_row)
     cells = list(zip(*([*row[: layout.width], *[None] * (layout.width - len(row))] for row in body), strict=True))
     return [
-        as_column(name, cells[k], decimal, thousands, units[k].strip().strip("[]()"), remarks[k])
-        for k, name in enumerate(names)
+        as_column(name, cells[k], decimal, thousands, bare_unit(units[k]), remarks[k]) for k, name in enumerate(names)
     ]
 
 

@@ -156,6 +156,7 @@ def limits(channel: str) -> tuple[float, float]:
 # -- units
 GRAVITY = 9.81  # m/s^2
 RPM = 2.0 * math.pi / 60.0  # rad/s per rev/min
+FASTEST_ROPE = 12.0  # m/s: three times the fastest hoist at sea
 BAR = 1.0e5  # Pa per bar
 CM3_PER_REV = 1.0e-6 / (2.0 * math.pi)  # m^3/rad per cm^3/rev
 

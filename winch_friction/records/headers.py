@@ -29,7 +29,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
             "1/min", "min-1", "min^-1", "/min", "u/min", "upm", "umdr/min", "umdrehungen/min", "r/min", "rev/min",
             "r.p.m", "o/min", "omdr/min", "omdr./min", "omdreininger/min", "tr/min", "giri/min", "u/minute", "rot/min",
             "omw/min", "toeren/min", "tpm", "tr/mn", "tours/min", "varv/min", "v/min", "vueltas/min",
-            "obr/min", "obr./min", "ot/min", "d/dak", "dev/dak", "об/мин", "ob/min", "rot/min",
+            "obr/min", "obr./min", "ot/min", "d/dak", "dev/dak", "об/мин", "ob/min", "rot/min", "opm",
         ),
         "rev/s": ("u/s", "rps", "r/s", "rev/s", "umdr/s", "omdr/s", "o/s", "rev/sec"),
         "rad/s": ("rad/sec", "rad/sek", "rads", "rad s-1", "rad*s^-1"),
@@ -87,7 +87,8 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         "lbf*ft": ("lb-ft", "lbft", "ft-lb", "ftlb", "lbf-ft", "ft lbf"),
     },
     "degC": {
-        "degC": ("°c", "c", "℃", "deg c", "grad c", "grad celsius", "celsius", "°celsius", "gr c", "degree c", "oc"),
+        "degC": ("°c", "c", "℃", "deg c", "grad c", "grad celsius", "celsius", "°celsius", "gr c", "degree c", "oc",
+            "deg. c", "grader c"),
         "degF": ("°f", "f", "fahrenheit", "deg f"),
         "kelvin": ("k", "kelvin"),
     },
@@ -101,7 +102,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         "minute": ("min", "minuten", "minutter", "mins"), "hour": ("h", "std", "stunden", "timer", "hrs", "hr"),
         "day": ("d", "tage", "dager", "days"),
     },
-    "m": {"m": ("meter", "metre", "meters", "metres"), "mm": ("millimeter",), "cm": (), "km": (),
+    "m": {"m": ("meter", "metre", "meters", "metres", "mtr"), "mm": ("millimeter",), "cm": (), "km": (),
           "foot": ("ft", "feet")},
     "rad": {"deg": ("°", "grad", "grader", "degree", "degrees"), "rev": ("u", "umdr", "omdr", "turns", "revs")},
     "W": {"kW": ("kw",), "metric_horsepower": ("ps", "hk"), "W": ("watt",), "MW": ("megawatt",)},
@@ -117,8 +118,14 @@ AMBIGUOUS: dict[str, dict[str, str]] = {
     "rad/s": dict.fromkeys(("1/s", "s-1", "s^-1", "/s", "hz"), "'rad/s' or 'rev/s'"),
 }  # fmt: skip
 
+# a pressure's unit, and from what it counts: the vacuum (second group) or the air around (third)
+_COUNTED_FROM = re.compile(
+    r"^(.*?\w)[\s_,-]*\(?(?:(a|abs\.?|absolute?)|(g|gauge|rel\.?|relative?|relativ|ü|ue|overtrykk))\)?$"
+)
+_FROM_VACUUM = ("bar", "psi", "Pa", "hPa", "mbar", "kPa", "MPa")  # of what `_DEFINITIONS` has one from the vacuum
+
 _SUPERSCRIPTS = str.maketrans(
-    {"⁻": "-", "²": "^2", "³": "^3", "¹": "1", "·": "*", "⋅": "*", "×": "*", "µ": "u", "μ": "u"}
+    {"º": "°", "⁻": "-", "²": "^2", "³": "^3", "¹": "1", "·": "*", "⋅": "*", "×": "*", "µ": "u", "μ": "u"}
 )
 
 
@@ -128,13 +135,25 @@ def pint_name(unit: str, si_unit: str, where: str = "") -> str:
     choices = AMBIGUOUS.get(si_unit, {}).get(plain)
     if choices:
         raise InputError(f"{where or 'unit'}: unit '{unit}' is ambiguous; write {choices}")
-    return _LOOKUP.get(si_unit, {}).get(plain) or _LOOKUP["1"].get(plain) or _cleaned(unit)
+    return _listed(plain, si_unit) or _LOOKUP["1"].get(plain) or _cleaned(unit)
 
 
 def known_spelling(unit: str, si_unit: str) -> bool:
     """Whether the table lists a spelling for columns of this SI unit, be it an ambiguous one."""
     plain = plain_spelling(unit)
-    return plain in _LOOKUP.get(si_unit, {}) or plain in AMBIGUOUS.get(si_unit, {})
+    return _listed(plain, si_unit) is not None or plain in AMBIGUOUS.get(si_unit, {})
+
+
+def _listed(plain: str, si_unit: str) -> str | None:
+    """pint's name of a spelling in the table; a pressure's may say behind it from what it counts: `kPa (abs)`."""
+    name = _LOOKUP.get(si_unit, {}).get(plain)
+    said = _COUNTED_FROM.match(plain) if name is None and si_unit == "Pa" else None
+    if said is None:
+        return name
+    base = _LOOKUP["Pa"].get(said[1])
+    if not said[2] or base is None:
+        return base
+    return f"{base}_absolute" if base in _FROM_VACUUM else None
 
 
 def plain_spelling(unit: str) -> str:
@@ -177,6 +196,11 @@ _DEFINITIONS = (
     "gravity = 9.80665 * meter / second ** 2",
     "bar_absolute = 100000 * pascal; offset: -101325",  # to the gauge pressure that a run holds
     "psi_absolute = 6894.757293168 * pascal; offset: -101325",
+    "Pa_absolute = 1 * pascal; offset: -101325",
+    "hPa_absolute = 100 * pascal; offset: -101325",
+    "mbar_absolute = 100 * pascal; offset: -101325",
+    "kPa_absolute = 1000 * pascal; offset: -101325",
+    "MPa_absolute = 1000000 * pascal; offset: -101325",
 )
 
 

@@ -192,6 +192,9 @@ def _with_finite_values(name: str, columns: Columns, place: Place, said: list[st
     return kept
 
 
+_NO_RUN = "; a log with names of its own becomes a run file by winch-friction import"
+
+
 def _with_motor_speed(
     name: str,
     columns: Columns,
@@ -204,7 +207,8 @@ def _with_motor_speed(
     if "drum_speed" not in columns:
         _refuse_empty(name, [each for each in ("motor_speed", "drum_speed") if each in empty][:1])
         near = [said for said in aside or {} if meant("motor_speed", [said.partition("[")[0].strip()])]
-        slip = f"'{near[0]}': did you mean motor_speed?" if near else f"found {', '.join(columns)}"
+        found = f"found {', '.join(columns)}" + (_NO_RUN if set(columns) <= {"time"} and aside else "")
+        slip = f"'{near[0]}': did you mean motor_speed?" if near else found
         raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing; {slip}")
     if crane is None:
         raise InputError(f"{name}: 'drum_speed' needs the crane's gear ratio to become 'motor_speed'; give the crane")

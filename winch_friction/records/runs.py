@@ -47,7 +47,7 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
         from winch_friction.records.parquet_file import read_parquet_run
 
         return read_parquet_run(path, crane, complete)
-    raise InputError(f"{path}: not a kind of run file that is known; use {KINDS}")
+    raise InputError(f"{path}: not a kind of run file that is known; use {KINDS} (winch-friction import reads others)")
 
 
 def read_runs(paths: Iterable[Path | str], crane: Crane | None = None, **options: Any) -> list[Run]:

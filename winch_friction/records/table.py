@@ -69,10 +69,16 @@ class Table:
         return value
 
     def refuse(self, column: str, bad: Any, reason: str) -> None:
-        """Raise `InputError` at the first row where `bad` is true."""
-        if np.any(bad):
-            k = int(np.argmax(bad))
-            raise InputError(f"{self.path} row {self.rows[k]}: column '{column}' = {self.cells[column][k]} {reason}")
+        """Raise `InputError` at the first row where `bad` is true, with the rows of the others."""
+        places = [int(k) for k in np.flatnonzero(bad)]
+        if not places:
+            return
+        first, *others = places
+        shown = ", ".join(str(self.rows[k]) for k in others[:_SHOWN])
+        more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
+        also = f"; the same in row {shown}{more}" if others else ""
+        cell = self.cells[column][first]
+        raise InputError(f"{self.path} row {self.rows[first]}: column '{column}' = {cell} {reason}{also}")
 
 
 def read_table(path: Path) -> Table:

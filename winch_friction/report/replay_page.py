@@ -81,18 +81,24 @@ def next_steps(content: Mapping[str, Any]) -> list[str]:
 
 
 def torque_plot(compensator: Run, estimator: Run) -> Plot:
-    """Feedforward and learned friction above, the speed that they were computed for below."""
+    """Feedforward and learned friction above; the measured speed below, and the one that the feedforward took."""
     start = compensator.time[0]
-    names = ("feedforward [N·m]", "friction by the learned model [N·m]", "motor speed [rpm]")
+    names = ("feedforward [N·m]", "friction by the learned model [N·m]", "motor speed [rpm]", "taken speed [rpm]")
     fed = {
         TIME: compensator.time - start,
         names[0]: compensator["friction_torque"],
-        names[2]: compensator["speed"] / RPM,
+        names[3]: compensator["speed"] / RPM,
     }
-    learned = {TIME: estimator.time - start, names[1]: estimator["friction_torque"]}
+    learned = {
+        TIME: estimator.time - start,
+        names[1]: estimator["friction_torque"],
+        names[2]: estimator["speed"] / RPM,
+    }
     lines = [Line("feedforward", TIME, names[0], 0, 0, "after"),
              Line("friction by the learned model", TIME, names[1], 1, 0, "before"),
-             Line("speed", TIME, names[2], 0, 1, "measured")]  # fmt: skip
+             Line("speed", TIME, names[2], 1, 1, "measured")]  # fmt: skip
+    if np.any(compensator["speed"] != 0.0):  # waiting, it takes none
+        lines.append(Line("speed that the feedforward took", TIME, names[3], 0, 1, "after"))
     frames, rows = [Frame("compensator", fed), Frame("estimator", learned)], ["friction torque [N·m]", names[2]]
     return Plot("Friction torque", frames, lines, TIME, rows, "Torque at the motor shaft, all motors.", "time")
 

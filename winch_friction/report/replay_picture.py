@@ -17,7 +17,8 @@ def replay_figure(compensator: Run, estimator: Run, seed: FrictionModel) -> Any:
     figure, axes = new_figure(3, 1, height=2.5, sharex=True)
     start = compensator.time[0]
     _torque(axes[0], compensator, estimator, start)
-    axes[1].plot(compensator.time - start, compensator["speed"] / RPM, color=COLOURS[0])
+    axes[1].plot(compensator.time - start, compensator["speed"] / RPM, color=COLOURS[0], alpha=0.5)
+    axes[1].plot(estimator.time - start, estimator["speed"] / RPM, color="0.2", linewidth=0.8)
     axes[1].set_ylabel("motor speed, rpm")
     _parameters(axes[2], estimator, seed, start)
     axes[2].set_xlabel("time, s")

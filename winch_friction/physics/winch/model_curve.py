@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.physics.channels import BAR, GRAVITY, RPM
+from winch_friction.physics.channels import BAR, FASTEST_ROPE, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
@@ -19,6 +19,7 @@ LOWEST_SPEED = 5.0 * RPM  # rad/s; at rest friction is whatever holds the load
 OF_RATED = (15.0 / 150.0, 55.0 / 150.0, 100.0 / 150.0)  # the papers' loads, of a crane rated for 150 t
 _HOLDING = 300.0 * BAR  # of the papers' motors in service
 _RATED_OF_HELD = 0.4  # of what the motors hold then on the innermost layer, a crane is rated for; 150 of 359 t theirs
+_DRAWN = 200  # speeds of a curve
 _BALANCE_STEPS = 4  # the pressure that carries the friction moves the friction by under 2 %: each step gains two digits
 
 
@@ -61,8 +62,8 @@ def model_curve(
 ) -> ModelCurve:
     """The friction of `model` on `crane` at a hanging mass `load` kg and a motor setting `displacement` m^3/rad.
 
-    `speed` in rad/s, default 5 ... 2000 rpm hoisting; the group that drives is `main`, or the crane's first. Raises
-    `InputError` for a load, setting or speed that cannot be.
+    `speed` in rad/s, default hoisting, 5 ... 2000 rpm or as far as the crane can run (`usual_speeds`); the group that
+    drives is `main`, or the crane's first. Raises `InputError` for a load, setting or speed that cannot be.
     """
     crane = corrected_crane(crane, model.corrections)
     setting = crane.max_displacement if displacement is None else float(displacement)
@@ -70,7 +71,7 @@ def model_curve(
         raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")
     if crane.drive.hydraulic and not 0.0 < setting <= 1.001 * crane.max_displacement:
         raise InputError(f"displacement {setting:g} m^3/rad is outside 0 ... {crane.max_displacement:g} of the motor")
-    omega = np.asarray(np.linspace(LOWEST_SPEED, TOP_SPEED, 200) if speed is None else speed, float)
+    omega = np.asarray(usual_speeds(model, crane) if speed is None else speed, float)
     if omega.ndim != 1 or not omega.size or not np.isfinite(omega).all():
         raise InputError("speed: give one finite speed or more, rad/s")
     group = "main" if "main" in crane.groups else next(iter(crane.groups), "")
@@ -93,6 +94,20 @@ def model_curve(
     at = points(drop)
     parts = {name: np.array(part, float) for name, part in model.contributions(at, _settled(model, at)).items()}
     return ModelCurve(model.name, load, setting, omega, _torque(model, at), _std(model, at), parts, drop)
+
+
+def usual_speeds(model: FrictionModel, crane: Crane) -> FloatArray:
+    """Speeds (n,) rad/s of a curve: 5 ... 2000 rpm; of a crane that names no rated speed to where its rope runs off
+    faster than any, and of an electric one to where friction alone takes its torque limit. From a 400th at most.
+    """
+    top = TOP_SPEED
+    if not crane.rated_speed:
+        top = min(top, FASTEST_ROPE * crane.gear_ratio / crane.drum.layer_radii[0])
+    if not crane.drive.hydraulic and np.isfinite(crane.absolute_torque_limit):
+        tried = np.geomspace(1e-4 * top, top, _DRAWN)
+        beyond = np.abs(model_curve(model, crane, speed=tried).torque) > crane.absolute_torque_limit
+        top = float(tried[int(np.argmax(beyond))]) if beyond.any() else top
+    return np.linspace(min(LOWEST_SPEED, top * LOWEST_SPEED / TOP_SPEED), top, _DRAWN)
 
 
 def _torque(model: FrictionModel, at: tuple[FloatArray, ...]) -> FloatArray:

@@ -1,0 +1,76 @@
+"""A supplier's table that is well formed and not what its headers say: told with every row, before it is a model."""
+
+import pytest
+
+from winch_friction.identification.supplier_file import read_supplier_table
+from winch_friction.identification.supplier_table import FitRange
+from winch_friction.physics.errors import InputError
+
+AXES = "speed [rpm],pressure [bar],displacement [cm^3/rev]"
+ROWS = [(n, p, d) for n in (500, 1500, 2500) for p in (50, 200, 350) for d in (40, 107)]
+
+
+@pytest.fixture
+def read(tmp_path):
+    def made(column, value, axes=AXES):
+        rows = [f"{n},{p},{d},{value(n, p, d)}" for n, p, d in ROWS]
+        (tmp_path / "table.csv").write_text("\n".join([f"{axes},{column}", *rows]))
+        return read_supplier_table(tmp_path / "table.csv")
+
+    return made
+
+
+def nominal(p, d):
+    return p * d / 62.83185
+
+
+def lost(n, p, d):
+    return 4.0 + 0.002 * n + 0.03 * nominal(p, d)
+
+
+WRONG = {
+    "what reaches the shaft": ("torque_loss [N*m]", lambda n, p, d: nominal(p, d) - lost(n, p, d), "name it 'torque'"),
+    "what is lost": ("torque [N*m]", lost, "name it 'torque_loss'"),
+    "newton centimetres": ("torque_loss [N*m]", lambda n, p, d: 100.0 * lost(n, p, d), "correct the unit"),
+    "a loss in per cent": ("efficiency [%]", lambda n, p, d: 100.0 * lost(n, p, d) / nominal(p, d), "not what is"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_motor_that_loses_most_of_its_torque_is_a_wrong_column(read, case):
+    """Fitted without a word: K3 = 0.2, and a friction of the whole torque."""
+    column, value, said = WRONG[case]
+    with pytest.raises(InputError, match=said) as caught:
+        read(column, value)
+    assert "row 7: column" in str(caught.value)
+    assert "of the largest torque D dp, 596" in str(caught.value)
+
+
+def test_the_right_columns_are_read_alike(read):
+    tables = [read("torque_loss [N*m]", lost), read("torque [N*m]", lambda n, p, d: nominal(p, d) - lost(n, p, d)),
+              read("efficiency", lambda n, p, d: 1.0 - lost(n, p, d) / nominal(p, d))]  # fmt: skip
+    for table in tables:
+        assert table.torque_loss == pytest.approx(tables[0].torque_loss, rel=1e-4)
+
+
+def test_every_wrong_row_is_told_at_once(read):
+    """The first row alone was, and the second kind after the first was mended."""
+    with pytest.raises(InputError) as caught:
+        read("efficiency [%]", lambda n, p, d: 109.0 if p == 50 else -3.0 if n == 2500 else 90.0)
+    above, below = caught.value.problems
+    assert "row 2: column 'efficiency' = 109.0 is above 1 (100 %)" in above
+    assert above.endswith("; the same in row 3, 8, 9 and 2 more")
+    assert "row 16: column 'efficiency' = -3.0 is not above 0" in below
+
+
+def test_a_refused_number_is_told_with_the_unit_of_its_header(read):
+    with pytest.raises(InputError, match=r"'pressure' = 350 is no motor's: .* 2000 bar; .* the header \('MPa'\)"):
+        read("torque_loss [N*m]", lost, AXES.replace("bar", "MPa"))
+
+
+def test_a_range_that_leaves_nothing_says_where_the_table_lies(read):
+    """Speeds without a unit are rad/s: nobody saw it."""
+    table = read("torque_loss [N*m]", lost, AXES.replace(" [rpm]", ""))
+    with pytest.raises(InputError, match=r"speed 4775 \.\.\. 2\.387e\+04 rpm \(400 \.\.\. 2500 count\)") as caught:
+        FitRange().select(table)
+    assert "none there: SI" in str(caught.value)

@@ -1,0 +1,130 @@
+"""Which columns of a log are its time, and what to say where none is."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from winch_friction.importing.draft import Draft
+from winch_friction.importing.log import Log, LogColumn, listed
+from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.ticks import fraction_unit
+from winch_friction.importing.time_base import TimeGuess, guess_form, guess_time, to_seconds
+from winch_friction.importing.time_numbers import counts_rows
+from winch_friction.importing.units import fitting_si_unit, header_readings
+
+_DATED = 0.3  # a date beside the clock: worth more than the order of day and month, if open, makes it unsure
+_SURE = 0.5  # how well a name says a time, from which it is one and nothing else
+
+
+def settle_time(draft: Draft) -> None:
+    """Put the likeliest time into the draft's map, or say why no column is one."""
+    best: tuple[float, tuple[LogColumn, ...], TimeGuess] | None = None
+    for columns in _time_candidates(draft.logs[0]):
+        bare, unit = _time_reading(columns[0])
+        if unit and fitting_si_unit("time", unit) is None:
+            continue
+        named = _named(bare)
+        guess = guess_time(columns, unit)
+        if guess is None or (not named and not _steady(draft.logs[0], columns)):
+            continue
+        worth = 0.3 + named + 0.2 * (not columns[0].numeric) + _DATED * (len(columns) > 1) + guess.confidence
+        if best is None or worth > best[0]:
+            because = f"name '{columns[0].name}', {guess.because}" if named else f"rises steadily, {guess.because}"
+            best = (
+                worth,
+                tuple(columns),
+                replace(guess, because=because, confidence=guess.confidence * (1.0 if named else 0.7)),
+            )
+    if best is None:
+        draft.problems.append(f"time: {_why_none(draft.logs[0])}")
+        return
+    _, columns, guess = best
+    columns, guess = _with_fraction(draft.logs[0], columns, guess)
+    draft.log_map = replace(
+        draft.log_map, time_from=tuple(c.name for c in columns), time=guess.base, time_confidence=guess.confidence,
+        time_because=guess.because,
+    )  # fmt: skip
+    if guess.question:
+        draft.questions.append(f"time: {guess.question}")
+    first = columns[0]
+    if (
+        len(columns) == 1
+        and first.numeric
+        and not _is_named(first)
+        and counts_rows(first.values[np.isfinite(first.values)])
+    ):
+        draft.questions.append(
+            f"time: '{first.name}' rises by 1 from row to row: does it count rows? say the time from one to the next, "
+            "--set 'time.unit=20 ms' for 50 rows a second; --set time.unit=s if it counts seconds"
+        )
+
+
+def _why_none(log: Log) -> str:
+    """Why no column is the time: it falls, it goes back, its cells are read by no form, or there is none."""
+    named = [c for c in log.columns if _is_named(c)]
+    turned = lambda c: replace(c, values=c.values[::-1], text=None if c.text is None else c.text[::-1])
+    for column in named:
+        if guess_time([turned(column)], _time_reading(column)[1]) is not None:
+            return f"'{column.name}' falls from row to row, the newest first; sort the log by time"
+    for column in named:
+        form = guess_form([column], _time_reading(column)[1])
+        if form is not None:
+            seconds = to_seconds([column], form.base, "time", log.place, strict=False)
+            back = int(np.nanargmin(np.diff(seconds)))
+            return (
+                f"'{column.name}' goes back by {seconds[back] - seconds[back + 1]:.6g} s at {log.place(back + 1)}: "
+                "several recordings in one file, or rows out of order? cut the log there, or sort it by time"
+            )
+    for column in named:
+        cell = "" if column.text is None else next((str(c) for c in column.text if str(c).strip()), "")
+        if cell:
+            return (
+                f"no form of time reads the cells of '{column.name}', such as '{cell[:40]}'; write them as "
+                "2026-03-01T10:00:00.000, or as seconds"
+            )
+    return f"no column of times found among {listed(c.name for c in log.columns)}"
+
+
+def _is_named(column: LogColumn) -> bool:
+    """Whether a column bears the name of a time, and not a `t` beside other words."""
+    return _named(_time_reading(column)[0]) > _SURE
+
+
+def _named(bare: str) -> float:
+    return name_score("time", name_concepts(bare))
+
+
+def _with_fraction(
+    log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess
+) -> tuple[tuple[LogColumn, ...], TimeGuess]:
+    """The time with the column that holds its fractions of a second, where the log keeps them apart."""
+    whole = to_seconds(columns, replace(guess.base, spread=False), "time", log.place, strict=False)
+    for column in log.columns:
+        unit = "" if column in columns else fraction_unit(whole, column)
+        if unit:
+            because = f"{guess.because.partition('; about')[0]}; '{column.name}' holds their fractions in {unit}"
+            base = replace(guess.base, spread=False, fraction=unit)
+            return (*columns, column), replace(guess, base=base, because=because)
+    return columns, guess
+
+
+def _time_reading(column: LogColumn) -> tuple[str, str]:
+    """Name and unit of a column, the unit one of time where the header has several readings."""
+    readings = [(bare, unit or column.unit) for bare, unit in header_readings(column.name)]
+    return next((r for r in readings if not r[1] or fitting_si_unit("time", r[1]) is not None), readings[0])
+
+
+def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:
+    single = [(c,) for c in log.columns]
+    texts = [c for c in log.columns if not c.numeric]
+    return single + [(a, b) for a in texts for b in texts if a is not b]
+
+
+def _steady(log: Log, columns: Sequence[LogColumn]) -> bool:
+    """Whether a column without the name of a time rises like one: by the same step from row to row, or as dates."""
+    if not columns[0].numeric:
+        return True
+    steps = np.diff(columns[0].values)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    return usual > 0.0 and float(np.mean(np.abs(steps - usual) < 0.5 * usual)) > 0.9 and columns[0] is log.columns[0]

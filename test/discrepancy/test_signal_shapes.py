@@ -36,7 +36,10 @@ def group(count, balances, a=150e5, b=25e5):
     )
 
 
-def run(groups=(group(3, True), group(8, False)), start=0.0, dt=0.02, **channels):
+BOTH = group(3, True), group(8, False)
+
+
+def run(groups=BOTH, start=0.0, dt=0.02, **channels):
     return SimpleNamespace(
         time=TIME, groups=groups, start=start, dt=dt, channels={k: v * np.ones(len(TIME)) for k, v in channels.items()},
         predicted=TIME**2, from_speed=3.0 * TIME,

@@ -27,7 +27,7 @@ def run(used=AT >= 0.0, load=4e5):
     point = {"speed_magnitude": 200.0 * AT, "drum_torque": load * (1.0 + AT)}
     return SimpleNamespace(
         time=AT, used=used, speed=200.0 * AT, groups=(group(3, 2e-5), group(8, 1e-5)), gear_ratio=250.0,
-        drum_torque=point["drum_torque"], constants=(("max_displacement", 3e-5),),
+        drum_torque=point["drum_torque"], constants=(("max_displacement", 4e-5),),
         point=[point.get(each.name, np.zeros(COUNT)) for each in WINCH_SIGNALS],
     )  # fmt: skip
 
@@ -54,7 +54,7 @@ def test_a_signal_of_one_value_draws_no_curve(load, drawn):
 def test_a_groups_flow_is_that_of_its_motors_and_what_is_left_of_their_stroke_is_of_each():
     own = run()
     assert module._values(FLOW, own)[-1] == pytest.approx(0.5 * (3 * 2e-5 + 8 * 1e-5) * 200.0)
-    assert module._values(LEFT, own)[-1] == pytest.approx(0.5 * (1e-5 + 2e-5))
+    assert module._values(LEFT, own)[-1] == pytest.approx(0.5 * (2e-5 + 3e-5))
 
 
 def test_a_curve_that_the_model_has_already_is_not_drawn_again():

@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -17,6 +18,19 @@ def test_layers_are_kept():
     command = [str(Path(sys.executable).with_name("lint-imports")), "--config", "pyproject.toml", "--no-cache"]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout
+
+
+def test_the_page_of_the_architecture_has_the_layers_and_every_room():
+    """Five files of the discrepancy workflow stood in no room, three packages in no layer."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    layers = {tuple(each["containers"]): each["layers"] for each in contracts if each["type"] == "layers"}
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    assert " → ".join(f"`{layer}`" for layer in layers["winch_friction",]) in page.replace("\n", " ")
+    rooms = set(re.findall(r"\w+", " ".join(layers["winch_friction.discrepancy",])))
+    found = {path.stem for path in (ROOT / "winch_friction" / "discrepancy").glob("*") if path.stem.isidentifier()}
+    assert rooms == found - {"__init__", "__pycache__"}
+    table = re.findall(r"^\| (`.*`) \|", page.partition("The rooms of `discrepancy/`")[2], re.MULTILINE)
+    assert set(re.findall(r"\w+", " ".join(table))) == rooms
 
 
 @pytest.mark.parametrize("package", ["physics", "estimation", "compensation"])

@@ -8,10 +8,14 @@ import pytest
 
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot
 from winch_friction.discrepancy.engine.chance import (
+    _closest,
+    _designs,
     _frequency,
     _near_curve,
     chance_of_no_gain,
     dependences,
+    least_part,
+    near,
     rivals_of,
     rms_with_interval,
 )
@@ -113,3 +117,65 @@ def test_what_a_signal_predicts_does_not_hang_on_the_gaps_unit():
     bar, torque = (told(remainder({"speed": speed}, weight), 3.0 * speed**2 + noise()) for weight in (1.0, 0.02))
     assert torque.share == pytest.approx(bar.share)
     assert torque.size == pytest.approx(50.0 * bar.size)
+
+
+# -- what stands in for what was found
+A, B, CURVE, PLAIN = (
+    Slot("found", "", (1,)), Slot("other", "", (2,)), Slot("other", "", (3,), law="curve", free=True),
+    Slot("coulomb", "", (4,), plain=True),
+)  # fmt: skip
+
+
+def crossed(left, slots, floor=0.0):
+    """A cross-fit that leaves so much of each set of slots."""
+
+    def explain(own):
+        loss = left[tuple(own)]
+        return replace(loses(A, np.full(40, loss / 40.0)), slots=tuple(own))
+
+    return SimpleNamespace(
+        explain=explain, train_loss=lambda own: (left[tuple(own)], None), floor=floor,
+        problem=SimpleNamespace(slots=slots, grams=SimpleNamespace(count=np.ones(1))),
+    )  # fmt: skip
+
+
+def test_of_causes_that_a_curve_may_be_each_has_the_law_that_leaves_least():
+    """Found is a curve: of the other cause its own curve is as good, although a law speaks for it."""
+    law = replace(B, law="law")
+    found = [loses(law, [2.0]), loses(CURVE, [1.0]), loses(A, [3.0])]
+    assert [each.slots[-1] for each in _closest(found)] == [CURVE, A]
+
+
+@pytest.mark.parametrize(("loss", "close"), [(54.0, ["other"]), (56.0, [])])
+def test_what_takes_half_of_what_an_effect_takes_is_looked_at_closer(loss, close):
+    cross = crossed({(): 100.0, (A,): 10.0, (B,): loss}, (A, B))
+    assert [slot.name for slot in near(cross, cross.explain((A,)))] == close
+
+
+def test_nothing_stands_in_for_what_every_machine_has():
+    """It comes first anyhow."""
+    cross = crossed({(): 100.0, (PLAIN,): 10.0, (B,): 12.0}, (PLAIN, B))
+    assert near(cross, cross.explain((PLAIN,))) == []
+
+
+def test_a_law_that_takes_little_is_not_near_a_curve_however_small_the_gap_is():
+    """It leaves less than twice what the curve does, but of 3 above the floor it takes hardly a third of the 2.9."""
+    curve = replace(A, free=True)
+    cross = crossed({}, (), floor=0.0)
+    current, without = loses(curve, [2.0]), loses(curve, [3.0])
+    assert _near_curve(cross, loses(B, [2.4]), current, without, 0)
+    assert not _near_curve(cross, loses(B, [2.6]), current, without, 0)
+
+
+def test_the_least_needed_of_several_names_is_what_is_asked_for():
+    """Of 90 that both save, 60 are lost without the one and 9 without the other."""
+    cross = crossed({(): 100.0, (A, B): 10.0, (A,): 19.0, (B,): 70.0}, (A, B))
+    assert least_part(cross, cross.explain((A, B)), ("found", "other")) == pytest.approx(0.1)
+
+
+def test_where_a_signal_is_absent_it_predicts_nothing():
+    """Half of the runs have no temperature: what they keep is not what a missing one says."""
+    degrees = np.where(RUN < 4, np.sin(np.arange(RUNS * BLOCKS) / 7.0), np.nan)
+    for design in _designs(degrees, SIGN):
+        assert not design[RUN >= 4].any()
+        assert design[RUN < 4].any()

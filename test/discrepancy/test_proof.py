@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import linregress
 
+from winch_friction.discrepancy import proof as module
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
 
@@ -49,6 +50,17 @@ def test_a_further_name_takes_more_off_than_a_balance_closes_by(fewer, worth):
 def test_a_run_is_worse_where_it_leaves_the_floor_and_what_it_was(before, after, worse):
     kept = np.where(RUN == 3, after, 0.05)
     assert worse_runs(side(kept, np.where(RUN == 3, before, 0.05)), np.random.default_rng(0)) == ("run 3",) * worse
+
+
+@pytest.mark.parametrize(
+    ("runs", "chance", "worse"), [(1, 4e-3, 1), (1, 6e-3, 0), (2, 4e-3, 0), (2, 2.4e-3, 2), (8, 1.9e-3, 8)]
+)
+def test_of_many_locked_runs_each_must_be_surer_to_be_worse(monkeypatch, runs, chance, worse):
+    """One of eight seems worse by chance eight times as often; but no chance is smaller than so many draws can tell."""
+    monkeypatch.setattr(module, "chance_of_no_gain", lambda *_: chance)
+    own = side(0.3, 0.1)
+    own.runs = own.runs[:runs]
+    assert len(worse_runs(own, np.random.default_rng(0))) == worse
 
 
 @pytest.mark.parametrize(("after", "enough"), [(0.19, False), (0.21, True)])

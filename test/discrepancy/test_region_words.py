@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from winch_friction.discrepancy.engine.blocks import find_regions
 
@@ -49,3 +50,32 @@ def test_a_signal_that_has_nothing_to_do_with_the_direction_keeps_its_words():
     first = regions(gap, **{"active.pressure": pressure})[0]
     assert first.where.startswith("active.pressure > ")
     assert "ing" not in first.where
+
+
+def test_a_region_is_said_in_the_units_that_people_read_with_its_share_of_the_whole_gap():
+    """Two parts of two speeds, of 5 and of 3 squared over as many blocks; the second is a share of all as well."""
+    speed = np.linspace(0.0, 100.0, 600)
+    gap = np.where(speed > 85.0, 5.0, np.where(speed < 15.0, -3.0, 0.0))
+    blocks = SimpleNamespace(y=gap, direction=DIRECTION, features={"motor_speed": speed})
+    first, second = find_regions(blocks, gap, {"motor_speed": (60.0 / (2.0 * np.pi), "rpm")})[:2]
+    assert first.where == "motor_speed > 812 rpm"
+    assert second.where == "motor_speed < 143 rpm"
+    assert (first.mean_residual, second.mean_residual) == (5.0, -3.0)
+    assert first.share_of_gap == pytest.approx(25.0 / 34.0, abs=0.01)
+    assert first.share_of_gap + second.share_of_gap == pytest.approx(1.0, abs=1e-9)
+
+
+def test_what_is_said_already_is_no_second_region():
+    """Where one part has all of the gap, nothing is left to say."""
+    speed = np.linspace(0.0, 100.0, 600)
+    gap = np.where(speed > 85.0, 5.0, 0.0)
+    blocks = SimpleNamespace(y=gap, direction=DIRECTION, features={"motor_speed": speed})
+    assert [each.where for each in find_regions(blocks, gap, {})] == ["motor_speed > 85"]
+
+
+def test_a_handful_of_blocks_is_no_region():
+    """However far off: an outlier is nothing that a region says."""
+    direction = np.where(np.arange(600) < 590, 1.0, -1.0)
+    gap = np.where(direction < 0.0, 50.0, 0.0) + RNG.normal(0.0, 0.1, 600)
+    blocks = SimpleNamespace(y=gap, direction=direction, features={})
+    assert "lowering" not in [each.where for each in find_regions(blocks, gap, {})]

@@ -112,12 +112,13 @@ def test_a_leak_is_missing_as_a_ripple_is(beside):
     assert module._judged(Trial(searched(), None, side(), side()), "", RNG).verdict.kind == NOTHING
 
 
-@pytest.mark.parametrize("worse", [(), ("run 3",)])
+@pytest.mark.parametrize("worse", [(), ("run 3",), ("run 3", "run 5")])
 def test_what_shows_just_after_reversals_makes_no_locked_run_worse(monkeypatch, worse):
     monkeypatch.setattr(module, "worse_runs", lambda *_: worse)
     search = searched(reversal=SimpleNamespace(slot=SLOTS[0]))
     trial = Trial(search, None, side(), side())
-    assert module._stands(search, trial, lambda _: trial, RNG) == ((None, "run 3") if worse else (trial, ""))
+    said = f"{SLOTS[0].name}: the gap of {', '.join(worse)} grows"  # two runs were said as one, `run 3run 5`
+    assert module._stands(search, trial, lambda _: trial, RNG) == ((None, said) if worse else (trial, ""))
 
 
 @pytest.mark.parametrize(("late", "stands"), [(0.007, False), (0.014, True)])

@@ -130,6 +130,28 @@ def test_waveforms_of_a_tdms_file_begin_when_they_say(tmp_path):
         assert sum("wf_start_time" in note for note in log.notes) == notes
 
 
+@pytest.mark.parametrize("kind", ["tdms", "mf4"])
+def test_channels_of_one_name_in_two_groups_are_two_columns(tmp_path, kind):
+    """Each motor's controller logs its `Druck` with times of its own: the import ended in a traceback."""
+    time = 0.02 * np.arange(500)
+    if kind == "tdms":
+        nptdms = pytest.importorskip("nptdms")
+        with nptdms.TdmsWriter(tmp_path / "log.tdms") as writer:
+            writer.write_segment([
+                nptdms.ChannelObject(f"motor {k}", "Druck", time + k, {"wf_increment": 0.02}) for k in range(2)
+            ] + [nptdms.ChannelObject("crane", "Druck", time + 9.0)])  # fmt: skip
+    else:
+        asammdf = pytest.importorskip("asammdf")
+        with asammdf.MDF(version="4.10") as file:
+            for k in range(2):
+                file.append([asammdf.Signal(time + k, time, name="Druck")])
+            file.save(tmp_path / "log.mf4", overwrite=True)
+    log = read_log(tmp_path / f"log.{kind}")
+    assert [column.name for column in log.columns] == ["time", "Druck", "Druck #2"]
+    assert log.column("Druck #2").values == pytest.approx(time + 1.0)
+    assert sum("without times left out: 'Druck'" in note for note in log.notes) == (kind == "tdms")
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_a_log_of_this_kind(tmp_path, crane_150t, name):
     run = example(RUN)

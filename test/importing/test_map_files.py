@@ -33,6 +33,7 @@ WRONG = [
     "schema: winch_friction.map/2\ncolumns: {motor_speed: {from: n}}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n, sign: 0}}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n, at: hook}}",
+    "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n, unit: rad, differentiate: -2.0}}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {unit: rpm}}",
     "schema: winch_friction.map/1\ncolumns: {}",
     "schema: winch_friction.map/1\ncolumns: {motor_speed: {from: n}}\ntime: {form: sundial}",

@@ -34,6 +34,15 @@ def test_noon_and_midnight_are_twelve_hours_apart(cell, hours):
 
 
 @pytest.mark.parametrize(
+    ("cell", "year"), [("15.06.24", 2024), ("15.06.69", 2069), ("15.06.98", 1998), ("15.06.1998", 1998)]
+)
+def test_a_year_of_two_digits_is_of_the_last_century_or_of_this_one(cell, year):
+    """A log of 1998 was dated to the year 98."""
+    (found,) = seconds(texts(f"{cell} 12:00:00"), TimeBase("datetime", order="dmy"))
+    assert found == pytest.approx(np.datetime64(f"{year}-06-15T12", "s").astype(float))
+
+
+@pytest.mark.parametrize(
     ("zone", "hours"), [("Z", 0.0), ("UTC", 0.0), ("+02:00", 2.0), ("-0530", -5.5), ("+0100", 1.0)]
 )
 def test_a_zone_east_of_greenwich_is_ahead(zone, hours):

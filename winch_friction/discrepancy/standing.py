@@ -128,8 +128,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     full = trial_of(search)
     names = ", ".join([*search.explanation.names, *([search.reversal.slot.name] if search.reversal else [])])
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
-        worse = "".join(worse_runs(full.holdout, rng))
-        return (None, worse) if worse else (full, "")
+        worse = ", ".join(worse_runs(full.holdout, rng))
+        return (None, f"{names}: the gap of {worse} grows") if worse else (full, "")
     if nobodys(refit.holdout) and search.cross.excess(search.selection.base) <= 0.0:
         return None, f"{names}: what a mere refit of the model leaves of either runs is less than anybody's effect"
     proof = prove(names, refit.holdout, full.holdout, rng)

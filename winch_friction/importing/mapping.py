@@ -101,6 +101,9 @@ def _entry(section: Section) -> Entry:
     factor = section.number("factor", 1.0)
     if factor == 0.0:
         raise InputError(f"{section.where}: factor must not be 0")
+    cutoff = section.number("differentiate", 0.0)
+    if cutoff < 0.0:
+        raise InputError(f"{section.where}: differentiate must be a frequency in Hz, or 0 for none, found {cutoff:g}")
     constant = section.text("constant", "")
     entry = Entry(
         source=section.text("from", "") if constant else section.text("from"),
@@ -110,7 +113,7 @@ def _entry(section: Section) -> Entry:
         factor=factor,
         of=section.text("of", ""),
         at=_choice(section, "at", PLACES, "motor"),
-        differentiate=max(0.0, section.number("differentiate", 0.0)),
+        differentiate=cutoff,
         confidence=section.number("confidence", 1.0),
         because=section.text("because", ""),
     )

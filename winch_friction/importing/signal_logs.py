@@ -83,7 +83,7 @@ def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[s
     columns = [number_column(TIME, base, "s")]
     names = unique_names([TIME, *(each.name for each in timed)])[1:]
     columns += [_column(name, each, base) for name, each in zip(names, timed, strict=True)]
-    left = [each.name for each in signals if each not in timed]
+    left = [each.name for each in signals if all(each is not one for one in timed)]  # two may bear one name
     notes = (
         [f"{len(others)} signals have times of their own: held at their latest value on the times of the densest"]
         if others
@@ -117,9 +117,7 @@ def _of_one_length(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], 
 
 def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
     values = np.asarray(signal.values)
-    if base is not None and signal.times is not None and len(signal.times) != len(base) or (
-        base is not None and signal.times is not None and not np.array_equal(signal.times, base)
-    ):  # fmt: skip
+    if base is not None and signal.times is not None and not np.array_equal(signal.times, base):
         index = np.searchsorted(signal.times, base, side="right") - 1
         values = np.where(index >= 0, values[np.maximum(index, 0)], np.nan)
     if np.issubdtype(values.dtype, np.datetime64):

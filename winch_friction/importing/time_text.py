@@ -26,6 +26,7 @@ _IEC = re.compile(
     r"^(?:T|TIME|LT)#(?:([\d.]+)d_?)?(?:([\d.]+)h_?)?(?:([\d.]+)m_?)?(?:([\d.]+)s_?)?(?:([\d.]+)ms_?)?(?:([\d.]+)us)?$",
     re.IGNORECASE,
 )  # a controller's T#1m2s345ms
+_SHORT_YEAR, _THIS_CENTURY = 2, 70  # digits; years of so few digits below it are after 2000
 _IEC_SECONDS = (86_400.0, 3600.0, 60.0, 1.0, 1e-3, 1e-6)
 
 
@@ -66,7 +67,9 @@ def days_since_1970(key: tuple[str, str, str], order: str, where: str) -> float:
     named = dict(zip(order, key, strict=True))
     month = named["m"]
     number = int(month) if month.isdigit() else _MONTHS.get(month[:3].lower(), 0)
-    year = int(named["y"]) + (2000 if int(named["y"]) < 70 and len(named["y"]) <= 2 else 0)
+    year = int(named["y"])
+    if len(named["y"]) <= _SHORT_YEAR:
+        year += 2000 if year < _THIS_CENTURY else 1900
     try:
         return (datetime(year, number, int(named["d"])) - datetime(1970, 1, 1)).days
     except ValueError as error:

@@ -181,10 +181,10 @@ def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequen
 
 def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candidate | None:
     curve, shares = len(row.signals) == 1, _shares(row, fine)
-    knots = [_knots(_covered(signal, row.scope, runs), shares) for signal in row.signals]
+    knots = [_knots(_covered(signal, runs), shares) for signal in row.signals]
     if any(len(at) < 3 or np.ptp(at) <= 1e-6 * np.abs(at).max() for at in knots):
         return None
-    size = np.prod([max(float(np.median(np.abs(_covered(each, row.scope, runs)))), 1e-12) for each in row.times])
+    size = np.prod([max(float(np.median(np.abs(_covered(each, runs)))), 1e-12) for each in row.times])
     torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
     count = max(float(np.median([sum(g.count for g in run.groups) or 1 for run in runs])), 1.0)
     term = tabulated(_table(row, knots, 0.05 * torque / float(size) / (1.0 if row.scope is Scope.SHAFT else count)))
@@ -274,7 +274,7 @@ def _unit(times: tuple[str, ...]) -> str:
     return quotient_unit("N*m", *((FACTORS[name][1], 1.0) for name in times))
 
 
-def _covered(signal: str, scope: Scope, runs: Sequence[PreparedRun]) -> FloatArray:
+def _covered(signal: str, runs: Sequence[PreparedRun]) -> FloatArray:
     """What the moving samples of all runs have seen of a signal; empty where no run has it."""
     parts = [_values(signal, run)[run.used] for run in runs if run.used.any()]
     return np.concatenate(parts) if parts else np.array([])

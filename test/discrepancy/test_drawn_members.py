@@ -1,0 +1,85 @@
+"""The curves that data draw and the laws beside a cause's own: where they are looked for, and over what."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.candidates import families as module
+from winch_friction.discrepancy.candidates.candidate import Shape
+from winch_friction.discrepancy.candidates.families import CURVES, FLOW, LEFT, LOAD, SPEED, free_members
+from winch_friction.physics.friction.symbols import WINCH_SIGNALS
+from winch_friction.records.model_file import load_model
+
+COUNT = 400
+AT = np.linspace(0.0, 1.0, COUNT)
+
+
+def group(count, displacement):
+    one = np.ones(COUNT)
+    return SimpleNamespace(
+        count=count, displacement=displacement * one, pressure=1e7 * (1.0 + AT), pressure_sum=2e7 * one
+    )
+
+
+def run(used=AT >= 0.0, load=4e5):
+    """A run whose speed and load rise all the way, with two groups of motors."""
+    point = {"speed_magnitude": 200.0 * AT, "drum_torque": load * (1.0 + AT)}
+    return SimpleNamespace(
+        time=AT, used=used, speed=200.0 * AT, groups=(group(3, 2e-5), group(8, 1e-5)), gear_ratio=250.0,
+        drum_torque=point["drum_torque"], constants=(("max_displacement", 4e-5),),
+        point=[point.get(each.name, np.zeros(COUNT)) for each in WINCH_SIGNALS],
+    )  # fmt: skip
+
+
+def row_of(signal):
+    return next(row for row in CURVES if row.signals == (signal,))
+
+
+def test_a_curve_bends_where_the_winch_has_moved():
+    """A winch that rests shows every pressure and no friction."""
+    slow = run(used=AT < 0.25)
+    knots = module._free(row_of(SPEED), [slow]).term.table.knots[0][1]
+    assert knots[-1] < 50.0 < 0.3 * 200.0
+
+
+@pytest.mark.parametrize(("load", "drawn"), [(4e5, True), (0.0, False)])
+def test_a_signal_of_one_value_draws_no_curve(load, drawn):
+    assert (module._free(row_of(LOAD), [run(load=load)]) is not None) is drawn
+    still = run()
+    still.point[[each.name for each in WINCH_SIGNALS].index("drum_torque")] = np.full(COUNT, 4e5)
+    assert module._free(row_of(LOAD), [still]) is None
+
+
+def test_a_groups_flow_is_that_of_its_motors_and_what_is_left_of_their_stroke_is_of_each():
+    own = run()
+    assert module._values(FLOW, own)[-1] == pytest.approx(0.5 * (3 * 2e-5 + 8 * 1e-5) * 200.0)
+    assert module._values(LEFT, own)[-1] == pytest.approx(0.5 * (2e-5 + 3e-5))
+
+
+def test_a_curve_that_the_model_has_already_is_not_drawn_again():
+    model, runs = load_model("a6vm215_crane2"), [run()]
+    names = [each.term.name for each in free_members(runs, model)]
+    has = SimpleNamespace(term_names=(*model.term_names, names[0]))
+    assert [each.term.name for each in free_members(runs, has)] == names[1:]
+
+
+def test_a_finer_curve_bends_in_the_middle_of_every_interval_as_well():
+    coarse = module._free(row_of(LOAD), [run()])
+    few, many = (each.term.table.knots[0][1] for each in (coarse, coarse.finer()))
+    assert len(many) == 2 * len(few) - 1
+    assert set(few) <= set(many)
+
+
+def test_thick_oil_never_drags_less():
+    """The other laws of viscosity are differences from a reference: their amounts have a sign all the same."""
+    laws = [each for each in module.literature() if each.name == "viscosity_temperature"]
+    assert len(laws) >= 3
+    for law in laws:
+        assert all(shape.bounds[0] == 0.0 for shape in law.shapes([]))
+
+
+def test_of_a_laws_shapes_those_are_tried_that_these_runs_could_show():
+    shapes = [Shape(f"{k}", {"v": float(k)}) for k in range(4)]
+    own = module._possible(lambda values, runs: values["v"] < len(runs), lambda _: shapes, [run(), run()])
+    assert own == shapes[:2]

@@ -1,0 +1,99 @@
+"""The grammar of laws on blocks of which all is known: the amount, who acts, which way, and what is held out."""
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.engine.blocks import Blocks, grams
+from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Law, Scored, _best_of_each
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
+
+RUNS, BLOCKS = 6, 100
+RUN, AT = np.repeat(np.arange(RUNS), BLOCKS), np.arange(RUNS * BLOCKS)
+DIRECTION = np.where(AT % 7 < 4, 1.0, -1.0)
+WIRE, LEVEL = 2.0 + np.sin(AT / 9.0), 3.0 + np.cos(AT / 23.0)
+MEMBERS = np.vstack([np.full(len(AT), 3.0), np.where(RUN < 3, 2.0, 0.0)])  # motors of two groups; the second not always
+PRESSURES = np.vstack([1.0 + np.sin(AT / 5.0) ** 2, 2.0 + np.cos(AT / 11.0)])
+WIRES, LEVELS, GROUPS = Factor("linear", "wire_out"), Factor("linear", "wire_layer"), Factor("linear", "pressure")
+SQUARE = Factor("square", "wire_out")
+VALUES = {WIRES: WIRE[None], LEVELS: LEVEL[None], GROUPS: PRESSURES, SQUARE: WIRE[None] ** 2}
+TORQUE = 0.5  # gap per N m
+
+
+def grammar(gap, shift=0.0, most=2.0, weight=4.0):
+    """Of a gap over six runs of one base parameter, which is nearly nothing; blocks are weighted alike."""
+    x = 1e-6 * np.ones((len(AT), 1))
+    if shift:
+        x = np.ones((len(AT), 1))
+    one = np.ones(1)
+    blocks = Blocks(gap, x, RUN, RUN * 10 + AT % BLOCKS // 20, np.full(len(AT), weight), {}, DIRECTION, AT % BLOCKS)
+    layout = Layout(Base(("b",), 1, one, shift * one, -most * one, most * one), (), one, -most * one, most * one)
+    cross = CrossFit(Problem(layout, blocks, grams(blocks), dict.fromkeys(range(RUNS), 1.0 / weight)))
+    return Grammar(cross, cross.explain(()), np.full(len(AT), TORQUE), DIRECTION, MEMBERS)
+
+
+@pytest.mark.parametrize(
+    ("law", "column"),
+    [
+        (Law((WIRES,), opposing=True), WIRE * DIRECTION),
+        (Law((WIRES,), opposing=False), WIRE),
+        (Law((WIRES, LEVELS), opposing=False), WIRE * LEVEL),
+        (Law((GROUPS,), opposing=True, each=True), (PRESSURES * MEMBERS).sum(axis=0) * DIRECTION),
+        (Law((GROUPS,), opposing=True), (PRESSURES * (MEMBERS > 0.0)).sum(axis=0) * DIRECTION),
+    ],
+)
+def test_an_amount_is_in_newton_metres_of_what_the_law_says(law, column):
+    """Per motor where each has its own, once per group that is there where not; whatever the blocks' noise."""
+    for weight in (1.0, 4.0):
+        search = grammar(7.0 * TORQUE * column, weight=weight)
+        found = search.screened(law, VALUES)
+        assert found.amount == pytest.approx(7.0, rel=1e-6)
+        assert found.inside == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_law_is_judged_on_runs_that_it_was_not_fitted_to():
+    """The first run alone shows it: from the others nothing of it is foretold, and of itself they would be better."""
+    gap = np.where(RUN == 0, TORQUE * WIRE, 0.0)
+    search = grammar(gap)
+    screened = search.screened(Law((WIRES,), opposing=False), VALUES)
+    judged = search.judged(screened, VALUES)
+    before = 16.0 * float(gap @ gap)
+    assert screened.inside < before
+    assert judged.loss > before
+    assert judged.losses.sum() == pytest.approx(judged.loss)
+    assert judged.losses[:5].sum() == pytest.approx(before, rel=1e-6)
+
+
+def test_the_base_takes_only_what_its_seed_allows():
+    """A level that the seed's deviation has room for costs what it is off the seed, from where the columns stand."""
+    near, far = (grammar(np.full(len(AT), 0.01), shift=shift, weight=1.0) for shift in (-0.01, 5.0))
+    law = Law((WIRES,), opposing=True)
+    assert near.screened(law, VALUES).inside < 1e-6 < far.screened(law, VALUES).inside
+
+
+def test_no_law_is_a_product_of_two_functions_of_one_signal():
+    found = grammar(TORQUE * WIRE**3).search(VALUES)
+    assert {len(each.law.factors) for each in found} == {1, 2}
+    assert all(len(each.law.signals) == len(each.law.factors) for each in found)
+
+
+def test_a_product_with_what_each_group_has_acts_once_per_motor():
+    """The wire's length and the pressures of either group: found by what it leaves, and with its number of motors."""
+    gap = 2.0 * TORQUE * WIRE * (PRESSURES * MEMBERS).sum(axis=0) * DIRECTION
+    best = grammar(gap).search(VALUES)[0]
+    assert set(best.law.signals) == {"wire_out", "pressure"}
+    assert best.law.each
+    assert best.amount == pytest.approx(2.0, rel=1e-6)
+
+
+def test_what_acts_one_way_is_the_longer_law_of_two_that_say_the_same():
+    """Friction opposes; a torque of one direction needs a cause that has one."""
+    assert Law((WIRES,), opposing=False).weight == Law((WIRES,), opposing=True).weight + 1
+
+
+def test_the_best_of_each_set_of_signals_is_kept_for_either_way_of_acting():
+    laws = [(Law((f,), opposing=way), left) for f, left in ((WIRES, 3.0), (SQUARE, 1.0)) for way in (True, False)]
+    scored = [Scored(law, 1.0, left, np.inf, np.zeros(0)) for law, left in laws]
+    kept = _best_of_each(scored, 5)
+    assert [(each.law.factors[0].kind, each.law.opposing) for each in kept] == [("square", True), ("square", False)]
+    assert len(_best_of_each(scored, 1)) == 1

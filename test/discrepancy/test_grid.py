@@ -1,0 +1,113 @@
+"""A run on its grid of time: holes, cells that lack, windows, spikes and lags, each on a few samples."""
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy.preparation.grid import (
+    FASTEST_PERIOD,
+    LONG_RECORD,
+    MAX_WIDENING,
+    SMOOTHING_TIME,
+    SPIKE_MARGIN,
+    lagged,
+    noise_level,
+    samples_of,
+    speed_window,
+    spikes_of,
+    thinned,
+    uniform,
+)
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.signals import Run
+
+DT = 0.02  # s
+
+
+def test_a_hole_in_a_log_is_no_measurement_and_a_late_sample_is():
+    time = DT * np.arange(200.0)
+    time[100:] += 3.0
+    time[50] += 0.5 * DT
+    grid = uniform(Run("r", {"time": time, "motor_speed": np.sin(time)}))
+    inside = (grid.time > time[99] + 0.5 * DT) & (grid.time < time[100] - 0.5 * DT)
+    outside = (grid.time < time[99] - 0.5 * DT) | (grid.time > time[100] + 0.5 * DT)
+    assert not grid.valid[inside].any()
+    assert grid.valid[outside].all()
+    assert inside.sum() == pytest.approx(3.0 / DT, abs=2)
+
+
+def test_a_cell_that_lacks_is_bridged_and_not_taken_for_measured():
+    values = np.arange(100.0)
+    values[40:50] = np.nan
+    grid = uniform(Run("r", {"time": DT * np.arange(100.0), "motor_speed": values}))
+    assert grid.columns["motor_speed"] == pytest.approx(np.arange(100.0))
+    assert not grid.valid[40:50].any()
+    assert grid.valid[:40].all()
+    assert grid.valid[50:].all()
+
+
+def test_a_clock_that_leaps_by_days_is_said_and_not_filled_up():
+    time = DT * np.arange(100.0)
+    time[50:] += 864_000.0
+    with pytest.raises(InputError, match=r"leaps by 8.64e\+05 s at 0.98 s"):
+        uniform(Run("r", {"time": time, "motor_speed": time}))
+
+
+def test_the_noise_of_a_record_is_that_of_a_sample_whatever_it_follows():
+    rng = np.random.default_rng(0)
+    at = np.arange(4000.0)
+    values = 30.0 * np.sin(at / 60.0) + np.where(at > 2000, 500.0, 0.0) + 0.4 * rng.standard_normal(4000)
+    assert noise_level(values) == pytest.approx(0.4, rel=0.1)
+
+
+def test_a_long_and_fast_record_becomes_one_of_hundredths():
+    count = LONG_RECORD + 4
+    run = Run("r", {"time": 1e-3 * np.arange(count), "motor_speed": np.arange(float(count))})
+    slow = thinned(run)
+    assert np.median(np.diff(slow.time)) == pytest.approx(FASTEST_PERIOD)
+    assert slow.columns["motor_speed"][:2] == pytest.approx([4.5, 14.5])
+    short = Run("r", {name: values[: LONG_RECORD - 1] for name, values in run.columns.items()})
+    assert thinned(short) is short
+
+
+@pytest.mark.parametrize(("seconds", "samples"), [(0.3, 15), (0.32, 17), (0.01, 5), (0.1, 5)])
+def test_a_window_has_a_middle(seconds, samples):
+    assert samples_of(seconds, DT) == samples
+
+
+def test_a_coarse_encoder_is_smoothed_longer_but_not_for_ever():
+    at = DT * np.arange(4000.0)
+    clean = 100.0 * np.sin(at)
+    coarse = 3.0 * np.round(clean / 3.0)
+    awful = clean + 20.0 * np.random.default_rng(0).standard_normal(4000)
+    windows = [speed_window(each, DT) * DT for each in (clean, coarse, awful)]
+    assert windows[0] == pytest.approx(SMOOTHING_TIME, abs=DT)
+    assert windows[0] < windows[1] <= windows[2]
+    assert windows[2] == pytest.approx(MAX_WIDENING * SMOOTHING_TIME, abs=2 * DT)
+
+
+# -- spikes
+def spiky(*places, rest=0):
+    gap = np.random.default_rng(0).standard_normal(2000)
+    gap[list(places)] += 80.0
+    moving = np.ones(2000, bool)
+    moving[:rest] = False
+    return np.flatnonzero(spikes_of(gap, moving, DT))
+
+
+def test_a_spike_is_left_out_with_its_surroundings():
+    margin = int(SPIKE_MARGIN / DT)
+    assert spiky(700).tolist() == list(range(700 - margin, 700 + margin + 1))
+
+
+def test_what_is_there_often_is_no_spike():
+    assert not spiky(*range(50, 2000, 60)).size
+
+
+def test_a_spike_while_the_winch_rests_is_nobodys():
+    assert not spiky(100, rest=200).size
+
+
+def test_a_lag_begins_settled():
+    """A winch at work has a memory from before the log."""
+    found = lagged(np.array([5.0, 5.0, 5.0, 6.0]), 0.5, 2.0)
+    assert found == pytest.approx([5.0, 5.0, 5.0, 5.0 + 1.0 - np.exp(-0.25)])

@@ -1,0 +1,162 @@
+"""Which laws of the grammar are worth proposing, and which names a finding is said to share its place with."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.discrepancy import proposals as module
+from winch_friction.discrepancy import ties
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import Explanation
+from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
+from winch_friction.discrepancy.engine.selection import Finding
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction.term import Parameter
+from winch_friction.records.model_file import load_model
+
+SEGMENTS, BEFORE, FLOOR = 40, 1000.0, 400.0
+SHORT = Law((Factor("linear", "wire_out"),), opposing=True)
+LONG = Law((Factor("above", "motor_speed", (("c", 90.0),)), Factor("wave", "wire_out", (("c", 9.0), ("h", 3.0)))), True)
+
+
+def explained(slots, loss, scatter=0.0):
+    losses = np.full(SEGMENTS, loss / SEGMENTS) + scatter * np.tile([1.0, -1.0], SEGMENTS // 2)
+    return Explanation(tuple(slots), losses, np.zeros(0), loss, np.zeros((0, 0)))
+
+
+def scored(law, loss, scatter=0.0):
+    return Scored(law, 1.0, loss, loss, explained((), loss, scatter).losses)
+
+
+def sure_laws(monkeypatch, *ranked):
+    """Of laws that a search of the grammar has found, the best first."""
+    monkeypatch.setattr(module, "Grammar", lambda *_: SimpleNamespace(search=lambda _: list(ranked)))
+    monkeypatch.setattr(module, "_tuned", lambda _, each, *__: each)
+    monkeypatch.setattr(module, "WORDS", ())
+    blocks = SimpleNamespace(run=np.zeros(3, int), y=np.zeros(3), direction=np.ones(3))
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(blocks=blocks), explain=lambda _: explained((), BEFORE), floor=FLOOR
+    )
+    runs = [SimpleNamespace(unit_torque=2.0, groups=(), time=np.array([0.0, 60.0]))]
+    found = module._sure_laws(SimpleNamespace(cross=cross), runs, np.random.default_rng(0))
+    return [(each.law, each.loss) for each, _ in found]
+
+
+@pytest.mark.parametrize(("left", "worth"), [(830.0, False), (810.0, True)])
+def test_a_law_is_worth_saying_from_three_tenths_of_what_is_above_the_noise(monkeypatch, left, worth):
+    """Of the 600 above it 170 are too few, 190 are enough."""
+    assert bool(sure_laws(monkeypatch, scored(SHORT, left))) is worth
+
+
+@pytest.mark.parametrize(("left", "beside"), [(750.0, True), (770.0, False)])
+def test_beside_the_best_law_stands_what_closes_four_fifths_of_what_it_does(monkeypatch, left, beside):
+    found = sure_laws(monkeypatch, scored(LONG, 700.0), scored(SHORT, left))
+    assert (SHORT, left) in found or not beside
+    assert len(found) == 1 + beside
+
+
+def test_a_short_law_comes_before_a_long_one_that_leaves_little_less(monkeypatch):
+    assert [law for law, _ in sure_laws(monkeypatch, scored(LONG, 700.0), scored(SHORT, 720.0))] == [SHORT, LONG]
+
+
+@pytest.mark.parametrize(("scatter", "sure"), [(1.0, True), (200.0, False)])
+def test_a_law_that_helps_half_of_the_segments_and_harms_the_others_is_not_sure(monkeypatch, scatter, sure):
+    assert bool(sure_laws(monkeypatch, scored(SHORT, 700.0, scatter))) is sure
+
+
+def test_nothing_found_is_nothing_sure(monkeypatch):
+    assert sure_laws(monkeypatch) == []
+
+
+def test_no_more_laws_are_looked_at_closer_than_so_many(monkeypatch):
+    many = [scored(SHORT, 700.0 + k) for k in range(LIMITS.grammar_judged + 5)]
+    assert len(sure_laws(monkeypatch, *many)) == LIMITS.grammar_judged
+
+
+# -- names that are tied
+e = Parameter("e", "1", 0.1)
+
+
+def slot_of(name, column, label="all layers"):
+    return Slot(name, label, (column,), origin=(Candidate(name, linear=(e,)), Shape(label, {})))
+
+
+RADIUS, WEAR, DRAG = slot_of("layer_radius", 0), slot_of("wear_drift", 1), slot_of("brake_drag", 2)
+PRESSURE = slot_of("pressure_scale", 3, "all groups, both ports")
+
+
+def company_of(monkeypatch, found, losses):
+    """The company of a finding, where each name alone leaves so much, and nothing leaves 1000."""
+    at = {"load_scale": 4, "displacement_scale": 5}
+
+    def layout_of(_, fixed, *__):
+        slots = [Slot(c.name, "", (at.get(c.name, k),), origin=(c, None)) for k, c in enumerate(fixed)]
+        return SimpleNamespace(slots=tuple(slots))
+
+    def explain(slots):
+        beta = np.array([2.0])
+        left = losses[slots[-1].name] if slots else 1000.0
+        return Explanation(tuple(slots), np.full(SEGMENTS, left / SEGMENTS), beta, left, np.zeros((0, 0)))
+
+    cross = SimpleNamespace(
+        explain=explain, covariance=lambda _: np.array([[0.01]]),
+        problem=SimpleNamespace(layout=SimpleNamespace(scales=np.ones(6))),
+    )  # fmt: skip
+    monkeypatch.setattr(ties, "layout_of", layout_of)
+    monkeypatch.setattr(ties, "build_problem", lambda *_, **__: None)
+    monkeypatch.setattr(ties, "CrossFit", lambda _: cross)
+    monkeypatch.setattr(ties, "_shape_of", lambda candidate, member, runs: Shape(member.label, {}))
+    search = SimpleNamespace(
+        expansion=SimpleNamespace(
+            model=load_model("a6vm215_crane2"), runs=(), layout=SimpleNamespace(base=None)
+        ),
+        train=(), selection=SimpleNamespace(final=SimpleNamespace(slots=(found.slot,))),
+    )  # fmt: skip
+    return ties.company(search, found)
+
+
+def finding(own, *rivals, left_out=()):
+    return Finding(own, rivals, 0.0, 0.1, 1.0, left_out)
+
+
+@pytest.mark.parametrize(("left", "tied"), [(101.0, True), (400.0, False)])
+def test_what_no_search_looks_for_joins_the_finding_that_it_is_tied_to_where_it_does_as_well(monkeypatch, left, tied):
+    losses = {"pressure_scale": 100.0, "displacement_scale": left}
+    own = company_of(monkeypatch, finding(PRESSURE), losses)
+    assert own.rivals == (("displacement_scale",) if tied else ())
+    assert [each.name for each in own.partners] == list(own.rivals)
+
+
+def test_of_rivals_and_what_is_tied_to_the_finding_the_best_have_room(monkeypatch):
+    losses = {"pressure_scale": 100.0, "displacement_scale": 101.0, "wear_drift": 103.0, "brake_drag": 102.0}
+    own = company_of(monkeypatch, finding(PRESSURE, WEAR, DRAG, left_out=("coulomb",)), losses)
+    assert own.rivals == ("displacement_scale", "brake_drag")
+    assert own.no_room == ("wear_drift", "coulomb")
+
+
+def test_what_is_tied_to_a_rival_has_only_the_room_that_is_left(monkeypatch):
+    losses = {"wear_drift": 100.0, "pressure_scale": 103.0, "displacement_scale": 99.0, "brake_drag": 104.0}
+    crowded = company_of(monkeypatch, finding(WEAR, PRESSURE, DRAG), losses)
+    assert crowded.rivals == ("pressure_scale", "brake_drag")
+    assert crowded.no_room == ("displacement_scale",)
+    assert crowded.partners == ()
+    alone = company_of(monkeypatch, finding(WEAR, PRESSURE), losses)
+    assert alone.rivals == ("pressure_scale", "displacement_scale")
+
+
+def test_what_shows_as_a_product_with_the_finding_takes_no_rivals_room(monkeypatch):
+    """A wrong radius and a wrong load are one on any runs: two other causes say more."""
+    losses = {"layer_radius": 100.0, "load_scale": 100.0, "wear_drift": 103.0, "brake_drag": 102.0}
+    own = company_of(monkeypatch, finding(RADIUS, WEAR, DRAG), losses)
+    assert own.rivals == ("brake_drag", "wear_drift")
+    assert own.no_room == ("load_scale",)
+
+
+def test_a_tie_of_one_layer_is_none_of_all(monkeypatch):
+    """One layer's radius is no error of the load, which all layers show."""
+    one = company_of(monkeypatch, finding(slot_of("layer_radius", 0, "layer 2"), PRESSURE), {
+        "layer_radius": 100.0, "pressure_scale": 101.0, "displacement_scale": 500.0, "load_scale": 100.0,
+    })  # fmt: skip
+    assert one.rivals == ("pressure_scale",)

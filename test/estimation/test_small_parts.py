@@ -1,0 +1,163 @@
+"""What the estimator's small parts keep apart: a load that nobody shows, a status that flickers, a torque of errors."""
+
+import math
+
+import numpy as np
+import pytest
+
+from winch_friction.estimation.answers import ParameterStatus
+from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.interval import FrictionFunctions, Intervals, mean_direction
+from winch_friction.estimation.parameters import ScaledParameters
+from winch_friction.estimation.sample import LEAST_LOAD, PICKED_UP, HangingLoad, SensorErrors, saturated, usable
+from winch_friction.estimation.trust import Excitation, VarianceFactor
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+
+CRANE, SEED, CONFIG = load_crane("crane_150t"), load_model("a6vm215_crane2"), EstimatorConfig()
+
+
+def sample(time=0.0, speed=50.0, **more):
+    groups = {"active": GroupSample(150e5, 25e5, CRANE.max_displacement)}
+    return Sample(time, speed, groups=groups, **more)
+
+
+# -- a sample
+@pytest.mark.parametrize(("force", "taken"), [(math.nan, True), (4e5, True), (-4e8, False)])
+def test_a_rope_force_that_no_crane_shows_teaches_nothing(force, taken):
+    assert usable(sample(rope_force=force), ChannelRanges(CRANE, ("active",))) is taken
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_an_electric_drive_is_at_its_limit_braking_as_well_as_driving(way):
+    electric = load_crane("emps")
+    limit = CONFIG.saturation_torque * electric.motor_total(())
+    over, under = (
+        Sample(0.0, 1.0, motor_torque=way * share * limit / electric.motor_total(())) for share in (1.1, 0.9)
+    )
+    assert saturated(over, electric, CONFIG)
+    assert not saturated(under, electric, CONFIG)
+
+
+def test_errors_of_displacement_and_pressure_add_up_and_scale_the_torque_that_is_measured():
+    """T = n D dp: either gain makes the same of it; an offset of the port is a torque of its own."""
+    errors = SensorErrors(CRANE, SEED, EstimatorConfig(pressure_offset_std=1e5, pressure_scale_std=0.02))
+    assert errors.std[0] == pytest.approx(math.hypot(CONFIG.displacement_scale_std, 0.02))
+    assert errors.std[1] == 1e5
+    by_gain, by_offset = errors.by(sample(), 700.0)
+    assert by_gain == -700.0
+    assert by_offset == pytest.approx(-CRANE.motor_count("active") * CRANE.max_displacement)
+
+
+# -- the load
+def load(mass):
+    own = HangingLoad(CRANE, 2.0)
+    own.mass = mass
+    return own
+
+
+def test_a_load_cell_is_followed_as_a_low_pass_does_whatever_the_step():
+    """After a gap of ten time constants what is measured counts, and no more than that."""
+    measured = sample(hook_load=52e3)
+    assert load(50e3).following(measured, 0.02) == pytest.approx(50e3 + 2e3 * 0.02 / 2.02)
+    assert 51e3 < load(50e3).following(measured, 20.0) <= 52e3
+
+
+@pytest.mark.parametrize(("shown", "doubted"), [(math.nan, False), (50e3, True)])
+def test_a_load_that_nobody_shows_is_doubted_no_longer(shown, doubted):
+    own = load(50e3)
+    own.doubted = True
+    torque = 2.0 * PICKED_UP * own.shaft_torque(math.nan)
+    assert own.is_another(torque, sample(hook_load=shown)) is doubted
+    assert own.doubted is doubted
+
+
+def test_a_share_of_an_empty_hook_is_one_of_the_load_cells_class():
+    """Next to nothing of next to nothing may be any number."""
+    least = load(LEAST_LOAD * CRANE.rated_load).shaft_torque(math.nan)
+    assert load(1.0).share(least, math.nan) == pytest.approx(1.0)
+    assert load(50e3).share(load(50e3).shaft_torque(math.nan), math.nan) == pytest.approx(1.0)
+
+
+# -- statuses
+@pytest.mark.parametrize("level", ["learned", "learning"])
+def test_a_status_is_left_only_a_hysteresis_beyond_where_it_was_reached(level):
+    """A sigma that wavers around the limit is no change of what is known."""
+    limit = CONFIG.learned_below if level == "learned" else CONFIG.learning_below
+    status = ParameterStatus(CONFIG)
+    said = []
+    for share in (limit + 0.01, limit - 0.01, limit + 0.5 * CONFIG.hysteresis, limit + 1.5 * CONFIG.hysteresis):
+        status.step(share, False, False, 0.1)
+        said.append(status.text)
+    assert said[1] == said[2] == level
+    assert said[0] == said[3] != level
+
+
+def test_what_learns_again_is_frozen_no_longer():
+    status = ParameterStatus(CONFIG)
+    for _ in range(round(CONFIG.settle_time / 0.1) + 1):
+        status.step(0.2, True, False, 0.1)
+    assert status.text == "frozen"
+    status.step(0.2, False, False, 0.1)
+    assert status.text != "frozen"
+
+
+def test_however_long_a_parameter_stood_at_its_edge_it_is_valid_soon_after():
+    status = ParameterStatus(CONFIG)
+    for _ in range(5000):
+        status.step(0.2, False, True, 0.1)
+    assert status.text == "invalid"
+    for _ in range(round(1.1 * CONFIG.settle_time / 0.1)):
+        status.step(0.2, False, False, 0.1)
+    assert status.text != "invalid"
+
+
+# -- trust
+def test_an_excitation_of_long_ago_is_forgotten_at_both_ends():
+    excited = Excitation(10.0)
+    for speed in (100.0, -100.0, 0.0):
+        excited.step(speed, 0.1)
+    assert excited.range == pytest.approx(200.0, rel=0.05)
+    for _ in range(1000):
+        excited.step(0.0, 0.1)
+    assert excited.range < 1.0
+
+
+def test_a_step_longer_than_its_memory_moves_the_noise_by_one_sample():
+    factor = VarianceFactor(2.0)
+    factor.step(3.0, 20.0)
+    assert factor.value == pytest.approx(3.0)
+
+
+# -- parameters
+def test_what_was_taken_back_stays_so_when_another_is():
+    own = ScaledParameters(SEED, CONFIG)
+    own.widen([0])
+    own.widen([2])
+    assert own.widened == (0, 2)
+    assert own.prior[0, 0] == pytest.approx(own.seed_prior[0, 0] * own.range_factor[0] ** 2)
+
+
+def test_a_sigma_that_is_taken_back_is_never_a_smaller_one():
+    narrow = ScaledParameters(SEED, EstimatorConfig(seed_range=0.5))
+    assert ((narrow.upper - narrow.lower) / np.sqrt(12.0)).min() < 1.0
+    assert narrow.range_factor.min() == 1.0
+
+
+def test_values_stay_within_the_range_around_the_seed():
+    own = ScaledParameters(SEED, CONFIG)
+    for far in (own.lower - 5.0, own.upper + 5.0):
+        assert not own.contains(far)
+        np.testing.assert_allclose(own.values(far), own.values(np.clip(far, own.lower, own.upper)))
+    assert own.contains(0.5 * (own.lower + own.upper))
+
+
+# -- between two samples
+def test_a_speed_that_passes_zero_has_no_direction_but_the_size_it_had():
+    """Viscous friction is of the mean of the magnitudes; at the mean of the speeds there would be none."""
+    intervals = Intervals(CRANE, CONFIG, load(50e3), FrictionFunctions(SEED), SensorErrors(CRANE, SEED, CONFIG))
+    direction, magnitude = intervals.point(sample(speed=-20.0), 0.0, 20.0, 0.0, 0.0)[:2]
+    assert direction == mean_direction(20.0, -20.0) == 0.0
+    assert magnitude == 20.0

@@ -1,0 +1,133 @@
+"""Forms of a log's time, each on a few cells: what a number counts, what a text says, what is left open."""
+
+import numpy as np
+import pytest
+
+from winch_friction.importing.log import LogColumn
+from winch_friction.importing.ticks import fraction_unit, spread_ticks
+from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
+from winch_friction.importing.time_text import clock_seconds, time_parts, zone_seconds
+
+NOON = np.datetime64("2024-06-15T12:00:00", "s").astype(float)  # UTC, s since 1970
+
+
+def texts(*cells):
+    return LogColumn("t", np.full(len(cells), np.nan), text=np.array(cells, dtype=object))
+
+
+def numbers(values, name="t"):
+    return LogColumn(name, np.array(values, float))
+
+
+def seconds(base, *columns):
+    return to_seconds(columns, base, "log", str)
+
+
+@pytest.mark.parametrize(
+    ("form", "noon"),
+    [("excel", 45_458.5), ("matlab", 739_418.5), ("filetime", 133_629_264e9), ("dotnet", 638_540_496e9),
+     ("unix", NOON), ("seconds", NOON)],
+)  # fmt: skip
+def test_every_way_of_counting_says_the_same_noon(form, noon):
+    assert seconds(TimeBase(form), numbers([noon])) == pytest.approx([NOON], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [("T#1m2s345ms", 62.345), ("TIME#1h1ms", 3600.001), ("LT#2s500us", 2.0005), ("02:03,5", 123.5),
+     ("1:02:03.5", 3723.5), ("1d", None)],
+)  # fmt: skip
+def test_what_controllers_and_spreadsheets_write_of_a_time(cell, said):
+    parts = time_parts(cell)
+    assert (parts is None) is (said is None)
+    assert said is None or clock_seconds(parts) == pytest.approx(said)
+
+
+def test_a_zone_of_half_an_hour_is_one():
+    assert zone_seconds("+0530") == 19_800.0
+
+
+def test_ms_behind_a_third_colon_are_counted_where_they_have_no_zeros():
+    """`5:7` is 7 ms behind 5 s where others have three digits, and .7 s where all have as many."""
+    counted = seconds(TimeBase("clock"), texts("12:00:05:7", "12:00:05:57", "12:00:05:107"))
+    assert counted - counted[0] == pytest.approx([0.0, 0.05, 0.1])
+    padded = seconds(TimeBase("clock"), texts("12:00:05:007", "12:00:05:057", "12:00:05:107"))
+    assert padded == pytest.approx(counted)
+    tenths = seconds(TimeBase("clock"), texts("12:00:05:7", "12:00:05:8", "12:00:05:9"))
+    assert np.diff(tenths) == pytest.approx([0.1, 0.1])
+
+
+@pytest.mark.parametrize(("unit", "most"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_a_column_of_fractions_is_added_in_its_unit(unit, most):
+    whole, beyond = np.repeat([100.0, 101.0, 102.0], 4), np.tile([0.0, 0.25, 0.5, 0.75], 3) * most
+    assert fraction_unit(whole, numbers(beyond)) == unit
+    found = seconds(TimeBase("seconds", fraction=unit), numbers(whole), numbers(beyond, "f"))
+    assert np.diff(found) == pytest.approx(0.25)
+
+
+def test_what_goes_on_over_the_whole_seconds_is_no_fraction_of_them():
+    whole = np.repeat([100.0, 101.0, 102.0], 4)
+    assert fraction_unit(whole, numbers(np.linspace(0.0, 900.0, 12))) == ""
+
+
+def test_a_clock_goes_on_over_midnight_and_not_over_a_late_row():
+    over = seconds(TimeBase("clock"), texts("23:59:59", "00:00:00", "00:00:01"))
+    assert np.diff(over) == pytest.approx([1.0, 1.0])
+    late = seconds(TimeBase("clock"), texts("12:00:02", "12:00:01", "12:00:03"))
+    assert np.diff(late) == pytest.approx([-1.0, 2.0])
+
+
+# -- what is guessed
+@pytest.mark.parametrize(
+    ("cells", "order", "asked"),
+    [
+        (("2024-03-04 10:00:00", "2024-03-05 10:00:00"), "ymd", False),
+        (("25/03/2024 10:00:00", "26/03/2024 10:00:00"), "dmy", False),
+        (("03/25/2024 10:00:00", "03/26/2024 10:00:00"), "mdy", False),
+        (("03/04/2024 10:00:00", "03/05/2024 10:00:00"), "dmy", True),
+        (("03.04.2024 10:00:00", "04.04.2024 10:00:00"), "dmy", False),  # points are of those who say the day first
+        (("04 Mar 2024 10:00:00", "05 Mar 2024 10:00:00"), "dmy", False),
+    ],
+)
+def test_the_order_of_a_date_is_told_by_what_can_be_no_month_or_is_asked(cells, order, asked):
+    guess = guess_time([texts(*cells)], "")
+    assert guess.base.order == order
+    assert bool(guess.question) is asked
+
+
+@pytest.mark.parametrize(
+    ("step", "unit"), [(0.02, "s"), (1.0, "s"), (20.0, "ms"), (1000.0, "ms"), (20_000.0, "us"), (2.3e-7, "day")]
+)
+def test_a_bare_number_counts_what_makes_a_usual_step_of_it(step, unit):
+    assert guess_time([numbers(step * np.arange(50.0))], "").base.unit == unit
+
+
+def test_what_falls_as_often_as_it_rises_is_no_time():
+    rng = np.random.default_rng(0)
+    assert guess_time([numbers(np.cumsum(rng.normal(0.2, 1.0, 500)))], "") is None
+
+
+# -- ticks
+def test_rows_before_a_gap_stay_in_their_tick():
+    """A pause of a minute is no tick of a minute: its rows are not laid across it."""
+    ticks = np.concatenate([np.repeat(np.arange(5.0), [10, 9, 11, 12, 10]), np.repeat(65.0 + np.arange(4.0), 10)])
+    spread = spread_ticks(ticks)
+    assert spread[51] < 5.0
+    assert spread[52] == 65.0
+    assert np.all(np.diff(spread) > 0.0)
+
+
+def test_a_steady_logger_is_laid_at_its_rate_and_no_row_leaves_its_tick():
+    """9 and 11 rows in turn at 10 Hz; of rows that come in bursts each stays where it was."""
+    steady = np.floor(0.1 * np.arange(200.0) + 0.04)
+    steps = np.diff(spread_ticks(steady))
+    assert steps == pytest.approx(steps[0])
+    assert steps[0] == pytest.approx(0.1, rel=0.01)
+    bursts = np.repeat(np.arange(8.0), [2, 18, 3, 17, 2, 18, 3, 17])
+    laid = spread_ticks(bursts)
+    assert np.all((laid >= bursts) & (laid < bursts + 1.0))
+
+
+def test_the_last_tick_is_cut_short_and_no_slower():
+    ticks = np.repeat(np.arange(6.0), [20, 5, 20, 5, 20, 3])
+    assert np.diff(spread_ticks(ticks))[-1] <= 1.0 / 12.0

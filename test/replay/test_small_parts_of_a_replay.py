@@ -1,0 +1,85 @@
+"""What a replay keeps of a recording: when it looks at the parameters, when a phase begins, and which model it has."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.estimation.answers import Estimate
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.records.topics import crane_topics
+from winch_friction.replay.estimator import EstimateRecord
+from winch_friction.replay.settings import Phase, ReplaySettings
+from winch_friction.replay.voices import PAUSE, CompensatorVoice
+
+CRANE, SEED = load_crane("crane_150t"), load_model("a6vm215_crane2")
+
+
+def looked_at(times):
+    """The parameter that stands in the row of each time; it is one more at every look."""
+    looks = []
+
+    def model():
+        looks.append(1)
+        return SimpleNamespace(values=(float(len(looks)),), std=np.array([0.1]))
+
+    record = EstimateRecord(SimpleNamespace(model=model, seed=SimpleNamespace(parameter_names=("k",))), period=1.0)
+    for time in times:
+        record.take(Estimate(time, True, "learning", 0.0, 1.0, 0.0, 1.0, 2.0, 3.0))
+    return record.run("r")["k"].tolist()
+
+
+def test_parameters_are_looked_at_every_second_and_at_the_end():
+    assert looked_at([0.0, 0.5, 0.9, 1.0, 1.5, 1.9]) == [1.0, 1.0, 1.0, 2.0, 2.0, 3.0]
+
+
+def test_a_clock_that_is_set_back_does_not_end_the_looking():
+    assert looked_at([1000.0, 10.0, 10.5, 10.6])[:2] == [1.0, 2.0]
+
+
+def voice(*phases):
+    return CompensatorVoice(CRANE, SEED, crane_topics(CRANE), ReplaySettings(tuple(phases)))
+
+
+@pytest.mark.parametrize(("silent", "begins"), [(0.02, False), (PAUSE - 0.1, False), (PAUSE + 0.1, True)])
+def test_a_phase_without_a_time_begins_after_a_pause(silent, begins):
+    own = voice(Phase(), Phase(start=float("nan")))
+    assert not own._begins(own._waiting[0], 100.0 + silent), "before the first sample nothing pauses"
+    own.service.inputs.last_stamp = 100.0
+    assert own._begins(own._waiting[0], 100.0 + silent) is begins
+
+
+@pytest.mark.parametrize(("stamp", "begins"), [(99.9, False), (100.0, True)])
+def test_a_phase_with_a_time_begins_then(stamp, begins):
+    own = voice(Phase(), Phase(start=100.0))
+    assert own._begins(own._waiting[0], stamp) is begins
+
+
+def offered(own):
+    """The models that its service is offered from now on."""
+    found = []
+    own.service.offer = found.append
+    return found
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_a_learned_model_is_taken_where_the_phase_follows_models(follows):
+    own = voice(Phase(follow_models=follows))
+    found = offered(own)
+    own.offer(SEED)
+    assert found == [SEED] * follows
+
+
+def test_a_node_that_begins_afresh_has_the_model_that_was_learned_before(monkeypatch):
+    """The topic is latched."""
+    own, found = voice(Phase(), Phase()), []
+    own.offer(SEED)
+    monkeypatch.setattr(CompensatorVoice, "offer", lambda self, model: found.append(model))
+    own._begin(Phase())
+    assert found == [SEED]
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_a_phase_is_on_or_off_as_it_was_recorded(enabled):
+    assert voice(Phase(enabled=enabled)).service.status(0.0)["enabled"] is enabled

@@ -53,9 +53,8 @@ class Table:
             more = f" (and {len(problems.found) - _SHOWN} more like it in this column)"
             problems.found[_SHOWN - 1 :] = [problems.found[_SHOWN - 1] + more]
         problems.say()
-        factor = _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
         with np.errstate(over="ignore"):  # infinite is beyond any range too
-            return values * factor
+            return values * _factor(self.units[name], si_unit, f"{self.path}: column '{name}'")
 
     def _number(self, text: str, column: str, row: int) -> float:
         try:
@@ -116,7 +115,6 @@ def _factor(unit: str, si_unit: str, where: str) -> float:
 
 def write_table(path: Path, columns: Mapping[str, Iterable[Any]], comments: Iterable[str] = ()) -> Path:
     """Write a CSV table atomically; the keys are whole headers, `speed [rpm]`."""
-    rows = zip(*columns.values(), strict=True)
-    body = [",".join(str(cell) for cell in row) for row in rows]
+    body = [",".join(map(str, row)) for row in zip(*columns.values(), strict=True)]
     head = [f"# {comment}" for comment in comments]
     return write_text(path, "\n".join([*head, ",".join(columns), *body]) + "\n")

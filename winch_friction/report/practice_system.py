@@ -13,16 +13,7 @@ from winch_friction.records.model_file import load_model
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_joint import joint_html
-from winch_friction.report.practice_look import (
-    SPEED,
-    SYSTEM,
-    Curve,
-    curve_label,
-    curves_html,
-    label,
-    name,
-    shown,
-)
+from winch_friction.report.practice_look import SPEED, SYSTEM, Curve, curve_label, curves_html, label, name, shown
 from winch_friction.report.practice_loops import loop_html
 from winch_friction.report.tables import paragraph, table_html
 

@@ -35,9 +35,8 @@ def _friction_html(practice: Practice) -> str:
     return (
         paragraph(
             "Largest |modelled − measured| T_ft in % of nominal torque, at 250 rpm and above, and below; by first "
-            "loop, second loop and joint fit; kept: held-out tests. Nominal: "
-            "the test's load torque per motor (the heaviest "
-            "test's where only the hook hung)."
+            "loop, second loop and joint fit; kept: held-out tests. Nominal: the test's load torque per motor (the "
+            "heaviest test's where only the hook hung)."
         )
         + table_html(columns, rows, digits=3)
         + compared_html(practice)

@@ -54,7 +54,7 @@ def literature() -> list[Candidate]:
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
-        _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, 1.0)},
+        _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, -0.5, 0.5, 1.0)},
             continuous=("n_po", "m_po")),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("churning", "churning_one_way", {"n_cw": (1.5, 2.0, 3.0), "b_cw": (-1.0, 1.0)}, continuous=("n_cw",)),
@@ -68,7 +68,7 @@ def literature() -> list[Candidate]:
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
         # of the flow through each motor it is a port's loss as well
-        _of("line_pressure_drop", "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, 0.0, 1.0)},
+        _of("line_pressure_drop", "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, -0.5, 0.0, 0.5, 1.0)},
             continuous=("n_le",)),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},

@@ -223,7 +223,7 @@ def test_what_recommends_a_motor_model_is_said(tmp_path, capsys, displacements, 
         (["--pressure", "all"], r"--pressure 'all': give two numbers with a dash"),
         (["--model", "dorey"], r"motor model 'dorey' is not known"),
         (["--weighting", "both"], r"weighting 'both' is not known"),
-        (["--max-displacement", "1e300"], r"'--max-displacement': .*6283"),
+        (["--max-displacement", "1e300"], r"'--max-displacement': .*376991"),
         (["--speed", "1-2"], r"no row lies inside the range"),
     ],
 )

@@ -73,7 +73,7 @@ BAD = {
     "a pressure that overflows": ([HEADER, "1000,1e308,215,94"],
                                   r"row 2: column 'pressure' = 1e308 is no motor's: .* 2000 bar"),
     "a displacement next to none": ([HEADER, "1000,200,1e-200,94"],
-                                    r"row 2: column 'displacement' = 1e-200 is no motor's: .* 6283 cm\^3/rev"),
+                                    r"row 2: column 'displacement' = 1e-200 is no motor's: .* 3.77e\+05 cm\^3/rev"),
     "a torque that no motor has": ([HEADER.replace("efficiency [%]", "torque [N*m]"), "1000,200,215,-1e300"],
                                    r"row 2: column 'torque' = -1e300 is no motor's: -1e\+06 ... 1e\+06 N\*m"),
     "a weight beyond all others": ([HEADER + ",weight", "1000,200,215,94,1e200"],

@@ -103,7 +103,7 @@ def says(topic, channel):
 
 
 def test_a_speed_that_cannot_be_makes_no_sample():
-    stream = SampleStream(SimpleNamespace(speed_topic="speed"), InputHold())
+    stream = SampleStream(SimpleNamespace(speed_topic="speed", max_displacement=0.0), InputHold())
     assert stream.take_speed(says("speed", "motor_speed"), 1e9, 1.0, 1.0) is None
     assert stream.last_stamp == -math.inf
     assert stream.take_speed(says("speed", "motor_speed"), 10.0, 1.0, 1.0).motor_speed == 10.0
@@ -111,7 +111,7 @@ def test_a_speed_that_cannot_be_makes_no_sample():
 
 
 def test_what_waits_for_a_speed_is_forgotten_when_the_clock_jumps():
-    stream = SampleStream(SimpleNamespace(speed_topic="speed"), InputHold())
+    stream = SampleStream(SimpleNamespace(speed_topic="speed", max_displacement=0.0), InputHold())
     stream.put_off(says("load", "hook_load"), 5e4, 5.0)
     stream.forget()
     assert math.isnan(stream.take_speed(says("speed", "motor_speed"), 10.0, 6.0, 6.0).hook_load)

@@ -47,7 +47,7 @@ def motor(
     model: Annotated[OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
     use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best': the recommended one.")] = "mj4",
     max_displacement: Annotated[
-        float, typer.Option(min=0.0, max=6283.0, help="D_max in cm^3/rev; 0: the table's largest.")
+        float, typer.Option(min=0.0, max=376991.0, help="D_max in cm^3/rev; 0: the table's largest.")
     ] = 0.0,
     speed: Annotated[str, typer.Option(help="Range in rpm; none: 400-2500, of a slower motor from 16 % on.")] = "",
     pressure: Annotated[str, typer.Option(help="Range in bar.")] = "50-350",

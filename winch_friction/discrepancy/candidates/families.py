@@ -88,7 +88,7 @@ def literature() -> list[Candidate]:
             presumes=("gear_load_loss",), blind=friction.no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
         _of("gear_asymmetry", "gear_one_way", {"n_gw": (0.5, 2.0), "b_gw": (-1.0, 1.0)}, continuous=("n_gw",),
-            blind=friction.no_load),
+            blind=friction.one_load),
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
             needs=("hook_load",), blind=friction.one_load),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.tolerances import within_a_sample, within_a_step
+from winch_friction.discrepancy.tolerances import takes_little, within_a_sample, within_a_step
 
 WARMTH = np.linspace(-1.0, 1.0, 201)
 
@@ -38,3 +38,15 @@ def test_another_name_of_that_size_is_none_of_a_transducers_zeros():
     problem = SimpleNamespace(blocks=SimpleNamespace(x=np.ones((9, 3))), columns=lambda slots: (0, 1, 2))
     fitted = SimpleNamespace(slots=(gain,), beta=np.array([0.0, 0.01, 0.0]))
     assert within_a_step(SimpleNamespace(problem=problem), fitted) == ""
+
+
+@pytest.mark.parametrize(
+    ("whole", "left", "little"),
+    [(0.77, 0.72, True), (0.77, 0.3, False), (-0.8, -0.9, True), (0.0, -0.5, True), (9.0, 4.6, True)],
+)
+def test_names_that_take_less_than_half_of_what_a_refit_leaves_take_little(whole, left, little):
+    """A ripple's remains were 0.77 of the noise's square; a high-pressure loss took a fifteenth of it and was named."""
+    assert (
+        takes_little(SimpleNamespace(excess=lambda each: {"refit": whole, "names": left}[each]), "refit", "names")
+        is little
+    )

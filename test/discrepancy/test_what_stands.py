@@ -43,7 +43,7 @@ def explained(slots):
 
 def searched(*slots, **more):
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
-    cross = SimpleNamespace(explain=explained, excess=lambda _: 1.0)
+    cross = SimpleNamespace(explain=explained, excess=lambda each: 0.2 if each.slots else 1.0)
     return Searched(Selection(explained(()), explained(slots), found), **{"cross": cross, **more})
 
 
@@ -74,16 +74,32 @@ def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_sh
     assert asked[2][0] == ("locked",)
 
 
-def tried_with(monkeypatch, search, left_of, worse_of=lambda _: ()):
+def tried_with(monkeypatch, search, left_of, worse_of=lambda _: (), sets=()):
     """What stands of a search without names that hold; the locked runs keep what `left_of` says of each file."""
     monkeypatch.setattr(module, "_replicated", lambda own, *_: own)
-    monkeypatch.setattr(module, "_sets", lambda *_: iter(()))
+    monkeypatch.setattr(module, "_sets", lambda *_: iter(sets))
     monkeypatch.setattr(module, "dependences", lambda *_: [])
     monkeypatch.setattr(module, "worse_runs", lambda of, _: worse_of(of))
     monkeypatch.setattr(module, "tried", lambda *more, rng: Trial(more[3], None, side(), side(left_of(more[3]))))
     monkeypatch.setattr(module, "as_given", lambda _, __, own, rng: Trial(own, "as given", side(), side()))
     search = replace(search, cross=SimpleNamespace(remainder=lambda _: None))
     return module.standing(None, None, None, search, RNG)
+
+
+@pytest.mark.parametrize("ripple", [None, "ripple"])
+def test_a_name_is_judged_beside_the_ripple_that_its_file_has_as_well(monkeypatch, ripple):
+    """Else the ripple's removal is its merit: a loss that took nothing was named beside one of 0.8 bar."""
+    asked = []
+
+    def stands(each, refit, *_):
+        asked.append(refit.holdout.size_after.value)
+        return None, "no"
+
+    monkeypatch.setattr(module, "_stands", stands)
+    monkeypatch.setattr(module, "_judged", lambda trial, why, rng: trial.search)
+    search = searched(SLOTS[0], ripple=ripple)
+    tried_with(monkeypatch, search, lambda own: 0.2 if own.ripple else 0.8, sets=[search])
+    assert asked == [0.2 if ripple else 0.8]
 
 
 @pytest.mark.parametrize(("worse", "kept"), [((), 0.5), (("run 3",), 1.0)])

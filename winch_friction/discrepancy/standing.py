@@ -27,7 +27,7 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.tolerances import within_a_sample, within_a_step
+from winch_friction.discrepancy.tolerances import takes_little, within_a_sample, within_a_step
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
@@ -41,20 +41,19 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     search = _replicated(search, split, rng)
     trial_of = partial(tried, split, crane, options, rng=rng)
     refit = trial_of(nameless(search))
+    aside = bool(search.ripple or search.flow)  # of what is in every file no name takes anything off the locked gap
+    beside = trial_of(replace(nameless(search), ripple=search.ripple, flow=search.flow)) if aside else refit
     whys = []
     for each in _sets(search, rng):
-        full, why = _stands(each, refit, trial_of, rng)
+        full, why = _stands(each, beside, trial_of, rng)
         if full is not None:
-            proven = _each_proven(full, refit, trial_of, rng)
+            proven = _each_proven(full, beside, trial_of, rng)
             why = proven.search.selection.untold or several_leave_more_than_noise(proven)
             if not why:
                 return proven
         whys.append(why)
-    beside = replace(nameless(search), ripple=search.ripple, flow=search.flow)
-    if search.ripple or search.flow:
-        trial = trial_of(beside)
-        if not worse_runs(trial.holdout, rng):
-            refit = trial
+    if aside and not worse_runs(beside.holdout, rng):
+        refit = beside
     judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
     if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
         # little data may lead a refit astray where the model that was given leaves nothing
@@ -130,8 +129,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
         worse = ", ".join(worse_runs(full.holdout, rng))
         return (None, f"{names}: the gap of {worse} grows") if worse else (full, "")
-    if nobodys(refit.holdout) and search.cross.excess(search.selection.base) <= 0.0:
-        return None, f"{names}: what a mere refit of the model leaves of either runs is less than anybody's effect"
+    if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
+        return None, f"{names}: a mere refit leaves less than anybody's effect of the locked runs, and this the others"
     proof = prove(names, refit.holdout, full.holdout, rng)
     why = proof.why or leaves_too_much(full.holdout) or leaves_most(full.train)
     why = (

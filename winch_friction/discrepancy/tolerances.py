@@ -39,3 +39,10 @@ def within_a_step(cross: CrossFit, explanation: Explanation) -> str:
     torque = cross.problem.blocks.x[:, columns] @ explanation.beta[[every.index(column) for column in columns]]
     size, most = float(np.sqrt(np.mean(torque**2))), LIMITS.step * LIMITS.least_noise
     return f"a zero of {size:.2g} bar is within the {most:g} bar by which a transducer steps" if size <= most else ""
+
+
+def takes_little(cross: CrossFit, base: Explanation, explanation: Explanation) -> bool:
+    """Whether names take less than half of what a refit leaves of the training runs beyond the noise and what no
+    balance closes, or nothing is left of these: then they are no more its cause than what the refit has wrong."""
+    whole = cross.excess(base)
+    return whole <= 0.0 or cross.excess(explanation) > LIMITS.outdone * whole

@@ -104,6 +104,27 @@ class _Run:
         return self._command
 
 
+@pytest.mark.parametrize(("named", "asked"), [("accumulator_thermal", ["plain"]), ("stribeck", ["plain", "passive"])])
+def test_beside_a_gas_only_runs_without_it_say_what_shows_after_reversals(monkeypatch, named, asked):
+    """What its law has wrong is largest where the passive side's motion turns: a break-away was named beside it."""
+    used = np.ones(turning.FEWEST_BLOCKS, bool)
+    runs = [
+        SimpleNamespace(name=name, used=used, groups=range(count)) for name, count in (("plain", 1), ("passive", 2))
+    ]
+    monkeypatch.setattr(turning, "expand_around", lambda *_, **__: SimpleNamespace(runs=runs, layout=None))
+    seen = []
+
+    def build(chosen, *_, **__):
+        seen.extend(run.name for run in chosen)
+        raise StopIteration
+
+    monkeypatch.setattr(turning, "build_problem", build)
+    explanation = SimpleNamespace(slots=(SimpleNamespace(name=named),))
+    with pytest.raises(StopIteration):
+        turning.detect(None, None, explanation, [], ["plain", "passive"], RNG, lambda each: each)
+    assert seen == asked
+
+
 # -- after reversals
 def test_beside_a_delay_nothing_is_looked_for_after_reversals():
     explanation = SimpleNamespace(slots=(SimpleNamespace(name="signal_delay"),))

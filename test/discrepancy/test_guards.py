@@ -941,7 +941,9 @@ def test_a_name_that_leaves_most_of_the_training_runs_gap_is_not_what_shows_ther
     assert ("training gap" in why) is not stands
 
 
-@pytest.mark.parametrize(("taught", "refit", "stands"), [(0.3, 0.3, False), (3.0, 0.5, True), (3.0, 1.3, True), (0.3, 3.0, True)])
+@pytest.mark.parametrize(
+    ("taught", "refit", "stands"), [(0.3, 0.3, False), (3.0, 0.5, True), (3.0, 1.3, True), (0.3, 3.0, True)]
+)
 def test_no_name_is_given_for_what_a_refit_leaves_of_nobodys_effect(taught, refit, stands):
     """A name that takes a little more off runs whose gap is below what any balance closes names an error of tolerance;
     where the runs that taught it, or the locked ones, show more than that it may be one."""

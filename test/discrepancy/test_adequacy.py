@@ -100,6 +100,15 @@ def test_what_is_no_record_between_two_holes_is_no_run():
     assert "2 runs" in notes[0]
 
 
+def test_a_log_of_a_sample_a_minute_is_no_record_full_of_holes():
+    """Between its samples nothing is long enough to be a run: the record stays what it is, and is left out by name."""
+    slow = Run("slow", {"time": 60.0 * np.arange(60.0), "motor_speed": np.arange(60.0)})
+    assert apart([slow]) == ([slow], [])
+    kept, notes = long_enough([slow])
+    assert (kept, [note.partition(":")[0] for note in notes]) == ([], ["slow left out"])
+    assert not all(each.met for each in of_records([slow], kept))
+
+
 def test_a_hole_makes_no_log_slow():
     """10 Hz with 29 s of silence after every second; over the whole of it there are 0.4 samples a second."""
     holed = logged("holed", *((30.0 * k, 30.0 * k + 1.05) for k in range(8)))

@@ -62,13 +62,13 @@ def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     for run in runs:
         steps = np.diff(run.time)
         ends = np.flatnonzero(steps > LIMITS.longest_hole) + 1
-        if not len(ends):
+        bounds = itertools.pairwise([0, *ends.tolist(), len(run)])
+        whole = [(a, b) for a, b in bounds if run.time[b - 1] - run.time[a] >= LIMITS.no_record]
+        if not len(ends) or not whole:  # a log of a sample a minute is a slow one, and not full of holes
             found.append(run)
             continue
-        bounds = [0, *ends.tolist(), len(run)]
-        whole = [(a, b) for a, b in itertools.pairwise(bounds) if run.time[b - 1] - run.time[a] >= LIMITS.no_record]
         found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
-        longest = float(steps[ends - 1].max())
+        longest = float(steps.max())
         notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
     return found, notes
 

@@ -33,12 +33,14 @@ class FrictionFunctions:
         found = functions.scalar_torque_and_gradient(x, theta, self._memory(functions))
         return found[0], found[2:]
 
+    def torque(self, x: Point, theta: Sequence[float], groups: int) -> float:
+        """Friction torque alone, N m."""
+        functions = self._functions(groups)
+        return functions.scalar_torque(x, theta, self._memory(functions))
+
     def magnitude(self, x: Point, theta: Sequence[float], groups: int) -> float:
         """What a full direction would make of the friction, N m."""
-        functions = self._functions(groups)
-        memory = self._memory(functions)
-        full = functions.scalar_torque((1.0, *x[1:]), theta, memory)
-        return abs(full - functions.scalar_torque((0.0, *x[1:]), theta, memory))
+        return abs(self.torque((1.0, *x[1:]), theta, groups) - self.torque((0.0, *x[1:]), theta, groups))
 
     def advance(self, x: Point, theta: Sequence[float], groups: int, dt: float) -> None:
         """Let `dt` s pass for the terms that have a memory."""
@@ -109,7 +111,7 @@ class Intervals:
     def _change(self, point: Point, before: float, after: float, theta: Sequence[float], groups: int) -> float:
         """By how much the friction differs between two speeds, rad/s, at an operating point otherwise, N m."""
         ends = [(math.copysign(1.0, speed), abs(speed), speed, *point[3:]) for speed in (before, after)]
-        one, other = (self._friction.at(end, theta, groups)[0] for end in ends)
+        one, other = (self._friction.torque(end, theta, groups) for end in ends)
         return other - one
 
     def point(self, sample: Sample, speed: float, before: float, measured_load: float, extra: float) -> Point:

@@ -14,7 +14,6 @@ LARGEST = 1 << 18  # bytes: a map of a thousand columns has a quarter of it
 BAD_CELLS = ("missing", "refuse")
 PLACES = ("motor", "drum", "rope")
 _NUMBERS = ("names_row", "unit_row", "first_row")
-_FIELDS = ("from", "unit", "sign", "factor", "of", "at", "differentiate", "constant", "confidence", "because")
 _TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace")
 
 
@@ -193,19 +192,21 @@ def _changed(log_map: LogMap, name: str, attribute: str, value: str, setting: st
         section.close()
         return changed
     old = log_map.columns.get(name)
-    if attribute not in _FIELDS:
-        raise InputError(f"--set '{setting}': {unknown_key(attribute, _FIELDS)}")
+    known = _content(old or Entry(""))
+    if attribute not in known:
+        raise InputError(f"--set '{setting}': {unknown_key(attribute, tuple(known))}")
     if old is None and attribute not in ("from", "constant"):
         raise InputError(
             f"--set '{setting}': the map has no channel '{name}'; say its column first: --set {name}.from=COLUMN"
         )
-    fields = {} if old is None else {
-        "from": old.source, "unit": old.unit, "sign": old.sign, "factor": old.factor, "of": old.of, "at": old.at,
-        "differentiate": old.differentiate, "constant": old.constant, "confidence": old.confidence,
-        "because": old.because,
-    }  # fmt: skip
-    entry = _entry(Section(fields | {attribute: value}, f"--set '{setting}'"))
+    entry = _entry(Section(({} if old is None else known) | {attribute: value}, f"--set '{setting}'"))
     return replace(log_map, columns={**log_map.columns, name: entry})
+
+
+def _content(entry: Entry) -> dict[str, Any]:
+    """A channel's part of a map file."""
+    own = dict(vars(entry))
+    return {"from": own.pop("source"), **own}
 
 
 def refuse_if_open(log_map: LogMap, where: str) -> None:

@@ -108,9 +108,10 @@ class EstimatorService:
         if self.options.paced and now < self._published_at + FASTEST_MODELS:
             return None
         self._published, self._published_at = self.last.time, now
-        learned = self._before.believed.model if self._pending else self.law.model()
         if self.contradiction:
             learned = self.law.seed
+        else:
+            learned = self._before.believed.model if self._pending else self.law.model()
         return replace(learned, provenance={**learned.provenance, LEARNED_AT: self.last.time})
 
     def set_enabled(self, enabled: bool) -> None:

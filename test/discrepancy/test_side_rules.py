@@ -10,6 +10,7 @@ from winch_friction.discrepancy.detectors import reversals as turning
 from winch_friction.discrepancy.detectors.flow_balance import FEWEST_RUNS, ORDINARY, Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import SMALLEST, TERM, Ripple
+from winch_friction.discrepancy.expansion import Expansion
 
 RNG = np.random.default_rng(0)
 
@@ -111,7 +112,7 @@ def test_beside_a_gas_only_runs_without_it_say_what_shows_after_reversals(monkey
     runs = [
         SimpleNamespace(name=name, used=used, groups=range(count)) for name, count in (("plain", 1), ("passive", 2))
     ]
-    monkeypatch.setattr(turning, "expand_around", lambda *_, **__: SimpleNamespace(runs=runs, layout=None))
+    monkeypatch.setattr(turning, "expand_around", lambda *_, **__: Expansion(tuple(runs), None, None))
     seen = []
 
     def build(chosen, *_, **__):

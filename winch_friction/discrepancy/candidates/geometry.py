@@ -28,6 +28,7 @@ from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 
+GAS = "accumulator_thermal"
 ONE_DEPTH = -999.0  # a label among the layer numbers
 ONE_METRE = 1.0  # then e_R is the depth in m
 FEWEST_APART = 3  # layers
@@ -282,7 +283,7 @@ def gas_candidates() -> list[Candidate]:
     """What a polytropic law that is logged for the passive pressure lacks."""
     # a PLC that logs the polytropic law p V^n for the passive pressure does not see the gas give its heat away: the
     # bottle's excess temperature at the start, fading, and the heat of each compression, relaxing
-    gas = partial(Candidate, "accumulator_thermal", kind="signal", hydraulic=True, blind=_no_passive_group)
+    gas = partial(Candidate, GAS, kind="signal", hydraulic=True, blind=_no_passive_group)
     torque = r"n_p D_p\,\Delta p_p\,"
     return [
         gas(torque + r"(e_T e^{-t/\tau} + g_T \langle\ln p\rangle_\tau)", (e_T, g_T), accumulator_columns,

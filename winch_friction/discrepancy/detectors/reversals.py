@@ -6,12 +6,14 @@ reversal is certain but short. Samples at rest take no part: static friction is 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
 from winch_friction.discrepancy.candidates.friction import blurred_travel
+from winch_friction.discrepancy.candidates.geometry import GAS
+from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import chance_of_no_gain
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
@@ -22,7 +24,6 @@ from winch_friction.discrepancy.thresholds import LIMITS
 
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
 FEWEST_BLOCKS = 200
-GAS = "accumulator_thermal"
 
 
 @dataclass(frozen=True)
@@ -71,11 +72,12 @@ def detect(
     named = {slot.name for slot in explanation.slots}
     balanced = [each for each in candidates if each.regime in (MOVING, REVERSALS)]
     tried = [each for each in balanced if each.reversal_rival or each.name in named]
-    if "signal_delay" in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
+    if DELAY in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
         return None
     turning = cleaned(expand_around(given, expansion, explanation, tried, turning=True))
-    gas = GAS in named  # what its law has wrong is largest where the passive side's motion turns
-    chosen = [run for run in turning.runs if run.name in train and run.used.any() and not (gas and len(run.groups) > 1)]
+    if GAS in named:  # what its law has wrong is largest where the passive side's motion turns
+        turning = replace(turning, runs=tuple(run for run in turning.runs if len(run.groups) < 2))
+    chosen = [run for run in turning.runs if run.name in train and run.used.any()]
     if sum(int(run.used.sum()) for run in chosen) < FEWEST_BLOCKS:
         return None
     cross = CrossFit(build_problem(chosen, turning.layout, by_sample=True))

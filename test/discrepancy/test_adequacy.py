@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.adequacy import Check, apart, long_enough, of_prepared, of_records
+from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
@@ -116,3 +118,9 @@ def test_a_hole_makes_no_log_slow():
     assert (kept, notes) == ([holed], [])
     (rate,) = (each.value for each in of_records([holed], kept) if each.what == "fastest log")
     assert rate == pytest.approx(10.0, rel=0.05)
+
+
+def test_the_answer_says_that_a_record_is_looked_at_in_parts(crane_150t, crane2_model):
+    result = find_gap([logged("two", (0.0, 6.0), (100.0, 106.0))], crane_150t, crane2_model)
+    assert result.verdict == INSUFFICIENT
+    assert result.content()["notes"][0].startswith("two: nothing was logged for up to 94")

@@ -632,6 +632,7 @@ WAVE_OF_IT = Law((Factor("wave", "pressure", (("c", 5e6),)),), True)
     (SLOTS, ROOT, 0.9, True, 2),  # two names where one law would do
     (SLOTS, ROOT, 1.1, False, 2),
     (SLOTS, None, 0.0, False, 2),
+    ((replace(SLOTS[0], brings=("other",)), SLOTS[1]), ROOT, 0.9, False, 2),  # a slope and its level are one name
     ((CURVE,), SQUARE, 0.9, False, 2),  # what the curve itself draws
     ((CURVE,), LAG, 0.9, True, 2),  # a memory: no curve has one
     ((CURVE,), Law((Factor("linear", "wire_out"),), True), 0.9, True, 2),  # of a signal that the curve does not read

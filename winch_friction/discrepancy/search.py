@@ -5,7 +5,7 @@ a quarter of a delay of a tenth of a second, since the acceleration, the load's 
 Taken out of the signals themselves, all of it goes.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -29,7 +29,6 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet, met_in_turn
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -53,15 +52,24 @@ def without_delay(
         return list(candidates)
     late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted)
     shapes = [_shape(size * factor, late) for factor in AROUND]
-    columns = {}
-    modes: Mapping[str, Mode] = {}  # told once, of the first estimate, for a delay hides a swing; then only it differs
-    for shape in sorted(shapes, key=lambda each: abs(each.values["delay"] - size)):
-        delay = shape.values["delay"]
-        model = replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
-        modes = modes or {run.name: run.wire_mode for run in meet(given.runs, given.crane, model, ()).prepared}
-        for old, new in zip(given.prepared, met_in_turn(given, model, modes), strict=True):
+    columns: dict[tuple[str, float], FloatArray] = {}
+
+    def taken_out(delay: float) -> FrictionModel:
+        return replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
+
+    def keep(delay: float, without: Iterable[PreparedRun]) -> None:
+        for old, new in zip(given.prepared, without, strict=True):
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             columns[old.name, delay] = (old.gap - gap)[:, None] / delay
+
+    # a swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay differs
+    met = meet(given.runs, given.crane, taken_out(size), ()).prepared
+    modes = {run.name: run.wire_mode for run in met}
+    keep(size, met)
+    del met  # its gaps are all that is needed
+    for shape in shapes:
+        if (delay := shape.values["delay"]) != size:
+            keep(delay, met_in_turn(given, taken_out(delay), modes))
     return [
         replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
         if each.name == DELAY and not each.law_name

@@ -11,7 +11,7 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXP
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
 from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.chance import dependences, least_part
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.proof import (
@@ -72,8 +72,7 @@ def several_leave_more_than_noise(trial: Trial) -> str:
     where together they close the many training runs down to their noise, or where each takes a large part.
     """
     search, side, left = trial.search, trial.holdout, trial.holdout.size_after.value
-    slots = search.explanation.slots
-    names = {own.name for own in slots if not own.plain and not any(own.name in each.brings for each in slots)}
+    names = {own.name for own in on_their_own(search.explanation.slots)}
     if len(names) < 2:
         return ""
     closed = search.cross.excess(search.explanation) <= LIMITS.least_excess
@@ -132,9 +131,10 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
         return None, f"{names}: a mere refit leaves less than anybody's effect of the locked runs, and this the others"
     proof = prove(names, refit.holdout, full.holdout, rng)
-    why = proof.why or leaves_too_much(full.holdout) or leaves_most(full.train)
     why = (
-        why
+        proof.why
+        or leaves_too_much(full.holdout)
+        or leaves_most(full.train)
         or within_a_sample(full.repaired.parameters, full.holdout)
         or within_a_step(search.cross, search.explanation)
     )

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXP
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members, shapes_over
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
@@ -82,7 +82,7 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     where it leaves nothing that is anybody's of any run none.
     """
     search = trial.search
-    slots = _on_their_own(search.explanation.slots)
+    slots = on_their_own(search.explanation.slots)
     left = search.cross.excess(search.explanation)
     causes = {slot.name for slot in slots}
     asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
@@ -95,11 +95,6 @@ def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
         return trial
     refit = tried(split, crane, options, nameless(search), rng)
     return replace(refit, search=unexplained(refit.search, why, rng))
-
-
-def _on_their_own(slots: Sequence[Slot]) -> list[Slot]:
-    """Those of a name of their own: not what a bare model lacks, nor what another of them always brings along."""
-    return [own for own in slots if not own.plain and not any(own.name in each.brings for each in slots)]
 
 
 def _closed(trial: Trial, rng: np.random.Generator) -> bool:
@@ -121,7 +116,7 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     speaks for it, if the first of the `laws` does not take half of what that one leaves.
     """
     named = selection.final
-    slots = _on_their_own(named.slots)
+    slots = on_their_own(named.slots)
     if not laws or not slots:
         return ""
     law = laws[0]

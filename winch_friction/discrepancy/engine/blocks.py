@@ -40,6 +40,11 @@ class Slot:
     part: str = ""
 
 
+def on_their_own(slots: Sequence[Slot]) -> list[Slot]:
+    """Those of a name of their own: not what a bare model lacks, nor what another of them always brings along."""
+    return [own for own in slots if not own.plain and not any(own.name in each.brings for each in slots)]
+
+
 @dataclass(frozen=True)
 class RunBlocks:
     """The blocks of one record; `position` is the block's number on the record's own grid."""

@@ -1,5 +1,6 @@
 """Corrections: every one declared is visited, and what it says is wrong is taken out of runs, samples and cranes."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -422,3 +423,9 @@ def test_an_s_of_eight_cubic_centimetres_is_taken_out_to_rounding(error):
     logged = true + error * CM3_PER_REV * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
     right = unswung(logged, Correction("displacement_s_shape", error * CM3_PER_REV, beyond=stroke))
     np.testing.assert_allclose(right, true, rtol=1e-7)
+
+
+def test_what_has_grown_stays_and_what_has_a_window_ends_with_it():
+    assert Correction("pressure_creep", 1e5, during=((100.0, 200.0),)).ends == math.inf
+    assert Correction("pressure_offset", 1e5, during=((100.0, 200.0), (300.0, 400.0))).ends == 400.0
+    assert Correction("pressure_offset", 1e5).ends == math.inf

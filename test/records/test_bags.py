@@ -281,3 +281,15 @@ def test_samples_of_a_bag_match_its_run(tmp_path):
     with open_bag(write_run(run, tmp_path / "x")) as bag:
         samples = list(bag_samples(bag, InputHold(bag.topics.groups)))
     assert [s.motor_speed for s in samples] == list(run["motor_speed"])
+
+
+def test_what_a_bag_holds_beside_the_winch_is_read_past_and_said(tmp_path):
+    with BagWriter(tmp_path / "bag") as writer:
+        for k in range(5):
+            header = stamp_header(1000.0 + 0.02 * k, MESSAGES)
+            writer.write(
+                "/winch/joint_states", joint_state(MESSAGES, header, "winch_motor", velocity=1.0), 1000.0 + 0.02 * k
+            )
+            writer.write("/arm/joint_states", joint_state(MESSAGES, header, "boom", velocity=1.0), 1000.0 + 0.02 * k)
+    with open_bag(tmp_path / "bag") as bag:
+        assert bag.warnings == ["bag: topics that are not the winch's, read past: /arm/joint_states"]

@@ -101,3 +101,10 @@ def test_a_replay_of_a_spoilt_folder_is_refused_in_one_line(tmp_path, crane_150t
     (path / "metadata.yaml").write_text("rosbag2_bagfile_information: [")
     with pytest.raises(InputError, match="not a readable rosbag2 recording"):
         replay_recording(path, crane_150t, crane2_model)
+
+
+def test_a_file_of_bytes_is_no_table(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_bytes(b"time,motor_speed\n0,1\n0.02,\x001\n")
+    with pytest.raises(InputError, match="zero bytes.*expected CSV"):
+        read_run(path)

@@ -1,5 +1,6 @@
 """A kill at any moment leaves the old file or the new one; what else it leaves, the next start removes."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from winch_friction.records.atomic import atomic_path, together, write_text
+from winch_friction.records.atomic import atomic_path, remove_stale, together, write_text
 from winch_friction.records.checkpoint import read_checkpoint
 
 WRITER = """
@@ -78,3 +79,13 @@ def test_an_error_leaves_the_old_file_alone(tmp_path: Path) -> None:
     assert path.read_text() == "old"
     assert write_text(path, "new").read_text() == "new"
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_only_a_dead_process_leaves_something_to_remove(tmp_path: Path) -> None:
+    living = tmp_path / f".run.{os.getpid()}-1.tmp.csv"
+    nobodys = tmp_path / ".run.mine-1.tmp.csv"
+    for each in (living, nobodys):
+        each.write_text("half")
+    remove_stale(tmp_path / "run.csv")
+    assert living.exists()
+    assert nobodys.exists()

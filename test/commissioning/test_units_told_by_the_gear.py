@@ -1,0 +1,47 @@
+"""Mistakes that a factor puts right, each with the factor that does, and what a channel is in numbers."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from winch_friction.commissioning.channels import summaries
+from winch_friction.commissioning.kinematics import MOST_BEYOND, range_score
+from winch_friction.commissioning.mistakes import fixed_mistakes
+from winch_friction.commissioning.view import RunView
+from winch_friction.physics.signals import Run
+
+
+def seen(speed, **others):
+    count = len(speed)
+    zeros, ones = np.zeros(count), np.ones(count)
+    fields = {
+        "name": "r", "time": 0.02 * np.arange(count), "speed": speed, "acceleration": zeros, "load": 5e4 * ones,
+        "layer": ones, "radius": ones, "gear_ratio": 250.0, "inertia": 5.0, "motors": 1.0, "max_displacement": 3.4e-5,
+        "heave": None, "heave_acceleration": zeros, "groups": {},
+    }  # fmt: skip
+    return RunView(**(fields | others))
+
+
+def test_a_speed_of_the_drum_is_turned_by_the_gear_and_one_of_the_motor_by_its_inverse(crane_150t):
+    view = seen(np.linspace(1.0, 2.0, 50))
+    told = {each.words: each for each in fixed_mistakes([view], crane_150t, {})}
+    for words, factor in (
+        ("motor_speed holds the drum's speed", crane_150t.gear_ratio),
+        ("drum_speed (or its gear ratio) holds the motor's speed", 1.0 / crane_150t.gear_ratio),
+    ):
+        assert told[words].factor == pytest.approx(factor)
+        assert told[words].undo(view).speed == pytest.approx(factor * view.speed)
+
+
+def test_a_channel_in_numbers_says_what_share_of_it_is_missing():
+    values = np.array([1.0, np.nan, 3.0, np.nan])
+    (said,) = summaries(Run("r", {"time": np.arange(4.0), "wire_out": values}))
+    assert (said.smallest, said.largest, said.missing) == (1.0, 3.0, 0.5)
+
+
+def test_one_channel_far_beyond_the_machine_does_not_outweigh_every_other_sign():
+    group = SimpleNamespace(
+        drop=np.full(9, 1e7), pressure_sum=np.full(9, 3e7), displacement=np.full(9, 3e-5), torque=np.zeros(9), count=3.0
+    )  # fmt: skip
+    assert range_score(seen(np.full(9, 1e12), groups={"main": group})) == MOST_BEYOND

@@ -11,6 +11,7 @@ from winch_friction.estimation.interval import FrictionFunctions, Intervals, mea
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import LEAST_LOAD, PICKED_UP, HangingLoad, SensorErrors, saturated, usable
 from winch_friction.estimation.trust import Excitation, VarianceFactor
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.crane_file import load_crane
@@ -161,3 +162,8 @@ def test_a_speed_that_passes_zero_has_no_direction_but_the_size_it_had():
     direction, magnitude = intervals.point(sample(speed=-20.0), 0.0, 20.0, 0.0, 0.0)[:2]
     assert direction == mean_direction(20.0, -20.0) == 0.0
     assert magnitude == 20.0
+
+
+def test_a_setting_of_the_estimator_beyond_its_range_is_refused():
+    with pytest.raises(InputError, match="settle_time must be 0 ... 600 s, found -1"):
+        EstimatorConfig(settle_time=-1.0)

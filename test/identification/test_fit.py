@@ -8,6 +8,7 @@ import pytest
 from campaign.supplier_generator import TABLE_1, torque_loss, write_supplier_table
 from winch_friction.identification.fit import clustered_covariance, condition_number, exchangeable, fit
 from winch_friction.identification.fit_data import CountedModel, FitData
+from winch_friction.identification.least_squares import bounded_linear
 from winch_friction.identification.motor_identification import identify_motor, motor_seed
 from winch_friction.identification.motor_models import MOTOR_MODELS, initial_model
 from winch_friction.identification.selection import choose, score_models
@@ -218,3 +219,12 @@ def test_the_rms_is_of_the_plain_errors(table_215):
     found = fit(initial_model(MOTOR_MODELS["mj4"], table_215.max_displacement), data)
     errors = data.torque - CountedModel(found.model, data).torque(found.model.values)
     assert found.rms == pytest.approx(np.sqrt(np.mean(errors**2)))
+
+
+def test_what_fits_best_below_its_bounds_is_at_them():
+    columns = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    free = np.array([-1.0, -2.0])
+    lower, upper = np.zeros(2), np.ones(2)
+    assert bounded_linear(columns, columns @ free, lower, upper) == pytest.approx(lower)
+    assert bounded_linear(columns, columns @ -free, lower, upper) == pytest.approx([1.0, 1.0])
+    assert bounded_linear(columns, columns @ [0.2, 0.7], lower, upper) == pytest.approx([0.2, 0.7])

@@ -221,3 +221,13 @@ def test_tests_with_other_motors_on_the_shaft_are_fitted_apart(crane):
     assert len(curve_data(curves[:1]).torque) == len(curves[0].speed)
     with pytest.raises(InputError, match="differ in their number of motors"):
         curve_data(curves)
+
+
+def test_a_plateau_is_as_long_as_it_is_whenever_it_was_logged(truth, crane):
+    run = cycle(truth, crane, "a", 215, 79)
+    dated = replace(run, columns={**run.columns, "time": run.time + 1.7e9})
+    rule = PlateauRule(duration=2.0)
+    long = [(each.start, each.end) for each in find_plateaus(run, crane, rule)]
+    late = [(each.start - 1.7e9, each.end - 1.7e9) for each in find_plateaus(dated, crane, rule)]
+    np.testing.assert_allclose(late, long, atol=1e-5)
+    assert find_plateaus(dated, crane, PlateauRule(duration=60.0)) == []

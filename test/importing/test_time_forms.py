@@ -131,3 +131,9 @@ def test_a_steady_logger_is_laid_at_its_rate_and_no_row_leaves_its_tick():
 def test_the_last_tick_is_cut_short_and_no_slower():
     ticks = np.repeat(np.arange(6.0), [20, 5, 20, 5, 20, 3])
     assert np.diff(spread_ticks(ticks))[-1] <= 1.0 / 12.0
+
+
+@pytest.mark.parametrize(("form", "noon"), [("filetime", 133_629_264e9), ("dotnet", 638_540_496e9)])
+def test_tenths_of_a_microsecond_tell_from_their_size_since_when(form, noon):
+    assert guess_time([numbers(noon + 2e5 * np.arange(9))], "").base.form == form
+    assert guess_time([numbers(3.0 * noon + 2e5 * np.arange(9))], "").base.form != form

@@ -1,6 +1,7 @@
 """The plant against what can be worked out by hand."""
 
 import ctypes
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import run_drive_torque, run_drum_torque
 from winch_friction.physics.winch.operating_point import operating_point, run_operating_points
 from winch_friction.simulation import Simulator, simulate
+from winch_friction.simulation.plant.equations import operating_point as kernel_point
 from winch_friction.simulation.plant.friction_kernel import friction_kernel
+from winch_friction.simulation.plant_file import load_plant
 
 CONSTANTS = {"max_displacement": 3.42e-5, "gear_ratio": 250.0}
 
@@ -175,3 +178,32 @@ def test_displacement_and_boost_can_be_switched_during_a_run(cycle, crane, model
     stored = truth["energy_stored"] - truth["energy_stored"][0]
     moved = truth["energy_in"] + truth["energy_heave"] - truth["energy_friction"] - truth["energy_lost"]
     assert np.abs(stored - moved).max() < 1e-6 * truth["energy_in"].max()
+
+
+@pytest.mark.parametrize(("key", "narrow", "wide"), [("scenario", 1e-3, 3.0), ("plant", 1e-3, 3.0)])
+def test_reversals_are_as_wide_as_scenario_or_plant_says(key, narrow, wide, ahc, crane, model):
+    scenario = ahc.override({**CLEAN, "duration": 20.0})
+
+    def transition(width):
+        if key == "scenario":
+            truth = simulate(scenario.override({"presliding": width}), crane, model).truth
+        else:
+            plant = load_plant(scenario.plant).copy(update={"presliding": width})
+            truth = Simulator(scenario.override({"presliding": None}), crane, model, plant=plant).run().truth
+        turning = np.abs(truth["motor_speed"]) > 3.0
+        return float(np.mean(np.abs(truth["direction"][turning]) < 0.9))
+
+    assert transition(wide) > 3.0 * transition(narrow)
+
+
+def test_a_pressure_that_pushes_the_other_way_is_as_large_and_acts_at_the_other_port(ahc, crane, model):
+    plant = Simulator(ahc.override(CLEAN), crane, model)._plant[0]
+    plant = SimpleNamespace(**dict(zip(plant.dtype.names, plant.tolist(), strict=True)))
+    state = np.zeros(16)
+
+    def point(dp):
+        return kernel_point.py_func(plant, state, 0.0, 0.0, 0.0, 0.0, 40.0, dp, 0.0, 0.0)
+
+    there, back = point(80e5), point(-80e5)
+    assert there.pressure_driven == back.pressure_driven == 80e5
+    assert (there.higher_port_driven, back.higher_port_driven) == (1.0, -1.0)

@@ -182,10 +182,16 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
     np.testing.assert_allclose(right.columns["main.displacement"], true, atol=1e-6 * bow)
 
 
-def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0):
+def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0, noise=False):
     """What a prepared run says of its wire."""
     return SimpleNamespace(
-        groups=[None] * groups, wire_mode=mode, load=np.full(3, 5e4), dt=dt, swing_left=left, swing_variance=variance
+        groups=[None] * groups,
+        wire_mode=mode,
+        load=np.full(3, 5e4),
+        dt=dt,
+        swing_left=left,
+        swing_variance=variance,
+        swing_noise=noise,
     )
 
 
@@ -253,3 +259,13 @@ def test_a_transducer_of_one_group_and_the_feedback_of_another_are_two_causes(
     zero, stroke = named["pressure_offset"]["p_0"].value, named["swivel_offset"]["D_0"].value
     assert zero == pytest.approx(-3e5, abs=0.3e5)
     assert stroke == pytest.approx(2.0 * CM3_PER_REV, abs=0.1 * CM3_PER_REV)
+
+
+@pytest.mark.parametrize(("noise", "expected"), [(True, 0.06), (False, 0.0)])
+def test_a_noisy_motion_sensor_denies_no_swing_that_the_other_runs_tell(noise, expected):
+    """Held loads, whose measured motion is noise at the wire's mode: it would ring there, and nothing does."""
+    hoists = [prepared(Mode(5.0 + k, 0.06, False)) for k in range(4)]
+    held = [prepared(Mode(7.0, 0.0), RUNG, groups=2, noise=noise) for _ in range(3)]
+    modes = _agreed_modes([*hoists, *held])
+    assert [mode.damping for mode in modes] == pytest.approx([expected] * 7)
+    assert [mode.unheard for mode in modes] == [False] * 4 + [noise] * 3

@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.preparation.suspended_load import agreed_damping, denies, pooled_damping, shared_damping
+from winch_friction.discrepancy.preparation.suspended_load import (
+    SuspendedLoad,
+    agreed_damping,
+    denies,
+    pooled_damping,
+    shared_damping,
+)
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
+    Mode,
     on_the_wire,
     swinging_load,
     wire_stiffnesses,
@@ -181,6 +188,7 @@ def test_runs_that_agree_on_an_overdamped_mode_have_a_noisy_motion_sensor_and_a_
     ([0.059, 0.063, 0.0, 0.061, 0.06, 0.257, 0.33], 0.06),  # four of seven, and what heave compensation blurs
     ([0.059, 0.063, 0.0, 0.0, 0.0, 0.06, 0.061, 0.0], None),  # not most of them
     ([0.06, 0.061, 0.059], None),  # three may be chance
+    ([0.06, 0.061, 0.059, *[0.0] * 3], None),  # of which nothing is known
     ([0.03, 0.06, 0.12, 0.24, 0.45], None),  # each another one
     ([0.45, 0.46, 0.44, 0.45, 0.46], None),  # so damped that anything slow looks like it
 ])  # fmt: skip
@@ -254,3 +262,31 @@ def test_a_light_load_leaves_as_much_with_a_swing_as_without_and_a_heavy_one_on_
         swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, mass, np.full(len(TIME), LEVER), (9.0 * mass,))
         assert swing.mode.damping == 0.0
         assert denies(swing.left, 0.08) is denied
+
+
+@pytest.mark.parametrize(
+    ("left", "expected"), [([UNTOLD] * 3, 0.06), ([UNTOLD] * 2, None), ([UNTOLD] * 5 + [DENYING], None)]
+)
+def test_three_runs_that_agree_will_do_where_as_many_do_not_object(left, expected):
+    modes = [(5.0, ratio, 2e4) for ratio in (0.06, 0.061, 0.059)] + [(8.0, 0.0, 2e4)] * len(left)
+    found = shared_damping(modes, [()] * 3 + left)
+    assert (found is None) if expected is None else found(5.0, 2e4) == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize(("heard", "noise"), [(True, False), (False, True)])
+def test_a_run_tells_whether_what_is_fast_in_its_motion_is_a_sensors_noise(heard, noise):
+    """A held load: what its measured motion has at the wire's mode is felt by the motors, or by the sensor alone."""
+    rng = np.random.default_rng(3)
+    slow, fast = 0.3 * np.sin(0.7 * TIME), 0.03 * rng.standard_normal(len(TIME))
+    gap = 20.0 * rng.standard_normal(len(TIME)) - MASS * LEVER * (0.0 if heard else 1.0) * fast
+    everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
+    swing = swinging_load(gap, everywhere, slow + fast, DT, MASS, lever, (6.0**2 * MASS,))
+    assert swing.mode.damping == 0.0
+    assert swing.noise is noise
+
+
+def test_a_load_whose_swing_is_not_heard_moves_as_on_a_rigid_wire():
+    ones = np.ones(len(TIME))
+    load = SuspendedLoad(MASS * ones, ones, LEVER * ones, motion(TIME), motion(TIME))
+    assert load.on_wire(DT, Mode(6.0, 0.06, None, unheard=True), None) is load
+    assert np.ptp(load.on_wire(DT, Mode(6.0, 0.06), None).acceleration - load.acceleration) > 0.1

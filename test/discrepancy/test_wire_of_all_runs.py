@@ -1,9 +1,19 @@
 """Whether a wire gives is decided by all runs, also where the model is fitted to some of them."""
 
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
 from campaign.gap_hard_cases import all_cases, runs_of
+from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
+from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
+from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.channels import BAR
+from winch_friction.physics.signals import Run
 
 
 def test_a_model_is_fitted_to_a_load_that_swings_as_all_runs_say_it_does(crane_150t, crane2_model):
@@ -19,3 +29,25 @@ def test_a_model_is_fitted_to_a_load_that_swings_as_all_runs_say_it_does(crane_1
     assert result.verdict == "nothing_missing"
     held = result.holdout
     assert held.size_after.value < 1.5 * held.noise_floor
+
+
+def test_a_swing_from_before_the_record_hides_no_wire(crane_150t, crane2_model):
+    """A record cut out of a motion: what rings down at its beginning is larger than all that the motion excites."""
+    columns = dict(make_dataset(77, "elastic_still", ())[6])
+    told = prepare(Run("r", columns), crane_150t, crane2_model).wire_mode
+    since = columns["time"] - columns["time"][0]
+    ringing = 20.0 * BAR * np.exp(-0.06 * told.frequency * since) * np.cos(told.frequency * since)
+    cut_out = Run("r", {**columns, "main.pressure_a": columns["main.pressure_a"] + ringing})
+    found = prepare(cut_out, crane_150t, crane2_model)
+    assert told.damping == pytest.approx(0.06, abs=0.01)
+    assert found.wire_mode.damping == pytest.approx(told.damping, rel=0.1)
+
+
+@pytest.mark.parametrize(("mode", "louder", "left_out"), [
+    (Mode(8.0, 0.0), 10.0, 10.0), (Mode(8.0, 0.0), 1.0, 0.0), (Mode(8.0, 0.05), 10.0, 0.0), (Mode(0.0, 0.0), 10.0, 0.0),
+])  # fmt: skip
+def test_what_swings_at_first_alone_is_left_out_on_a_wire_that_is_taken_for_rigid(mode, louder, left_out):
+    time = np.arange(0.0, 100.0, 0.02)
+    gap = np.random.default_rng(1).standard_normal(len(time)) * np.where(time < 10.0, louder, 1.0)
+    kept = _rung_out(SimpleNamespace(time=time), mode, gap, np.ones(len(time), bool))
+    assert time[kept][0] == pytest.approx(left_out, abs=0.1)

@@ -12,7 +12,12 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
-from winch_friction.discrepancy.preparation.suspended_load import agreed_damping, denies, pooled_damping, shared_damping
+from winch_friction.discrepancy.preparation.suspended_load import (
+    agreed_damping,
+    denies,
+    pooled_damping,
+    shared_damping,
+)
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.channels import GRAVITY
@@ -169,7 +174,7 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
-    modes, left = [(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_left for run in able]
+    modes, left = [(*run.wire_mode[:2], _mass(run)) for run in able], [_said(run) for run in able]
     ratio = shared_damping(modes, left)
     told = [run for run in compensating if _slow(run, TOLD)]
     if ratio is not None and 2 * sum(_denied(run, ratio) for run in told) > len(told):
@@ -189,7 +194,7 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     return [
         Mode(
             run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if _slow(run) else 0.0,
-            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows,
+            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows, _rings(run, ratio),
         )
         for run in prepared
     ]  # fmt: skip
@@ -204,7 +209,19 @@ def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     """Whether a run speaks against a load that swings so damped."""
-    return run.wire_mode[1] <= 0.0 and denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
+    return run.wire_mode[1] <= 0.0 and denies(_said(run), ratio(run.wire_mode[0], _mass(run)))
+
+
+def _rings(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
+    """Whether a computed wire would make its sensors' noise ring, and nothing that the motors feel."""
+    own = ratio(run.wire_mode[0], _mass(run))
+    return run.swing_noise and run.wire_mode[1] <= 0.0 and denies(run.swing_left, own)
+
+
+def _said(run: PreparedRun) -> tuple[float, ...]:
+    """What a run says that a swing of each damping ratio would leave; where its sensors' noise rings by one, that is
+    nothing against it."""
+    return tuple(min(each, 1.0) for each in run.swing_left) if run.swing_noise else run.swing_left
 
 
 def _slow(run: PreparedRun, turn: float = FOLLOWED) -> bool:

@@ -40,6 +40,8 @@ TURNS = 0.5  # rad of the wire's mode in a sample, from where on its swing bends
 FOLLOWED_FOR = 0.5  # s without a bend, for samples to count
 LEAST_FOLLOWED = 0.05  # of a run's moving samples; what is less is no part of the motion, but where it turns
 FEWEST_MOVING = 100  # samples in which a swing can be looked for
+USUAL_DAMPING = 0.05  # ratio of a load on a rope, by which is told when a swing from before the record hides no other
+RINGS = 2.0  # times the gap's deviation later in the run, by which its beginning swings
 MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
 
@@ -69,7 +71,13 @@ def prepare(
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
     swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
     mode = swing.mode
-    used = motion.used & _settled(grid, mode) & balancing.known & _followed(grid, motion, hanging, balance, crane, mode)
+    used = (
+        motion.used
+        & _settled(grid, mode)
+        & _rung_out(grid, mode, balance.gap, motion.used)
+        & balancing.known
+        & _followed(grid, motion, hanging, balance, crane, mode)
+    )
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
     return PreparedRun(
@@ -79,6 +87,7 @@ def prepare(
         drum_torque=hanging.drum_torque,
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
         swing_left=swing.left, swing_variance=swing.variance / balance.unit_torque**2,
+        swing_noise=swing.noise,
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
@@ -106,12 +115,16 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> Swi
     """Frequency and damping of the load's swinging, where the wire's stiffness is known, and what other dampings would
     leave."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
-    if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0 or motion.used.sum() < FEWEST_MOVING:
+    if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0:
         return Swing(load.acceleration, Mode(0.0, 0.0))
     stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
+    slowest = Mode(float(np.sqrt(min(stiffnesses) / mass)), USUAL_DAMPING)
+    counts = np.flatnonzero(motion.used & _settled(balancing.grid, slowest))
+    if len(counts) < FEWEST_MOVING:
+        return Swing(load.acceleration, Mode(0.0, 0.0))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
     swing = swinging_load(
-        rigid.gap, np.flatnonzero(motion.used), load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
+        rigid.gap, counts, load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
         friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
         length=columns.get("wire_out"),
     )  # fmt: skip
@@ -131,6 +144,19 @@ def _settled(grid: Grid, mode: Mode) -> np.ndarray:
     if mode[1] <= 0.0:
         return np.ones(len(grid.time), bool)
     return np.asarray(grid.time > min(settling_time(*mode[:2]), MOST_SETTLING * grid.time[-1]))
+
+
+def _rung_out(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np.ndarray:
+    """Samples without a swing from before the record, on a wire that is taken for rigid though its stiffness is known:
+    what moves it so little later may have moved it much."""
+    everywhere = np.ones(len(gap), bool)
+    if mode.damping > 0.0 or mode.frequency <= 0.0:
+        return everywhere
+    later = _settled(grid, Mode(mode.frequency, USUAL_DAMPING))
+    begin, rest = gap[moving & ~later], gap[moving & later]
+    if min(len(begin), len(rest)) < FEWEST_MOVING:
+        return everywhere
+    return later if np.std(begin) > RINGS * np.std(rest) else everywhere
 
 
 def _followed(

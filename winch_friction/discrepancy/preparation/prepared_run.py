@@ -43,6 +43,7 @@ class PreparedRun:
     gap: FloatArray
     wire_mode: Mode  # of the load on its wire
     swing_left: tuple[float, ...]  # share of what may swing that a swing of each damping ratio would leave
+    swing_noise: bool  # whether what swings in the load's acceleration is in the sensors alone
     swing_variance: float  # of what may swing, in the gap's unit squared; 0 where the mode was given
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m

@@ -50,8 +50,8 @@ class SuspendedLoad:
         return self.mass * self.lever * self.heave
 
     def on_wire(self, dt: float, mode: Mode, length: FloatArray | None) -> "SuspendedLoad":
-        """The load behind the wire's mode, whose `length` m it may follow; as it is where the wire is rigid."""
-        if mode.damping <= 0.0:
+        """The load behind the wire's mode, whose `length` m it may follow; as it is where nothing is heard of one."""
+        if mode.damping <= 0.0 or mode.unheard:
             return self
         own = (dt, mode.frequency, mode.damping, length if mode.follows else None)
         moved = on_the_wire(self.acceleration, *own), on_the_wire(self.heave, *own)
@@ -174,17 +174,19 @@ def shared_damping(
     find one damping.
     """
     swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
-    if len(swinging) < FEWEST_ALIKE:
+    if len(swinging) < FEWEST_ALIKE - 1:
         return None
     frequency, ratio, mass = swinging.T
     alike = max((_closest(each) for each in (2.0 * ratio * frequency * mass, ratio)), key=np.sum)
-    if alike.sum() < FEWEST_ALIKE or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
+    if alike.sum() < FEWEST_ALIKE - 1 or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
         return None
     agreed = agreed_damping(swinging[alike].tolist())
     if agreed is None:
         return None
     rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
     against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
+    if alike.sum() < FEWEST_ALIKE and (against + (~alike).sum() > 0 or len(modes) < 2 * alike.sum()):
+        return None  # one less will do where as many others do not object
     return agreed if alike.sum() > against + MOST_ASTRAY * (~alike).sum() else None
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import filtered
+from winch_friction.discrepancy.preparation.grid import filtered, smooth
 from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)
@@ -30,6 +30,7 @@ LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; 
 # no rope is damped more: a mode that is takes a motion sensor's noise out of the acceleration; and where the wire's
 # length is unknown, a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
+TURN = 2.0 * np.pi  # rad; a parabola over two periods of a mode follows what is slower than half of it
 SETTLED = 4.0  # decay times, down to 2 %
 NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
 # rad a sample: a mode of four samples is still told from none, and one of six has its damping told
@@ -39,12 +40,14 @@ FOLLOWED, TOLD = 1.5, 1.0
 class Mode(NamedTuple):
     """The load's mode on its wire: frequency rad/s and damping ratio (0: rigid) at the run's median length.
 
-    `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes.
+    `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes. `unheard`:
+    the wire gives, but what is as fast in the load's measured motion is its sensors' noise, which would ring in it.
     """
 
     frequency: float
     damping: float
     follows: bool | None = None
+    unheard: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,13 +56,15 @@ class Swing:
 
     `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at its own or else at the
     stated frequency; empty where none is stated, or the samples cannot follow it. `variance` is that of all that may
-    swing, (N m)^2.
+    swing, (N m)^2. `noise`: what is faster than the stated mode in the load's acceleration is not in the gap, so that
+    it tells of the sensors alone, and of no wire.
     """
 
     acceleration: FloatArray
     mode: Mode
     left: tuple[float, ...] = ()
     variance: float = 0.0
+    noise: bool = False
 
 
 def swinging_load(
@@ -87,8 +92,8 @@ def swinging_load(
         return mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio, length))
 
     besides = [each for each in (friction, hiding) if each is not None]
-    judge = _Judge(gap, counts, partial(change, None), besides)
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
+    judge = _Judge(gap, counts, partial(change, None), besides)
     first = min(len(besides), 1)
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
@@ -102,8 +107,11 @@ def swinging_load(
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
             moved = on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own])
             return Swing(moved, mode, judges[own].by_damping(first, mode.frequency), judge.swinging(first))
-    left = judge.by_damping(first, frequencies[0]) if len(frequencies) == 1 else ()
-    return Swing(rigid, Mode(0.0, 0.0), left, judge.swinging(first))
+    if len(frequencies) != 1:
+        return Swing(rigid, Mode(0.0, 0.0), (), judge.swinging(first))
+    slow = smooth(rigid, int(2.0 * TURN / (frequencies[0] * dt)))
+    noise = judge.swinging(first, mass * lever * (rigid - slow)) <= judge.swinging(first)
+    return Swing(rigid, Mode(0.0, 0.0), judge.by_damping(first, frequencies[0]), judge.swinging(first), noise)
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
@@ -204,9 +212,10 @@ class _Judge:
         """The shares that a mode of each of `DAMPING_RATIOS` leaves."""
         return tuple(self.left(parts, frequency, ratio) for ratio in DAMPING_RATIOS)
 
-    def swinging(self, parts: int) -> float:
-        """The variance of which these are shares."""
-        return self._variance(parts, self._rigid)
+    def swinging(self, parts: int, change: FloatArray | None = None) -> float:
+        """The variance of which these are shares; with the `change` of a torque N m in the gap, if given."""
+        own = self._rigid if change is None else self._components(self._gap + self._levelled(change))
+        return self._variance(parts, own)
 
     def _variance(self, parts: int, components: tuple[float, FloatArray]) -> float:
         square, along = components

@@ -8,6 +8,8 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 # one thread per process: the arrays are small, and the machine's cores belong to the nodes
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# every process that a test starts would compile the package anew, and every worker all tests
+unexport PYTHONDONTWRITEBYTECODE
 
 CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation second third
 
@@ -19,8 +21,9 @@ $(READY): setup.py constraints.txt
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.12 is needed (the ROS 2 Jazzy wheels exist for these); set PYTHON=/path/to/python3.12"; exit 2; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check "pip>=24" "setuptools>=65,<80" wheel
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[all]'
-	$(BIN)/python -m winch_friction.cli.warming
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-compile -c constraints.txt -e '.[all]'
+	@# pip compiles one file after the other, on one core
+	$(BIN)/python -m compileall -q -j 0 $(VENV)/lib winch_friction campaign bench >/dev/null & $(BIN)/python -m winch_friction.cli.warming && wait
 	@touch $(READY)
 
 demo: $(READY)
@@ -29,7 +32,7 @@ demo: $(READY)
 # tests that start nodes mostly wait; whatever only computes fills the time that they leave and gives way
 # The two whole loops over DDS wait for each other's answers; what is judged by the clock then runs two files at a time,
 # each with domains of its own
-test: $(READY) browser
+test:
 	$(MAKE) --no-print-directory -j 3 --output-sync=recurse lint test-nodes test-computing
 
 # where tests start nodes; to look through all the others takes each worker ten seconds
@@ -39,7 +42,9 @@ test-nodes: $(READY)
 	$(BIN)/python -m pytest $(ROS_TESTS) -m "ros and slow" -n 2 --dist loadfile
 	$(BIN)/python -m pytest $(ROS_TESTS) -m "ros and not slow" -n 2 --dist loadfile
 
-test-computing: $(READY)
+# the first look at the tests compiles them for all workers
+test-computing: $(READY) browser
+	$(BIN)/python -m pytest --collect-only -q >/dev/null || true
 	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n $$(( $$(nproc) < 3 ? $$(nproc) + 1 : 4 )) --dist loadfile --no-loadscope-reorder
 
 # more whole data sets of the kinds that `make test` holds one or some of, five minutes on two cores: before a change of

@@ -1,5 +1,6 @@
 """Peak memory of the verbs on an hour's log, beside its size: a bag, for `import` text, for `identify` test cycles."""
 
+import json
 import math
 import os
 import subprocess
@@ -19,11 +20,12 @@ HOUR, SHORT = 3600.0, 10.0  # s
 # a verb may find something and say so by its status; the peak is /proc's, which is this program's alone: getrusage's
 # begins with that of the process which started it, and that one holds the whole hour
 PEAK = """
-import sys
+import json, sys
 from winch_friction.cli.main import run
-assert run(sys.argv[1:]) in (0, 1)
-peak = next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM"))
-print(peak, file=sys.stderr)
+for verb in json.loads(sys.argv[1]):
+    assert run(verb) in (0, 1), verb
+    peak = next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM"))
+    print("peak", peak, file=sys.stderr)
 """
 KNOWN = ("--crane", "crane_150t", "--model", "a6vm215_crane2")
 
@@ -44,22 +46,25 @@ def measure(smoke: bool = False) -> list[Row]:
         }
         if smoke:
             del verbs["gap"]  # a few seconds of sea are too short for it
-        rows = [_row(name, verb, size, note) for name, verb in verbs.items()]
-        return [*rows, _of_import(run, Path(folder)), _of_identify(Path(folder), SHORT if smoke else HOUR)]
+        rows = [
+            _row(name, peak, size, note) for name, peak in zip(verbs, _peaks([*verbs.values()], smoke), strict=True)
+        ]
+        return [*rows, _of_import(run, Path(folder), smoke), _of_identify(Path(folder), SHORT if smoke else HOUR)]
 
 
-def _row(name: str, verb: tuple[str, ...], size: float, note: str) -> Row:
-    return Row(f"memory: peak of {name}", _peak(verb), "MB", note, at_most=300.0 + 2.0 * size)
+def _row(name: str, peak: float, size: float, note: str) -> Row:
+    return Row(f"memory: peak of {name}", peak, "MB", note, at_most=300.0 + 2.0 * size)
 
 
-def _of_import(run: Run, folder: Path) -> Row:
+def _of_import(run: Run, folder: Path, smoke: bool) -> Row:
     """The hour as somebody's text file, with a proposed map of its columns."""
     log, table = write_run(run, folder / "log.csv"), str(folder / "map.yaml")
     size = log.stat().st_size / 1e6
-    proposed = _peak(("import", str(log), "--propose", "--crane", "crane_150t", "--map", table))
+    proposal = ("import", str(log), "--propose", "--crane", "crane_150t", "--map", table)
     verb = ("import", str(log), "--map", table, "--out", str(folder / "runs"), "--crane", "crane_150t")
+    proposed, peak = _peaks([proposal, verb], smoke)
     note = f"of a text of {size:.0f} MB, {run.time[-1]:.0f} s at 50 Hz; its map was proposed at {proposed:.0f} MB"
-    return _row("import", verb, size, note)
+    return _row("import", peak, size, note)
 
 
 def _of_identify(folder: Path, duration: float) -> Row:
@@ -73,7 +78,7 @@ def _of_identify(folder: Path, duration: float) -> Row:
     seconds = again * sum(float(test.time[-1]) for test in tests)
     search = ("--resamples", "2", "--restarts", "1", "--evaluations", "500")  # again and again in the same memory
     verb = ("identify", "system", *map(str, files), "--motor", "a6vm215", "--out", f"{folder}/model.yaml", *search)
-    return _row("identify system", verb, size, f"of {len(files)} tests, {seconds:.0f} s in {size:.1f} MB")
+    return _row("identify system", *_peaks([verb]), size, f"of {len(files)} tests, {seconds:.0f} s in {size:.1f} MB")
 
 
 def _repeated(run: Run, times: int) -> Run:
@@ -84,8 +89,14 @@ def _repeated(run: Run, times: int) -> Run:
     return replace(run, columns=columns, aside={})
 
 
-def _peak(verb: tuple[str, ...]) -> float:
-    done = subprocess.run(
-        [sys.executable, "-c", PEAK, *verb], env=dict(os.environ), capture_output=True, text=True, check=True
-    )
-    return float(done.stderr.split()[-1]) / 1e3
+def _peaks(verbs: list[tuple[str, ...]], together: bool = False) -> list[float]:
+    """MB at the peak of each verb in a process of its own; `together` in one after the other, for a smoke run."""
+    each = [verbs] if together else [[verb] for verb in verbs]
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", PEAK, json.dumps(some)],
+            env=dict(os.environ), capture_output=True, text=True, check=True,
+        ).stderr
+        for some in each
+    ]  # fmt: skip
+    return [float(line.split()[1]) / 1e3 for one in said for line in one.splitlines() if line.startswith("peak ")]

@@ -33,8 +33,11 @@ INK = {"light": "#1d2126", "dark": "#e4e7ea"}  # of the plots' text
 
 
 # the answers of all rules on a large page are megabytes; only what is wrong is fetched from the browser
-RUN_AXE = """axe.run({resultTypes: ["violations"]}).then(
+RUN_AXE = """(rules) => axe.run({resultTypes: ["violations"], ...(rules ? {runOnly: rules} : {})}).then(
     ({violations}) => violations.map(({id, nodes}) => `${id}: ${nodes[0].html.slice(0, 120)}`))"""
+
+# the rules that a change of the scheme can break: it changes colours alone
+OF_COLOURS = ["color-contrast", "link-in-text-block"]
 
 # a finger cannot hover: on a phone the buttons of a figure are always there, and may lie on no name of its legend
 COVERED = """[...document.querySelectorAll(".js-plotly-plot")].flatMap((plot) => {
@@ -45,11 +48,11 @@ COVERED = """[...document.querySelectorAll(".js-plotly-plot")].flatMap((plot) =>
 }).length"""
 
 
-def violations(page):
-    """What axe-core finds wrong with the page, in words."""
+def violations(page, rules=None):
+    """What axe-core finds wrong with the page, in words, by all its rules or by some."""
     if not page.evaluate("!!globalThis.axe"):
         page.add_script_tag(path=AXE)
-    return page.evaluate(RUN_AXE)
+    return page.evaluate(RUN_AXE, rules)
 
 
 def keep_screenshot(page, kind, width, scheme):

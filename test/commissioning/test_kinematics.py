@@ -1,12 +1,16 @@
 """Do the other channels agree with the speed: sign, size and time of each."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.kinematics import LATE, MOST, agreements
+from winch_friction.commissioning.diagnose import _Bench, score_of
+from winch_friction.commissioning.kinematics import LATE, MOST, _top, agreements
 from winch_friction.commissioning.mistakes import delayed
+from winch_friction.commissioning.view import view_of
+from winch_friction.simulation import load_scenario, simulate
 
 TIME = np.arange(300) * 0.2
 SPEED = 100.0 * np.sin(0.8 * TIME) + 40.0 * np.sin(2.1 * TIME + 1.0)
@@ -50,3 +54,29 @@ def test_a_drive_without_oil_has_no_pressures_that_are_late(seconds, said):
     assert delayed(seconds, hydraulic=False).words.startswith(said)
     assert "pressures" not in delayed(seconds, hydraulic=False).words
     assert "pressures" in delayed(seconds).words
+
+
+def test_what_is_looked_up_is_what_it_would_be_computed_anew(crane_150t, crane2_model):
+    """A view that shares with a known one all but one of what its agreements rest on has agreements of its own."""
+    run = simulate(load_scenario("ahc_irregular").override({"duration": 30.0}), crane_150t, crane2_model, seed=3).run
+    view = view_of(run, crane_150t)
+    bench = _Bench([view], np.array([0.0]), crane2_model)
+    rates = {name: 1.3 * rate for name, rate in view.rates.items()}
+    changes = (
+        {}, {"load": 2.0 * view.load}, {"speed": 1.3 * view.speed}, {"rates": rates}, {"radius": 1.3 * view.radius},
+        {"gear_ratio": 1.3 * view.gear_ratio},
+    )  # fmt: skip
+    assert {"wire_out", "speed_reference"} <= set(rates)
+    scores = [
+        (bench.score(changed), score_of(changed, crane2_model)) for changed in (replace(view, **c) for c in changes)
+    ]
+    for found, anew in scores:
+        assert found == anew
+
+
+def test_the_top_of_a_channel_is_numpys_percentile_to_the_last_digit():
+    draw = np.random.default_rng(5)
+    for size in (1, 2, 3, 51, 52, 100, 101, 333):
+        values = np.concatenate([draw.normal(size=size), [np.nan, np.inf]])
+        assert _top(values) == np.percentile(np.abs(values[:size]), 99)
+    assert _top(np.array([np.nan])) == 0.0

@@ -7,6 +7,7 @@ number of effective samples when the record is the crane's, many times that when
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -131,12 +132,20 @@ def _bouncing(view: RunView, load: FloatArray, rigid: FloatArray) -> FloatArray:
     step = float(np.median(np.diff(view.time))) if len(view.time) > 1 else 0.0
     if not 0.0 < view.bounce * step < FASTEST_BOUNCE:
         return np.zeros(len(view.time))
-    from scipy.signal import bilinear, lfilter  # half a second that only a soft wire costs
+    from scipy.signal import lfilter  # half a second that only a soft wire costs
 
-    damper = [2.0 * BOUNCE_DAMPING * view.bounce, view.bounce**2]
-    exact = view.bounce / (2.0 * np.tan(0.5 * view.bounce * step))  # Hz, by which the mode keeps its frequency
-    found = lfilter(*bilinear(damper, [1.0, *damper], exact), rigid) - rigid
+    found = lfilter(*_mode(view.bounce, step), rigid) - rigid
     return np.asarray(np.clip(found, -np.abs(load), np.abs(load)))
+
+
+@lru_cache(maxsize=64)  # the same for every mistake that is put right in a run
+def _mode(bounce: float, step: float) -> tuple[FloatArray, FloatArray]:
+    """The damped mode of a load on its wire, `bounce` rad/s, as a filter of samples every `step` s."""
+    from scipy.signal import bilinear
+
+    damper = [2.0 * BOUNCE_DAMPING * bounce, bounce**2]
+    exact = bounce / (2.0 * np.tan(0.5 * bounce * step))  # Hz, by which the mode keeps its frequency
+    return bilinear(damper, [1.0, *damper], exact)
 
 
 def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:
@@ -262,13 +271,17 @@ def _bounded(matrix: FloatArray, target: FloatArray, limits: FloatArray) -> Floa
     """The ridge solution with those errors held at their limit that would pass it, the farthest first."""
     free = np.ones(len(target), bool)
     theta = np.zeros(len(target))
+    lower, upper = limits.T
     while free.any():
-        rest = target - matrix[:, ~free] @ theta[~free]
-        theta[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest[free])
-        excess = np.where(free, np.maximum(limits[:, 0] - theta, theta - limits[:, 1]), -np.inf)
-        worst = int(np.argmax(excess))
-        if excess[worst] <= 0.0:
+        loose, held = free.nonzero()[0], (~free).nonzero()[0]
+        rest = target - matrix[:, held] @ theta[held] if held.size else target
+        found = np.linalg.solve(matrix[loose[:, None], loose], rest[loose])
+        theta[loose] = found
+        excess = np.maximum(lower[loose] - found, found - upper[loose])
+        farthest = int(excess.argmax())
+        if excess[farthest] <= 0.0:
             break
-        theta[worst] = np.clip(theta[worst], *limits[worst])
+        worst = loose[farthest]
+        theta[worst] = min(max(theta[worst], lower[worst]), upper[worst])
         free[worst] = False
     return theta

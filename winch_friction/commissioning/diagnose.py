@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, static_torque, typical_friction
-from winch_friction.commissioning.kinematics import agreements, excesses, range_score
+from winch_friction.commissioning.kinematics import Agreement, agreements, excesses, range_score
 from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.channels import GRAVITY
@@ -104,6 +104,11 @@ def _beside_balance(view: RunView) -> float:
     return sum(each.score for each in agreements(view)) + range_score(view)
 
 
+def _kinematics(view: RunView) -> tuple[int, int, int, float]:
+    """What the agreement of a view rests on, by identity: a mistake put right makes new arrays of what it changes."""
+    return id(view.speed), id(view.rates), id(view.radius), view.gear_ratio
+
+
 def diagnose(
     views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane]
 ) -> Diagnosis:
@@ -157,12 +162,29 @@ class _Bench:
         self.views, self.as_is, self.model = views, as_is, model
         order = np.argsort(-as_is)
         self.worst = order.tolist()
+        self._known: dict[tuple[int, int, int, float], tuple[RunView, list[Agreement]]] = {}
+        self._know(views)
+
+    def _know(self, views: Sequence[RunView]) -> None:
+        """Keep how the channels of the views agree (with the views, whose identities are the keys): most mistakes leave
+        them alone, and to compare them anew for each takes a fourth of a diagnosis."""
+        self._known |= {_kinematics(view): (view, agreements(view)) for view in views}
+
+    def _agreements(self, view: RunView) -> list[Agreement]:
+        _, found = self._known.get(_kinematics(view)) or (view, agreements(view))
+        return found
+
+    def score(self, view: RunView) -> float:
+        """`score_of`, with the agreements looked up where they are known."""
+        agreed = sum(each.score for each in self._agreements(view))
+        return closure(view, self.model).score + (agreed + range_score(view))
 
     def ranked(self, mistakes: Sequence[Mistake], runs: int = FIRST_RUNS) -> list[Hypothesis]:
         """The mistakes that are worth a look on every run, least score first; so many runs are tried first."""
         first = sorted(self.worst[:runs])
         whole = [self.views[k] for k in first]
         thin = [_thin(view) for view in whole]
+        self._know(thin)
 
         def quick(mistake: Mistake) -> float:
             late = any(each.cause == "delay" for each in (mistake, *mistake.parts))
@@ -179,11 +201,11 @@ class _Bench:
             first, second = mistake.parts
             return self._undone(second, first.undo(view)) + _shrinking(first, view) + _both_shrink(first, second, view)
         if mistake.cause == "delay":  # a shift must not pass for agreement by losing the likeness to other channels
-            follow = [each.channel for each in agreements(view)]
+            follow = [each.channel for each in self._agreements(view)]
             shifted = mistake.undo(view)
             agreed = sum(each.score for each in agreements(shifted, follow))
             return closure(shifted, self.model).score + agreed + range_score(view)
-        return score_of(mistake.undo(view), self.model) + _shrinking(mistake, view)
+        return self.score(mistake.undo(view)) + _shrinking(mistake, view)
 
     def _tried(self, mistake: Mistake) -> Hypothesis:
         undone = np.array([self._undone(mistake, view) for view in self.views])

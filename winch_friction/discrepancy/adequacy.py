@@ -268,8 +268,9 @@ def _covered(name: str, runs: Sequence[Run]) -> FloatArray:
 def _beyond(locked: frozenset[int], covered: Sequence[FloatArray]) -> float:
     """How far the locked runs reach beyond the others, in ranges of all runs, summed over the columns."""
     far = 0.0
+    own = np.zeros(len(covered[0]) if covered else 0, bool)
+    own[list(locked)] = True
     for ranges in covered:
-        own = np.isin(np.arange(len(ranges)), list(locked))
         known = np.isfinite(ranges[:, 0])
         here, there = ranges[own & known], ranges[~own & known]
         if not len(here) or not len(there):

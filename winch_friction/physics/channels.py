@@ -207,6 +207,11 @@ _TOKEN = re.compile(r"([*/]?)([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
 
 def dimension_of(unit: str) -> dict[str, float]:
     """Exponents of kg, m, s, K and A; `InputError` for what is no SI unit."""
+    return dict(_dimension_of(unit))
+
+
+@lru_cache(maxsize=512)  # a search declares hundreds of curves with the same few units
+def _dimension_of(unit: str) -> dict[str, float]:
     total: Counter[str] = Counter()
     at = 0
     for token in _TOKEN.finditer(unit):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import lock_holdout
+from winch_friction.discrepancy.locking import lock_holdout
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import Run
 
@@ -48,3 +48,27 @@ def test_what_is_locked_lies_within_what_is_learned_from(seed):
     locked = [int(name[1:]) for name in lock_holdout(log, 0.25, np.random.default_rng(seed)).holdout]
     assert len(locked) == 3
     assert not {int(np.argmin(loads)), int(np.argmax(loads)), int(np.argmin(days)), int(np.argmax(days))} & set(locked)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_no_layer_of_the_drum_is_met_in_the_locked_runs_alone(seed):
+    """Three of ten runs on the third of four layers, which lies within the others."""
+    layers = (1, 2, 3, 3, 4, 2, 3, 4, 1, 2)
+    log = [
+        Run(f"r{k}", {"time": 3600.0 * k + np.arange(200.0) * 0.02, "wire_layer": np.full(200, float(layer))})
+        for k, layer in enumerate(layers)
+    ]
+    locked = {int(name[1:]) for name in lock_holdout(log, 0.3, np.random.default_rng(seed)).holdout}
+    assert len(locked) == 3
+    assert {layers[k] for k in set(range(10)) - locked} == {1, 2, 3, 4}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_of_runs_that_others_cover_those_are_locked_that_cover_most(seed):
+    loads = (10, 11, 12, 13, 14, 50, 80, 90, 100)
+    log = [
+        Run(f"r{k}", {"time": np.arange(200.0) * 0.02, "hook_load": np.full(200, 1e3 * load)})
+        for k, load in enumerate(loads)
+    ]
+    locked = sorted(loads[int(name[1:])] for name in lock_holdout(log, 0.25, np.random.default_rng(seed)).holdout)
+    assert locked == [11, 90]

@@ -52,15 +52,22 @@ def test_what_is_locked_lies_within_what_is_learned_from(seed):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_no_layer_of_the_drum_is_met_in_the_locked_runs_alone(seed):
-    """Three of ten runs on the third of four layers, which lies within the others."""
+    """Three of ten runs on the third of four layers; each of the others reaches beyond all in a signal of its own."""
     layers = (1, 2, 3, 3, 4, 2, 3, 4, 1, 2)
     log = [
-        Run(f"r{k}", {"time": 3600.0 * k + np.arange(200.0) * 0.02, "wire_layer": np.full(200, float(layer))})
+        Run(
+            f"r{k}",
+            {
+                "time": np.arange(200.0) * 0.02,
+                "wire_layer": np.full(200, float(layer)),
+                **{f"signal_{j}": np.full(200, 1.0 + (j == k)) for j in range(10) if layers[j] != 3},
+            },
+        )
         for k, layer in enumerate(layers)
     ]
     locked = {int(name[1:]) for name in lock_holdout(log, 0.3, np.random.default_rng(seed)).holdout}
     assert len(locked) == 3
-    assert {layers[k] for k in set(range(10)) - locked} == {1, 2, 3, 4}
+    assert len({2, 3, 6} & locked) == 2
 
 
 @pytest.mark.parametrize("seed", range(5))

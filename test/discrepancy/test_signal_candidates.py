@@ -16,8 +16,8 @@ from winch_friction.discrepancy.candidates.feedback import (
     feedback_candidates,
     s_shaped_columns,
 )
+from winch_friction.discrepancy.candidates.groups import ALL
 from winch_friction.discrepancy.candidates.signals import (
-    ALL,
     _offset,
     bent_columns,
     bowed_warm_columns,

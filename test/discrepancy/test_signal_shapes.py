@@ -7,19 +7,27 @@ import pytest
 
 from winch_friction.discrepancy.candidates import signals as module
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
-from winch_friction.discrepancy.candidates.signals import (
+from winch_friction.discrepancy.candidates.catalogue import of_one_group
+from winch_friction.discrepancy.candidates.groups import (
     ALL,
+    ALONE,
     BALANCING,
-    DELAYS,
+    BESIDE,
     OTHER,
+    driving_alone,
+    group_columns,
+    group_shapes,
+    groups_of,
+    own_group_shapes,
+)
+from winch_friction.discrepancy.candidates.signals import (
+    DELAYS,
     PRESSURES,
     SPEED,
     bent_columns,
     bowed_warm_columns,
     creeping_columns,
     delay_columns,
-    group_columns,
-    group_shapes,
     scale_columns,
     signal_candidates,
 )
@@ -29,14 +37,19 @@ TIME = 0.02 * np.arange(101)
 SIDES = Sides(None, ("active",), ("passive",))
 
 
-def group(count, balances, a=150e5, b=25e5):
+def group(count, balances, a=150e5, b=25e5, name="main"):
     one = np.ones(len(TIME))
     return SimpleNamespace(
-        count=count, displacement=2e-5 * one, pressure=(a - b) * one, pressure_sum=(a + b) * one, balances=balances
+        name=name,
+        count=count,
+        displacement=2e-5 * one,
+        pressure=(a - b) * one,
+        pressure_sum=(a + b) * one,
+        balances=balances,
     )
 
 
-BOTH = group(3, True), group(8, False)
+BOTH = group(3, True, name="active"), group(8, False, name="passive")
 
 
 def run(groups=BOTH, start=0.0, dt=0.02, **channels):
@@ -55,6 +68,34 @@ def test_a_zero_error_is_one_of_the_motors_whose_transducers_it_speaks_of(which,
 def test_a_single_group_has_no_other_side():
     assert [each.label for each in group_shapes([run((group(3, True),))])] == ["all groups"]
     assert [each.carried for each in group_shapes([run()])] == [False, False, True]
+
+
+@pytest.mark.parametrize(("which", "hoisting", "compensating"), [(ALONE, 11, 0), (BESIDE, 0, 3), (BALANCING, 11, 3)])
+def test_the_driving_group_of_hoisting_and_that_of_heave_compensation_may_be_off_by_themselves(
+    which, hoisting, compensating
+):
+    hoist = run((group(11, True),))
+    for one, motors in ((hoist, hoisting), (run(), compensating)):
+        assert group_columns(module._offset, one, {"groups": which}) == pytest.approx(motors * 2e-5)
+    assert [each.label for each in own_group_shapes([hoist, run()])] == [
+        "the main group alone",
+        "the active group alone",
+    ]
+    sides = Sides(None, ("active", "main"), ("passive",), driving_alone([hoist, run()]))
+    assert groups_of(Shape("", {"groups": which}), sides) == {
+        ALONE: ("main",), BESIDE: ("active",), BALANCING: ("active", "main")
+    }[which]  # fmt: skip
+
+
+def test_a_group_that_drives_in_either_mode_has_one_pair_of_transducers():
+    both = [run((group(3, True, name="active"),)), run()]
+    assert own_group_shapes(both) == own_group_shapes(both[:1]) == []
+    assert of_one_group(both, None) == []
+    hoist = run((group(11, True),))
+    assert [each.name for each in of_one_group([hoist, *both[1:]], None)] == [
+        "pressure_offset", "pressure_scale", "swivel_offset",
+    ]  # fmt: skip
+    assert len(of_one_group([hoist, *both[1:]], None)[1].shapes([])) == 4
 
 
 def test_a_gain_of_port_a_takes_the_pressure_of_port_a_alone():

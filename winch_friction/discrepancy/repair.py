@@ -8,13 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import (
-    CUT,
-    Candidate,
-    Estimates,
-    ParameterEstimate,
-    Sides,
-)
+from winch_friction.discrepancy.candidates.candidate import CUT, Candidate, Estimates, ParameterEstimate, Sides
+from winch_friction.discrepancy.candidates.groups import driving_alone
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -160,8 +155,8 @@ def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: Friction
 def _sides(given: Given) -> Sides:
     """Which motor groups close the balance somewhere, and which never do."""
     named = {(group.name, group.balances) for run in given.prepared for group in run.groups}
-    balancing = sorted(name for name, balances in named if balances)
-    return Sides(given.crane, tuple(balancing), tuple(sorted(name for name, b in named if not b)))
+    balancing, passive = (tuple(sorted(name for name, b in named if b == balances)) for balances in (True, False))
+    return Sides(given.crane, balancing, passive, driving_alone(given.prepared))
 
 
 def _model_of(

@@ -23,7 +23,8 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.candidates.geometry import hanging
-from winch_friction.discrepancy.candidates.signals import group_shapes, scale_columns
+from winch_friction.discrepancy.candidates.groups import group_shapes, spoken_of
+from winch_friction.discrepancy.candidates.signals import scale_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.chance import does_as_well
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -162,10 +163,9 @@ def _displacement_columns(model: FrictionModel, run: PreparedRun, values: Values
 
     The driving group's pressure is predicted from its torque: at a larger D a smaller one.
     """
-    chosen = [values["groups"] == 0.0 or g.balances == (values["groups"] == 1.0) for g in run.groups]
     names = [signal.name for signal in GROUP_SIGNALS]
     point = list(run.point)
-    for k, (group, own) in enumerate(zip(run.groups, chosen, strict=True)):
+    for k, (group, own) in enumerate(zip(run.groups, spoken_of(run, values), strict=True)):
         at = len(WINCH_SIGNALS) + k * len(names)
         if own:
             point[at + names.index("displacement")] = point[at + names.index("displacement")] * (1.0 + STEP)

@@ -14,6 +14,7 @@ from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.candidates.catalogue import of_one_group
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members, shapes_over
 from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -23,7 +24,7 @@ from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.locking import Split, lock_holdout
 from winch_friction.discrepancy.preparation.grid import thinned
-from winch_friction.discrepancy.preparation.prepared_run import against_simulations
+from winch_friction.discrepancy.preparation.prepared_run import PreparedRun, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
@@ -43,14 +44,14 @@ _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
 
 def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
-    it is where that does not end in a proven name that leaves surely less."""
+    """What no known law explains, or one name's law not well, once more with laws that only the data know and errors
+    of one motor group alone; the trial as it is where that does not end in a proven name that leaves surely less."""
     given = trial.search
     named = given.verdict.kind in (MISSING, AMBIGUOUS)
     left = given.cross.excess(given.explanation)
     if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
         return trial
-    search = search_runs(split, given.given, options, rng, partial(free_members, rows=SURFACES))
+    search = search_runs(split, given.given, options, rng, _last_resort)
     if not search.selection.found:
         return trial
     if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
@@ -59,6 +60,10 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
         return trial
     return other if not named or adds(trial.holdout, other.holdout, rng) else trial
+
+
+def _last_resort(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    return [*free_members(runs, model, rows=SURFACES), *of_one_group(runs, model)]
 
 
 def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:

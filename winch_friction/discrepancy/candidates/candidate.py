@@ -75,11 +75,13 @@ Estimates = Mapping[str, ParameterEstimate]
 
 @dataclass(frozen=True)
 class Sides:
-    """Whose transducers an effect may concern: the crane, and the motor groups that close the balance or do not."""
+    """Whose transducers an effect may concern: the crane, and the motor groups that close the balance or do not; those
+    `alone` close it without a passive one."""
 
     crane: Crane
     balancing: tuple[str, ...]
     passive: tuple[str, ...]
+    alone: tuple[str, ...] = ()
 
 
 Corrects = Callable[[Estimates, "Shape", Sides], list[Correction]]

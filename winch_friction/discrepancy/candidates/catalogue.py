@@ -18,7 +18,8 @@ from winch_friction.discrepancy.candidates.families import free_members, literat
 from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
 from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates, layers_apart
-from winch_friction.discrepancy.candidates.signals import signal_candidates
+from winch_friction.discrepancy.candidates.groups import own_group_shapes
+from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -110,6 +111,23 @@ def candidates_for(
     """Every candidate, those that speak of what these runs have covered, and of each family the free member."""
     own = [*bends_over(runs), *layers_apart(runs), *drum_ripples(runs, model), *free_members(runs, model)]
     return [*all_candidates(effects_file), *own]
+
+
+def of_one_group(runs: Sequence[PreparedRun], _: FrictionModel) -> list[Candidate]:
+    """Zero and gain errors of one driving group alone, where there are two: whatever hoisting and heave compensation
+    differ by looks a little like one, so they are for what nothing else explains."""
+    own = own_group_shapes(runs)
+    shapes = {"pressure_offset": own, "swivel_offset": own, "pressure_scale": by_port(own)}
+    plain = [each for each in (*signal_candidates(), *feedback_candidates()) if not each.law_name]
+    return [
+        replace(each, law_name="of one driving group", shapes=partial(_given, shapes[each.name]))
+        for each in plain
+        if shapes.get(each.name)
+    ]
+
+
+def _given(shapes: list[Shape], _: Sequence[PreparedRun]) -> list[Shape]:
+    return shapes
 
 
 def testable(

@@ -11,19 +11,14 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
-from winch_friction.discrepancy.candidates.signals import (
+from winch_friction.discrepancy.candidates.groups import (
     BALANCING,
-    OIL,
     affected_groups,
-    e_p,
     group_columns,
     group_shapes,
     groups_of,
-    in_groups,
-    scale_columns,
-    to,
-    warm_columns,
 )
+from winch_friction.discrepancy.candidates.signals import OIL, e_p, in_groups, scale_columns, to, warm_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals

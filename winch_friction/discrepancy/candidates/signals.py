@@ -3,7 +3,7 @@
 The true pressure stands for itself only through the base model's prediction; the noisy one never becomes a regressor.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -19,6 +19,12 @@ from winch_friction.discrepancy.candidates.candidate import (
     Sides,
     Values,
     correction,
+)
+from winch_friction.discrepancy.candidates.groups import (
+    GroupLaw,
+    group_columns,
+    group_shapes,
+    groups_of,
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
@@ -41,9 +47,7 @@ SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
-ALL, BALANCING, OTHER = 0.0, 1.0, 2.0
 
-_GroupLaw = Callable[[GroupSignals], FloatArray]
 
 p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
@@ -61,33 +65,13 @@ e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the 
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
 
-def affected_groups(run: PreparedRun, values: Values) -> list[GroupSignals]:
-    """The motor groups whose transducers a shape speaks of."""
-    which = values["groups"]
-    return [g for g in run.groups if which == ALL or g.balances == (which == BALANCING)]
-
-
-def group_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
-    """Sum of a law over the affected motor groups, N m at the shaft, shape (samples, 1)."""
-    return sum((law(g) for g in affected_groups(run, values)), np.zeros(len(run.time)))[:, None]
-
-
-def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-    """Which transducers are off: all alike, or, with several groups about, those of one side alone."""
-    shapes = [Shape("all groups", {"groups": ALL})]
-    if any(len(run.groups) > 1 for run in runs):
-        shapes.append(Shape("the driving group", {"groups": BALANCING}))
-        shapes.append(Shape("the passive group", {"groups": OTHER}, carried=True))
-    return shapes
-
-
-def warm_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
+def warm_columns(law: GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
     """A zero error and what the oil's warmth adds to it, N m, shape (samples, 2)."""
     constant = group_columns(law, run, values)
     return np.column_stack([constant, constant * (run.channels["oil_temperature"] - THERMAL_REFERENCE)[:, None]])
 
 
-def bowed_warm_columns(law: _GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
+def bowed_warm_columns(law: GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
     """The same, and what the square of the oil's warmth adds, N m, shape (samples, 3)."""
     warm = warm_columns(law, run, values)
     return np.column_stack([warm, warm[:, 1] * (run.channels["oil_temperature"] - THERMAL_REFERENCE)])
@@ -164,9 +148,14 @@ def _curve_a(g: GroupSignals) -> FloatArray:
 
 
 def _scale_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    return by_port(group_shapes(runs))
+
+
+def by_port(shapes: Sequence[Shape]) -> list[Shape]:
+    """The same, of both transducers of a group and of that at port A alone."""
     return [
         Shape(f"{each.label}, {label}", {**each.values, "port_a": port}, carried=each.carried)
-        for each in group_shapes(runs)
+        for each in shapes
         for port, label in ((0.0, "both ports"), (1.0, "port A"))
     ]
 
@@ -204,11 +193,6 @@ def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     if max(run.dt for run in runs) <= SLOWEST_FOR_DELAY:
         return None
     return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is less than one sample; log at 20 Hz or more"
-
-
-def groups_of(shape: Shape, sides: Sides) -> tuple[str, ...]:
-    """Names of the motor groups that a shape speaks of; none stands for all."""
-    return {ALL: (), BALANCING: sides.balancing, OTHER: sides.passive}[shape.values["groups"]]
 
 
 def to(*found_as: tuple[str, Parameter]) -> Corrects:

@@ -38,7 +38,9 @@ def arguments() -> list[DeclareLaunchArgument]:
         DeclareLaunchArgument("params_file", default_value=default_file, description="Parameters of the three nodes"),
         DeclareLaunchArgument("namespace", default_value="", description="Namespace, one per crane"),
         DeclareLaunchArgument("use_sim_time", default_value="true", description="Take the time from the simulator"),
-        DeclareLaunchArgument("autostart", default_value="", description="Configure and activate at start, or as the file"),
+        DeclareLaunchArgument(
+            "autostart", default_value="", description="Configure and activate at start, or as the file"
+        ),
         DeclareLaunchArgument("scenario", default_value="", description="Shipped scenario, or a file"),
         DeclareLaunchArgument("rate", default_value="", description="Simulated seconds per second"),
         DeclareLaunchArgument("seed", default_value="", description="Which sea"),
@@ -63,6 +65,4 @@ def lifecycle_node(name: str, own: dict[str, ParameterValue | bool | str]) -> Li
 def given(context: LaunchContext, kinds: dict[str, type]) -> dict[str, ParameterValue | bool | str]:
     """Launch arguments that are parameters and were given: what the command line does not say, the file says."""
     said = {name: LaunchConfiguration(name) for name in kinds}
-    return {
-        name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)
-    }
+    return {name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)}

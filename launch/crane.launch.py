@@ -31,8 +31,12 @@ def arguments() -> list[DeclareLaunchArgument]:
     return [
         DeclareLaunchArgument("params_file", default_value=default_file, description="Parameters of both nodes"),
         DeclareLaunchArgument("namespace", default_value="", description="Namespace, one per crane"),
-        DeclareLaunchArgument("use_sim_time", default_value="", description="Take the time from /clock, or as the file"),
-        DeclareLaunchArgument("autostart", default_value="", description="Configure and activate at start, or as the file"),
+        DeclareLaunchArgument(
+            "use_sim_time", default_value="", description="Take the time from /clock, or as the file"
+        ),
+        DeclareLaunchArgument(
+            "autostart", default_value="", description="Configure and activate at start, or as the file"
+        ),
         DeclareLaunchArgument("log_level", default_value="info", description="Least severity that is logged"),
     ]
 
@@ -53,6 +57,4 @@ def lifecycle_node(name: str, own: dict[str, ParameterValue | bool | str]) -> Li
 def given(context: LaunchContext, kinds: dict[str, type]) -> dict[str, ParameterValue | bool | str]:
     """Launch arguments that are parameters and were given: what the command line does not say, the file says."""
     said = {name: LaunchConfiguration(name) for name in kinds}
-    return {
-        name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)
-    }
+    return {name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)}

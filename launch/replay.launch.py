@@ -38,7 +38,9 @@ def arguments() -> list[DeclareLaunchArgument]:
         DeclareLaunchArgument("params_file", default_value=default_file, description="Parameters of both nodes"),
         DeclareLaunchArgument("namespace", default_value="", description="Namespace of the recorded topics"),
         DeclareLaunchArgument("use_sim_time", default_value="true", description="Take the time from the player"),
-        DeclareLaunchArgument("autostart", default_value="", description="Configure and activate at start, or as the file"),
+        DeclareLaunchArgument(
+            "autostart", default_value="", description="Configure and activate at start, or as the file"
+        ),
         DeclareLaunchArgument("rate", default_value="1.0", description="Recorded seconds per second"),
         DeclareLaunchArgument("delay", default_value="5.0", description="Seconds that the nodes get to start, s"),
         DeclareLaunchArgument("log_level", default_value="info", description="Least severity that is logged"),
@@ -61,9 +63,7 @@ def lifecycle_node(name: str, own: dict[str, ParameterValue | bool | str]) -> Li
 def given(context: LaunchContext, kinds: dict[str, type]) -> dict[str, ParameterValue | bool | str]:
     """Launch arguments that are parameters and were given: what the command line does not say, the file says."""
     said = {name: LaunchConfiguration(name) for name in kinds}
-    return {
-        name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)
-    }
+    return {name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)}
 
 
 def player() -> ExecuteProcess:

@@ -134,7 +134,7 @@ def _started(path: Path, monkeypatch: pytest.MonkeyPatch, **said: str) -> dict[s
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.name)
 def test_what_the_command_line_does_not_say_the_file_says(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file's `autostart: false` was overruled by the argument's own default: a torque, and nobody had asked for it."""
+    """A file's `autostart: false` was overruled by the argument's own default: a torque that nobody asked for."""
     for own in _started(path, monkeypatch).values():
         assert not {"autostart", "scenario", "rate", "seed"} & set(own)
     for own in _started(path, monkeypatch, autostart="false").values():

@@ -194,3 +194,19 @@ def test_what_was_learned_with_another_machine_or_prior_of_the_same_name_is_not_
 def test_a_mass_that_no_hook_carries_is_no_state(learned, mass):
     with pytest.raises(InputError, match="not those of a filter"):
         fresh().restore({**learned.snapshot(), "mass": mass})
+
+
+def test_a_refused_file_that_cannot_be_renamed_stays_where_it_is(tmp_path):
+    """On a disk that is read-only the estimator did not start at all, for what it had written itself."""
+    path = tmp_path / f"{'c' * 245}.json"  # as long as a name may be
+    path.write_text("{damaged")
+    assert set_aside(path) == path
+    assert path.read_text() == "{damaged"
+    with pytest.raises(OSError, match="too long"):
+        write_checkpoint(path, {"number": 1})
+
+
+def test_a_pipe_is_no_checkpoint_and_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.json")
+    with pytest.raises(InputError, match="nor a file at all"):
+        read_checkpoint(tmp_path / "pipe.json")

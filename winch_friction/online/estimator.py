@@ -161,7 +161,8 @@ class EstimatorService:
         elif self.last is not None and not self.last.accepted:
             status["state"] = "rejected"
         status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
-        status["enabled"] = self._enabled
+        status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
+        status["suspicion"] = self._balance.suspicion
         return status
 
     @property

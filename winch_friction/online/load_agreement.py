@@ -68,7 +68,9 @@ class LoadBalance:
         """What does not fit well, though it stops nothing, in words; '' for nothing."""
         if not self._suspect.stands or self._doubt.stands:
             return ""
-        return f"the balance of torques adds {self._apart:+.0%} to {self._by}: load cell, tare, displacement or pressures?"
+        return (
+            f"the balance of torques adds {self._apart:+.0%} to {self._by}: load cell, tare, displacement or pressures?"
+        )
 
     @property
     def pending(self) -> bool:

@@ -23,7 +23,8 @@ def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         ends = np.flatnonzero(steps > max(LONGEST_HOLE, SLOW * float(np.median(steps)) if len(steps) else 0.0)) + 1
         bounds = itertools.pairwise([0, *ends.tolist(), len(run)])
         whole = [(a, b) for a, b in bounds if run.time[b - 1] - run.time[a] >= NO_RECORD]
-        if not len(ends) or not whole or steps.max() > NO_PAUSE:  # a log of a sample a minute is a slow one, and not full of holes
+        # a log of a sample a minute is a slow one, and not full of holes
+        if not len(ends) or not whole or steps.max() > NO_PAUSE:
             found.append(run)
             continue
         found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]

@@ -47,6 +47,15 @@ class ServiceOptions:
         """Whether the stamps are bound to the clock that the service is told."""
         return self.watchdog_timeout <= LONGEST_REAL_TIME
 
+    def hazard(self, simulated: bool) -> str:
+        """What is dangerous about these settings where time is not `simulated`, in words; '' for nothing."""
+        if self.paced or simulated:
+            return ""
+        return (
+            f"watchdog_timeout {self.watchdog_timeout:g} s: above {LONGEST_REAL_TIME:g} s time is taken for simulated, "
+            "and late data are obeyed; never beside a machine"
+        )
+
     @property
     def watch_period(self) -> float:
         """s between two looks at the silence."""

@@ -6,23 +6,29 @@ Its time is the topic `clock` of its namespace, which the nodes take for their `
 do not share one. Without a namespace that is `/clock`.
 """
 
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from launch import LaunchDescription
+from launch import LaunchContext, LaunchDescription
 
 PACKAGE = "winch_friction"
 
 
 def generate_launch_description() -> LaunchDescription:
     """The three nodes with one parameter file; the simulator also takes scenario, rate and seed from here."""
-    simulator = lifecycle_node("simulator", overrides() | simulation_overrides())
-    return LaunchDescription(
-        [*arguments(), simulator, *(lifecycle_node(name, overrides()) for name in ("compensator", "estimator"))]
-    )
+    return LaunchDescription([*arguments(), OpaqueFunction(function=nodes)])
+
+
+def nodes(context: LaunchContext) -> list[LifecycleNode]:
+    """Once it is known what the command line says; the simulator makes the time, so it does not take it from /clock."""
+    own = given(context, {"use_sim_time": bool, "autostart": bool})
+    simulation = given(context, {"autostart": bool, "scenario": str, "rate": float, "seed": int})
+    clock = ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)
+    simulator = lifecycle_node("simulator", {**simulation, "publish_clock": clock, "use_sim_time": False})
+    return [simulator, *(lifecycle_node(name, own) for name in ("compensator", "estimator"))]
 
 
 def arguments() -> list[DeclareLaunchArgument]:
@@ -32,15 +38,17 @@ def arguments() -> list[DeclareLaunchArgument]:
         DeclareLaunchArgument("params_file", default_value=default_file, description="Parameters of the three nodes"),
         DeclareLaunchArgument("namespace", default_value="", description="Namespace, one per crane"),
         DeclareLaunchArgument("use_sim_time", default_value="true", description="Take the time from the simulator"),
-        DeclareLaunchArgument("autostart", default_value="true", description="Configure and activate at start"),
-        DeclareLaunchArgument("scenario", default_value="ahc_irregular", description="Shipped scenario, or a file"),
-        DeclareLaunchArgument("rate", default_value="1.0", description="Simulated seconds per second"),
-        DeclareLaunchArgument("seed", default_value="1", description="Which sea"),
+        DeclareLaunchArgument(
+            "autostart", default_value="", description="Configure and activate at start, or as the file"
+        ),
+        DeclareLaunchArgument("scenario", default_value="", description="Shipped scenario, or a file"),
+        DeclareLaunchArgument("rate", default_value="", description="Simulated seconds per second"),
+        DeclareLaunchArgument("seed", default_value="", description="Which sea"),
         DeclareLaunchArgument("log_level", default_value="info", description="Least severity that is logged"),
     ]
 
 
-def lifecycle_node(name: str, own: dict[str, ParameterValue | bool]) -> LifecycleNode:
+def lifecycle_node(name: str, own: dict[str, ParameterValue | bool | str]) -> LifecycleNode:
     """One node of this package."""
     return LifecycleNode(
         package=PACKAGE,
@@ -54,18 +62,7 @@ def lifecycle_node(name: str, own: dict[str, ParameterValue | bool]) -> Lifecycl
     )
 
 
-def overrides() -> dict[str, ParameterValue | bool]:
-    """Launch arguments that are parameters of every node."""
-    names = ("use_sim_time", "autostart")
-    return {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}
-
-
-def simulation_overrides() -> dict[str, ParameterValue | bool]:
-    """Launch arguments that only the simulator reads; it makes the time, so it does not take it from /clock."""
-    types = {"scenario": str, "rate": float, "seed": int}
-    own = {name: ParameterValue(LaunchConfiguration(name), value_type=kind) for name, kind in types.items()}
-    return {
-        **own,
-        "publish_clock": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool),
-        "use_sim_time": False,
-    }
+def given(context: LaunchContext, kinds: dict[str, type]) -> dict[str, ParameterValue | bool | str]:
+    """Launch arguments that are parameters and were given: what the command line does not say, the file says."""
+    said = {name: LaunchConfiguration(name) for name in kinds}
+    return {name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)}

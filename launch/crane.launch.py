@@ -3,20 +3,26 @@
 ros2 launch winch_friction crane.launch.py params_file:=/path/to/my_crane.yaml namespace:=crane_1
 """
 
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from launch import LaunchDescription
+from launch import LaunchContext, LaunchDescription
 
 PACKAGE = "winch_friction"
 
 
 def generate_launch_description() -> LaunchDescription:
     """The two nodes with one parameter file."""
-    return LaunchDescription([*arguments(), *(lifecycle_node(name) for name in ("compensator", "estimator"))])
+    return LaunchDescription([*arguments(), OpaqueFunction(function=nodes)])
+
+
+def nodes(context: LaunchContext) -> list[LifecycleNode]:
+    """Once it is known what the command line says."""
+    own = given(context, {"use_sim_time": bool, "autostart": bool})
+    return [lifecycle_node(name, own) for name in ("compensator", "estimator")]
 
 
 def arguments() -> list[DeclareLaunchArgument]:
@@ -25,13 +31,17 @@ def arguments() -> list[DeclareLaunchArgument]:
     return [
         DeclareLaunchArgument("params_file", default_value=default_file, description="Parameters of both nodes"),
         DeclareLaunchArgument("namespace", default_value="", description="Namespace, one per crane"),
-        DeclareLaunchArgument("use_sim_time", default_value="false", description="Take the time from /clock"),
-        DeclareLaunchArgument("autostart", default_value="true", description="Configure and activate at start"),
+        DeclareLaunchArgument(
+            "use_sim_time", default_value="", description="Take the time from /clock, or as the file"
+        ),
+        DeclareLaunchArgument(
+            "autostart", default_value="", description="Configure and activate at start, or as the file"
+        ),
         DeclareLaunchArgument("log_level", default_value="info", description="Least severity that is logged"),
     ]
 
 
-def lifecycle_node(name: str) -> LifecycleNode:
+def lifecycle_node(name: str, own: dict[str, ParameterValue | bool | str]) -> LifecycleNode:
     """One node of this package."""
     return LifecycleNode(
         package=PACKAGE,
@@ -39,12 +49,12 @@ def lifecycle_node(name: str) -> LifecycleNode:
         name=name,
         namespace=LaunchConfiguration("namespace"),
         output="screen",
-        parameters=[ParameterFile(LaunchConfiguration("params_file"), allow_substs=True), overrides()],
+        parameters=[ParameterFile(LaunchConfiguration("params_file"), allow_substs=True), own],
         arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
     )
 
 
-def overrides() -> dict[str, ParameterValue]:
-    """Launch arguments that are parameters of every node."""
-    names = ("use_sim_time", "autostart")
-    return {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}
+def given(context: LaunchContext, kinds: dict[str, type]) -> dict[str, ParameterValue | bool | str]:
+    """Launch arguments that are parameters and were given: what the command line does not say, the file says."""
+    said = {name: LaunchConfiguration(name) for name in kinds}
+    return {name: ParameterValue(each, value_type=kinds[name]) for name, each in said.items() if each.perform(context)}

@@ -5,10 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.api.work import simulate
+from winch_friction.commissioning.balance import _top
 from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
+from winch_friction.commissioning.check import quick_check
+from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.physics.signals import Run
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
 
 
 def said(time):
@@ -102,3 +108,30 @@ def test_one_run_fits_and_several_fit():
     assert runs_say(("a.csv",), 1, "fit") == "run a.csv fits"
     assert runs_say(("a.csv",), 3, "leave") == "1 of 3 runs (a.csv) leaves"
     assert runs_say(("a", "b"), 2, "say") == "all 2 runs say"
+
+
+def merged(pause):
+    """Two minutes of a shipped scenario in one file, the second so many s after the first."""
+    crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
+    one, other = (simulate("ahc_55t_215", crane, model, seed=seed, duration=60.0).run for seed in (1, 2))
+    columns = {name: np.concatenate([one[name], other[name]]) for name in one.columns}
+    columns["time"] = np.concatenate([one.time, other.time + pause])
+    return crane, Run("merged.csv", columns)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("pause", [3600.0, 90000.0, 2.0 * 86400.0])
+def test_recordings_of_several_days_in_one_file_are_looked_at_one_by_one(pause):
+    """Block means over days were of minutes each: nothing moved in them, or the clock was said to jump."""
+    crane, run = merged(pause)
+    assert not any(each.contradicts for each in quick_check([run], crane))
+    found = check([run], crane)
+    assert found.sentence == "plausible: 2 runs of crane 'crane_150t' close the torque balance"
+    assert any("looked at as 2 runs" in each.sentence for each in found.findings)
+    assert not any("stands still" in each.sentence for each in found.findings)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_run_without_a_number_in_its_speed_warns_of_nothing():
+    assert np.isnan(_top(np.full(5, np.nan)))
+    assert _top(np.array([np.nan, 3.0, 3.0])) == 3.0

@@ -5,12 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import Check, apart, long_enough, of_prepared, of_records
+from winch_friction.discrepancy.adequacy import Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
+from winch_friction.records.parts import apart
 
 STEP = 0.1  # s
 
@@ -124,3 +125,10 @@ def test_the_answer_says_that_a_record_is_looked_at_in_parts(crane_150t, crane2_
     result = find_gap([logged("two", (0.0, 6.0), (100.0, 106.0))], crane_150t, crane2_model)
     assert result.verdict == INSUFFICIENT
     assert result.content()["notes"][0].startswith("two: nothing was logged for up to 94")
+
+
+def test_a_row_that_is_lost_of_a_time_in_ms_is_no_hole():
+    """Steps of 20 'seconds', one of 40: what is wrong is the unit, and the run is whole."""
+    time = np.delete(np.arange(500.0) * 20.0, 250)
+    run = Run("in ms", {"time": time, "motor_speed": np.sin(time)})
+    assert apart([run]) == ([run], [])

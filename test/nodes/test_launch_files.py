@@ -2,7 +2,10 @@
 
 import ast
 import importlib.util
+import sys
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import pytest
 import yaml
@@ -12,8 +15,8 @@ FILES = sorted((ROOT / "launch").glob("*.launch.py"))
 REQUIRED = {"params_file", "namespace", "use_sim_time", "autostart"}
 # what launch and launch_ros of Jazzy export from these modules, as far as the files use it
 EXPORTED = {
-    "launch": {"LaunchDescription"},
-    "launch.actions": {"DeclareLaunchArgument", "ExecuteProcess"},
+    "launch": {"LaunchContext", "LaunchDescription"},
+    "launch.actions": {"DeclareLaunchArgument", "ExecuteProcess", "OpaqueFunction"},
     "launch.substitutions": {"LaunchConfiguration", "PathJoinSubstitution"},
     "launch_ros.actions": {"LifecycleNode", "Node"},
     "launch_ros.parameter_descriptions": {"ParameterFile", "ParameterValue"},
@@ -89,4 +92,63 @@ def test_launch_ros_itself_reads_them(path: Path) -> None:
     assert isinstance(description, launch.LaunchDescription)
     declared = {argument.name for argument in description.get_launch_arguments()}
     assert declared == _texts(ast.parse(path.read_text()), "DeclareLaunchArgument")
-    assert any(type(entity).__name__ in ("LifecycleNode", "Node") for entity in description.entities)
+    assert any(type(entity).__name__ == "OpaqueFunction" for entity in description.entities)
+
+
+# -- what the nodes are given, with as much of launch as the files use
+def _started(path: Path, monkeypatch: pytest.MonkeyPatch, **said: str) -> dict[str, dict[str, Any]]:
+    """The parameters that come behind the file's, by executable, when the command line says this."""
+    told = SimpleNamespace(said={}, functions=[], nodes=[])
+
+    class Configuration:
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        def perform(self, context: Any) -> str:
+            return str(told.said[self.name])
+
+    class Value(tuple[str, type]):
+        def __new__(cls, value: Configuration, value_type: type) -> "Value":
+            return super().__new__(cls, (value.perform(None), value_type))
+
+    def argument(name: str, default_value: Any = None, description: str = "") -> None:
+        told.said[name] = said.get(name, default_value)
+
+    stand_ins = {
+        "LaunchContext": object, "LaunchDescription": list, "DeclareLaunchArgument": argument,
+        "OpaqueFunction": lambda function: told.functions.append(function), "LaunchConfiguration": Configuration,
+        "LifecycleNode": lambda **node: told.nodes.append(node), "ParameterFile": lambda file, allow_substs: file,
+        "ParameterValue": Value,
+    }  # fmt: skip
+    for module, names in EXPORTED.items():
+        made = ModuleType(module)
+        made.__dict__.update({name: stand_ins.get(name, lambda *_, **__: None) for name in names})
+        monkeypatch.setitem(sys.modules, module, made)
+    content: dict[str, Any] = {"__name__": path.stem}
+    exec(compile(path.read_text(), str(path), "exec", dont_inherit=True), content)
+    content["generate_launch_description"]()
+    for each in told.functions:
+        each(None)
+    return {node["executable"]: node["parameters"][1] for node in told.nodes}
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.name)
+def test_what_the_command_line_does_not_say_the_file_says(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file's `autostart: false` was overruled by the argument's own default: a torque that nobody asked for."""
+    for own in _started(path, monkeypatch).values():
+        assert not {"autostart", "scenario", "rate", "seed"} & set(own)
+    for own in _started(path, monkeypatch, autostart="false").values():
+        assert own["autostart"] == ("false", bool)
+
+
+def test_beside_a_crane_the_file_says_what_time_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    crane, simulation, replay = (ROOT / "launch" / f"{n}.launch.py" for n in ("crane", "ahc_simulation", "replay"))
+    assert set(_started(crane, monkeypatch)) == {"compensator", "estimator"}
+    assert not any(_started(crane, monkeypatch).values())
+    assert _started(crane, monkeypatch, use_sim_time="true")["estimator"] == {"use_sim_time": ("true", bool)}
+    assert _started(replay, monkeypatch)["compensator"] == {"use_sim_time": ("true", bool), "watchdog_clock": "ros"}
+    told = _started(simulation, monkeypatch, rate="2", seed="7")
+    assert told["simulator"] == {
+        "rate": ("2", float), "seed": ("7", int), "publish_clock": ("true", bool), "use_sim_time": False,
+    }  # fmt: skip
+    assert told["compensator"] == {"use_sim_time": ("true", bool)}

@@ -13,6 +13,7 @@ from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inertia_balance import CHANGED, FIRST, InertiaBalance
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.crane import Drive, Drum
 
 PERIOD, LOAD = 0.02, 55e3  # s, kg
 DISPLACEMENT = 3e-5  # m^3/rad
@@ -154,3 +155,37 @@ def test_the_service_declares_it_and_publishes_the_seed():
     assert published.values == SEED.values
     service.reset()
     assert not service.contradiction
+
+
+# -- an electric drive
+ELECTRIC = replace(
+    CRANE, drive=Drive("electric"), groups={}, inertia=0.4, gear_ratio=40.0, drum=Drum((0.25,)), rated_load=5e3,
+    max_displacement=0.0, rated_pressure=0.0,
+)  # fmt: skip
+
+
+def driven(shown: Callable[[float], float], friction: Callable[[float], float], load: float = 3e3) -> Iterator[Sample]:
+    """A 5 t winch; `shown` is the torque that is read over the true one."""
+    lever = ELECTRIC.drum.radius(math.nan) / ELECTRIC.gear_ratio
+    for k in range(int(SECONDS / PERIOD)):
+        time = k * PERIOD
+        speed = 90.0 * math.sin(2.0 * math.pi * time / 7.0) + 30.0 * math.sin(2.0 * math.pi * time / 4.3)
+        rate = 80.78 * math.cos(2.0 * math.pi * time / 7.0) + 43.84 * math.cos(2.0 * math.pi * time / 4.3)
+        torque = (ELECTRIC.inertia + load * lever**2) * rate + friction(time) * (
+            8.0 * math.tanh(speed / 3.0) + 0.05 * speed
+        )
+        torque += ELECTRIC.drum_torque(load) / ELECTRIC.gear_ratio
+        yield Sample(time, speed, motor_torque=shown(time) * torque, hook_load=load)
+
+
+def test_a_motor_torque_that_is_off_is_told_as_well():
+    """A constant that is another after maintenance, an amplifier that is warm: hydraulic drives alone had it."""
+    balance = InertiaBalance(ELECTRIC)
+    told = [balance.contradiction(each) for each in driven(stepped(0.8), same)]
+    assert "motor_torque" in told[-1]
+    assert not any(told[: round(CHANGE_AT / PERIOD)])
+
+
+def test_friction_that_changes_on_an_electric_drive_is_no_gain():
+    balance = InertiaBalance(ELECTRIC)
+    assert not any(balance.contradiction(each) for each in driven(same, stepped(1.4)))

@@ -207,3 +207,20 @@ def test_an_estimator_says_which_input_of_its_model_is_missing(sea: tuple[Sample
     service.take_row(replace(sea[0], oil_temperature=float("nan")))
     assert service.missing == ("oil_temperature",)
     assert service.status(sea[0].time)["state"] == "waiting"
+
+
+@pytest.mark.parametrize(("error", "said"), [(-0.083, "adds +9% to hook_load"), (0.0, "")])
+def test_a_load_cell_that_is_off_by_less_than_stops_the_learning_is_said(
+    sea: tuple[Sample, ...], error: float, said: str
+) -> None:
+    """Off by nine per cent it said nothing at all, and what depends on the load was fed forward by so much less."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    for _, sample in fed(sea, error=error):
+        service.take_row(sample)
+    status = service.status(sea[-1].time)
+    assert not service.contradiction
+    assert said in status["suspicion"]
+    assert bool(status["suspicion"]) is bool(said)
+    assert status["load_apart"] == pytest.approx(-error, abs=0.02)
+    learned = service.law.counts["learned_from"]
+    assert learned > 1000, "it goes on learning"

@@ -1,12 +1,13 @@
 """Settings that change while the torque is on its way: it moves no faster than before or after, and gets to zero."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
-from sea import PERIOD, Fed, check_invariants, swell
+from sea import PERIOD, SEED, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
+from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Sample
 
@@ -208,3 +209,27 @@ def test_the_command_may_be_ahead_of_the_speed_by_the_lead_that_was_set_last(lea
 
     fed.run(0.3, turned)
     assert ("speed_reference turns against motor_speed" in fed.service.contradictions) is doubted
+
+
+def test_gains_that_leave_no_friction_leave_no_torque():
+    """The slew limit is as steep as the friction that is left: of none it was zero, and the last torque stood."""
+    fed = Fed()
+    fed.run(5.4)
+    assert abs(fed.torque) > 100.0
+    fed.service.configure(replace(fed.config, gains=dict.fromkeys(SEED.term_names, 0.0)))
+    told = fed.run(1.2)
+    assert told[-1].friction_torque == 0.0
+    check_invariants(fed)
+
+
+def test_what_is_more_than_it_may_be_goes_in_time():
+    """A load that is set down leaves a small friction, whose reversal is slow: what is beyond its bound is not held."""
+    output = SafeOutput(absolute=1000.0, slew=1.5e4, ramp_time=0.5, hold=0.1)
+    for k in range(100):
+        output.arrive(0.02 * k)
+        bound = 400.0 if k < 50 else 20.0
+        output.restrict(10.0 * bound / 20.0)
+        output.follow(bound, bound, usable=True, enabled=True, motion=50.0)
+        if k == 49:
+            output.torque = output._held = 400.0
+    assert output.torque == pytest.approx(20.0)

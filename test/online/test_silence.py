@@ -236,3 +236,11 @@ def test_a_clock_that_is_set_back_and_then_silence_ends_at_zero(fed: Fed) -> Non
     sizes = [abs(each.friction_torque) for each in said]
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[0] > 0.5 * abs(last)  # a ramp, no step
+
+
+@pytest.mark.parametrize(
+    ("timeout", "simulated", "said"), [(5.0, False, True), (5.0, True, False), (1.0, False, False), (0.1, False, False)]
+)
+def test_a_watchdog_that_takes_time_for_simulated_is_a_hazard_beside_a_machine(timeout, simulated, said):
+    """Nothing was said of it, and whoever wanted more patience had data obeyed however late they came."""
+    assert ("never beside a machine" in ServiceOptions(watchdog_timeout=timeout).hazard(simulated)) is said

@@ -28,6 +28,7 @@ def published(speed: float, command: float, seconds: float) -> list[float]:
     torques = []
     for k in range(round(seconds / PERIOD)):
         sample = replace(swell(k * PERIOD), motor_speed=speed, speed_reference=command)
+        sample.hook_load += 0.1 * k  # readings live
         torques.append(service.take_row(sample).friction_torque)
     return torques
 

@@ -1,6 +1,7 @@
 """Which stamps are believed: one case for every way in which a sender's clock goes wrong."""
 
 import pytest
+from sea import TOPICS, Fed, swell
 
 from winch_friction.online.agreement import CONFIRMED_BY, Stamp, StampWatch
 
@@ -63,3 +64,14 @@ def test_a_clock_that_was_set_is_believed_once_messages_agree(shift):
 def test_late_by_less_than_a_jump_is_late():
     watch, stamp, now = watch_at_work()
     assert watch.judge(stamp - 0.5, now + PERIOD) is Stamp.REPEATED
+
+
+def test_a_stray_stamp_before_the_first_speed_locks_no_input_out():
+    """Nothing told yet that it was ahead: every good one after it was late, for ever."""
+    fed = Fed()
+    early = swell(fed.now)
+    early.time += 3600.0
+    topic = "winch/active/pressure_a"
+    message = dict(fed.messages(early))[topic]
+    fed.service.take(TOPICS.inputs[topic], message, fed.now, fed.now)
+    assert fed.run(2.0)[-1].valid

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from winch_friction.physics.signals import GroupSample, Run, Sample
-from winch_friction.records.sample_stream import InputHold, SampleStream
+from winch_friction.records.sample_stream import DEPTH, OTHER_CLOCK, InputHold, SampleStream
 
 
 def test_holds_until_the_age_limit_of_the_input():
@@ -117,3 +117,47 @@ def test_what_waits_for_a_speed_is_forgotten_when_the_clock_jumps():
     assert math.isnan(stream.take_speed(says("speed", "motor_speed"), 10.0, 6.0, 6.0).hook_load)
     stream.put_off(says("load", "hook_load"), 5e4, 6.01)
     assert stream.take_speed(says("speed", "motor_speed"), 10.0, 6.02, 6.02).hook_load == 5e4
+
+
+# -- what waits for a speed
+class Topic(SimpleNamespace):
+    """An input without a stamp."""
+
+    def decode(self, message):
+        return {"hook_load": message}
+
+
+def waiting_stream():
+    hold = InputHold()
+    stream = SampleStream(SimpleNamespace(speed_topic="speed", max_displacement=0.0), hold)
+    speed = SimpleNamespace(topic="speed", stamped=True, decode=lambda message: {"motor_speed": message})
+    return stream, Topic(topic="load", stamped=False), speed
+
+
+def test_what_waits_while_no_speed_comes_is_bounded():
+    """A thousand a second for a night had been kept."""
+    stream, load, speed = waiting_stream()
+    for k in range(3 * DEPTH):
+        stream.put_off(load, float(k), 1e-3 * k)
+    assert sum(map(len, stream._unstamped.values())) == DEPTH
+    assert stream.take_speed(speed, 1.0, 10.0, 10.0).hook_load == 3 * DEPTH - 1
+
+
+def test_the_load_of_a_sender_whose_clock_is_ahead_is_the_load_all_the_same():
+    """It waited for a speed sent after it, an hour long, while the diagnostics saw it come."""
+    stream, load, speed = waiting_stream()
+    stream.put_off(load, 55e3, 100.0 + 3600.0)
+    assert stream.take_speed(speed, 1.0, 100.0, 100.0).hook_load == 55e3
+    stream.put_off(load, 60e3, 100.0 + 0.5 * OTHER_CLOCK)
+    assert stream.take_speed(speed, 1.0, 100.1, 100.1).hook_load == 55e3, "sent after this speed"
+
+
+def test_what_a_sample_shows_has_a_stamp():
+    hold = InputHold()
+    for k in range(3):
+        hold.put("speed_reference", 1.0 + 0.1 * k, float(k))
+    assert [hold.stamp("speed_reference", at) for at in (1.05, 1.15, 9.0)] == [1.0, 1.1, 1.2]
+    assert math.isnan(hold.stamp("speed_reference", 0.5))
+    assert math.isnan(hold.stamp("hook_load", 1.0))
+    hold.drop_after(1.15)
+    assert math.isnan(hold.stamp("speed_reference", 1.05))

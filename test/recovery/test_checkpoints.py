@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.crane import Drum
 from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
@@ -170,3 +172,41 @@ def test_a_model_given_as_the_checkpoint_stays_where_it_is(tmp_path, crane2_mode
     with pytest.raises(InputError, match=r"m.yaml: a file of schema 'winch_friction.model/\d', not a checkpoint"):
         set_aside(path)
     assert path.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (lambda crane, seed: (replace(crane, gear_ratio=2.0 * crane.gear_ratio), seed), "gear_ratio"),
+        (lambda crane, seed: (replace(crane, inertia=2.0 * crane.inertia), seed), "inertia"),
+        (lambda crane, seed: (replace(crane, drum=Drum((0.5, 0.6))), seed), "layer_radii"),
+        (lambda crane, seed: (crane, replace(seed, covariance=4.0 * seed.covariance)), "seed_std"),
+    ],
+)
+def test_what_was_learned_with_another_machine_or_prior_of_the_same_name_is_not_taken_over(learned, change, what):
+    """A gear ratio that was put right left the friction that had been learned with the wrong one, surely known."""
+    other = FrictionEstimator(*change(load_crane("crane_150t"), load_model("a6vm215_crane2")), EstimatorConfig())
+    with pytest.raises(InputError, match=f"checkpoint: {what} is"):
+        other.restore(learned.snapshot())
+
+
+@pytest.mark.parametrize("mass", [float("inf"), -5.0e4])
+def test_a_mass_that_no_hook_carries_is_no_state(learned, mass):
+    with pytest.raises(InputError, match="not those of a filter"):
+        fresh().restore({**learned.snapshot(), "mass": mass})
+
+
+def test_a_refused_file_that_cannot_be_renamed_stays_where_it_is(tmp_path):
+    """On a disk that is read-only the estimator did not start at all, for what it had written itself."""
+    path = tmp_path / f"{'c' * 245}.json"  # as long as a name may be
+    path.write_text("{damaged")
+    assert set_aside(path) == path
+    assert path.read_text() == "{damaged"
+    with pytest.raises(OSError, match="too long"):
+        write_checkpoint(path, {"number": 1})
+
+
+def test_a_pipe_is_no_checkpoint_and_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.json")
+    with pytest.raises(InputError, match="nor a file at all"):
+        read_checkpoint(tmp_path / "pipe.json")

@@ -80,7 +80,7 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
         expected = load + friction + inertial + swing
         rated = view.error_torque
         sign = np.sign(view.speed)
-        relative = np.abs(view.speed) / np.nanpercentile(np.abs(view.speed), 99)
+        relative = np.abs(view.speed) / _top(np.abs(view.speed))
         swings = HEAVE_SHARE if view.heave is not None else NO_HEAVE_SHARE
         errors = (
             _Error("friction", friction, share, -LEAST_FRICTION / share),
@@ -98,6 +98,11 @@ def closure(view: RunView, model: FrictionModel | None) -> Closure:
         noise = NOISE_SHARE * rated, FRICTION_NOISE * friction, _unrest(view, drive, inertial + swing, rated)
         sigma = np.sqrt(np.sum(np.square(np.broadcast_arrays(*noise)), axis=0))
         return _fit(view, drive, expected, errors, sigma, load)
+
+
+def _top(speed: FloatArray) -> float:
+    """What a speed reaches but for its highest hundredth; NaN where there is none."""
+    return float(np.nanpercentile(speed, 99)) if np.isfinite(speed).any() else np.nan
 
 
 def _unrest(view: RunView, drive: FloatArray, dynamic: FloatArray, rated: float) -> FloatArray:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from winch_friction.commissioning.channels import (
+    SEVERITIES,
     Finding,
     cell_findings,
     clock_findings,
@@ -32,6 +33,7 @@ from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
+from winch_friction.records.parts import apart
 from winch_friction.records.strict_yaml import read_yaml
 
 # -- runs against each other
@@ -126,7 +128,7 @@ def quick_check(
     `others` are cranes that the runs might be of instead, by name (default: the shipped ones). An empty list, or one
     without an `error`, means that ordinary friction and ordinary sensor errors explain the runs.
     """
-    return diagnosed(runs, crane, model, others)[0]
+    return diagnosed(apart(runs)[0], crane, model, others)[0]
 
 
 def diagnosed(
@@ -153,8 +155,7 @@ def diagnosed(
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
-    order = {"error": 0, "warning": 1, "note": 2}
-    return sorted(findings, key=lambda finding: order[finding.severity]), diagnosis
+    return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis
 
 
 def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
@@ -288,13 +289,12 @@ def _cranes_in(folder: Path) -> dict[str, Crane]:
             if isinstance(content, dict) and str(content.get("schema", "")).startswith("winch_friction.crane/"):
                 crane = load_crane(path)
                 found[crane.name] = crane
-        except InputError:
-            continue  # not a crane file that can be read: nothing to compare with
+        except InputError:  # not a crane file that can be read: nothing to compare with
+            continue
     return found
 
 
 def refuse(findings: Sequence[Finding]) -> None:
     """Raise `InputError` with the likeliest mistake where the data contradict the crane."""
-    finding = first_contradiction(findings)
-    if finding is not None:
+    if (finding := first_contradiction(findings)) is not None:
         raise InputError(f"{finding.sentence} (see winch-friction check; --force goes on regardless)")

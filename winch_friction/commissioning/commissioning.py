@@ -20,6 +20,7 @@ from winch_friction.commissioning.view import views_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.parts import apart
 
 SCHEMA = "winch_friction.check/1"
 
@@ -100,8 +101,10 @@ def check(
     runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Mapping[str, Crane] | None = None
 ) -> CheckResult:
     """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
+    runs, holes = apart(runs)  # block means over days would each be one of minutes, in which nothing moves
     findings, diagnosis = diagnosed(runs, crane, model, others)
     per_channel = [finding for run in runs for finding in channel_findings(run, crane)]
+    per_channel += [Finding("note", "gaps", said, "time") for said in holes]
     order = {"error": 0, "warning": 1, "note": 2}
     # a stable sort: the diagnosis stays first among what is equally grave
     findings = sorted([*findings, *per_channel], key=lambda finding: order[finding.severity])

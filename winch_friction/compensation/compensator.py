@@ -161,11 +161,14 @@ class FeedforwardCompensator:
         self._load.crane = correct.crane
 
     # -- one sample
-    def step(self, sample: Sample, now: float | None = None, distrusted: tuple[str, ...] = ()) -> Feedforward:
+    def step(
+        self, sample: Sample, now: float | None = None, distrusted: tuple[str, ...] = (), asked: float = math.nan
+    ) -> Feedforward:  # fmt: skip
         """The feedforward for one sample; a value that is NaN counts as lost (`InputHold` holds between samples).
 
         `now` s is the steady time of its arrival; without it the stamps alone say how much time has passed.
-        `distrusted` says in words which inputs cannot be right together: like a lost input.
+        `distrusted` says in words which inputs cannot be right together: like a lost input. `asked` s is the stamp of
+        the command, where the sample holds an earlier one: it does not stand still between two of its messages.
         """
         self._counts["steps"] += 1
         if not math.isfinite(sample.time):
@@ -178,7 +181,7 @@ class FeedforwardCompensator:
         self._lost = self._needs.missing(sample) + distrusted
         if standing := self._correct.standing(sample.time):
             self._lost += tuple(f"{name} cannot be taken out" for name in standing)
-        usable = not self._lost and self._aim(sample, dt)
+        usable = not self._lost and self._aim(sample, dt, asked)
         if not usable:
             self._predictor.reset()
             self._turn(sample)
@@ -230,10 +233,11 @@ class FeedforwardCompensator:
     def _speed(self, sample: Sample) -> float:
         return sample.speed_reference if self.config.velocity_source == "reference" else sample.motor_speed
 
-    def _aim(self, sample: Sample, dt: float) -> bool:
+    def _aim(self, sample: Sample, dt: float, asked: float) -> bool:
         """Set the target from a complete sample; False, and the old target kept, when the model does not give a
         number."""
-        ahead = self._predictor.step(sample.time, self._speed(sample))
+        held = self.config.velocity_source == "reference" and math.isfinite(asked)
+        ahead = self._predictor.step(asked if held else sample.time, self._speed(sample))
         drum_torque = self._load.value(sample) if "drum_torque" in self._law.reads else 0.0
         width = max(self.config.reversal_speed, abs(ahead.acceleration) * self.config.reversal_time)
         x = sample_operating_point(

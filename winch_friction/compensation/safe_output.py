@@ -186,7 +186,8 @@ class SafeOutput:
         wanted = self._not_for_long(self._not_against(wanted, carried))
         bound = min(self.limits.absolute, envelope)
         wanted = min(max(wanted, -bound), bound)
-        self._pushing = max(self._pushing, abs(self.torque)) if self._opposed(self.torque) else 0.0
+        wrong = self._opposed(self.torque) or abs(self.torque) > bound  # the wrong way, or more than may be
+        self._pushing = max(self._pushing, abs(self.torque)) if wrong else 0.0
         passed = min(self._dt, self._gap)  # by the stamps as well: they go out with the torque
         let_go = self._pushing if carried else max(self._pushing, self._size)
         if passed > 0.0:  # in time by the clock, however slowly the stamps go

@@ -3,9 +3,8 @@
 Some of them are locked away before anything else is looked at, for the proof.
 """
 
-import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
+from winch_friction.records.parts import NO_RECORD
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"
@@ -55,30 +55,6 @@ def _at_least(what: str, value: float, needed: float, unit: str = "1") -> Check:
     return Check(what, float(value), needed, unit, bool(value >= needed))
 
 
-def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
-    """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
-    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
-    found, notes = list[Run](), list[str]()
-    for run in runs:
-        steps = np.diff(run.time)
-        ends = np.flatnonzero(steps > LIMITS.longest_hole) + 1
-        bounds = itertools.pairwise([0, *ends.tolist(), len(run)])
-        whole = [(a, b) for a, b in bounds if run.time[b - 1] - run.time[a] >= LIMITS.no_record]
-        if not len(ends) or not whole:  # a log of a sample a minute is a slow one, and not full of holes
-            found.append(run)
-            continue
-        found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
-        longest = float(steps.max())
-        notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
-    return found, notes
-
-
-def _part(run: Run, name: str, start: int, end: int) -> Run:
-    columns = {each: values[start:end] for each, values in run.columns.items()}
-    aside = {each: values[start:end] if len(values) == len(run) else values for each, values in run.aside.items()}
-    return replace(run, name=name, columns=columns, aside=aside)
-
-
 def _rate(time: FloatArray) -> float:
     """Samples per second where there are any: a hole is no slow log."""
     steps = np.diff(time)
@@ -94,7 +70,7 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     for run in runs:
         time = run.time[np.isfinite(run.time)]
         lasts = float(time[-1] - time[0]) if len(time) > 1 else 0.0
-        if lasts < LIMITS.no_record:
+        if lasts < NO_RECORD:
             raise InputError(f"{run.name}: lasts {lasts:.2g} s; that is no record of a winch at work")
         rate = _rate(time)
         if lasts < LIMITS.shortest_record:

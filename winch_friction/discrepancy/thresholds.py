@@ -8,9 +8,7 @@ class Thresholds:
     """Where a line of comment names the gap campaign, `make campaign-gap` on null data is what calibrates the value."""
 
     # -- adequacy, before anything is searched
-    no_record: float = 1.0  # s; less is no record of a winch at work
     shortest_record: float = 5.0  # s; shorter than one hoist and lower
-    longest_hole: float = 30.0  # s without a sample, after which a record is another run: half the time a swing takes
     lowest_rate: float = 5.0  # Hz; acceleration and reversals are lost below two samples per smoothing time
     least_usable: float = 20.0  # s of records: a few times what one speed takes
     least_moving: float = 15.0  # s of training samples that move, away from reversals

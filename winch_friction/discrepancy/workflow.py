@@ -36,6 +36,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
+from winch_friction.records.parts import apart
 
 # -- names that one law outdoes
 
@@ -201,7 +202,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     options = options or GapOptions()
     _check(runs, options)
     # by name: which runs are locked must not hang on the order in which they are given
-    parts, holes = adequacy.apart(sorted(runs, key=lambda run: run.name))
+    parts, holes = apart(sorted(runs, key=lambda run: run.name))
     every = against_simulations([thinned(run) for run in parts], model, crane)
     runs, notes = adequacy.long_enough(every)
     notes = [*holes, *notes]

@@ -11,7 +11,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
-VERSION = 2
+VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -60,14 +60,21 @@ def restored_state(content: Mapping[str, Any], crane: Crane, seed: FrictionModel
         levels, widened = ([str(each) for each in content[key]] for key in ("levels", "widened"))
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"checkpoint: damaged ({error}); delete it to start over") from error
-    sound = _sound(x, covariance) and bool(np.isfinite(sensitivity).all())
+    sound = _sound(x, covariance) and bool(np.isfinite(sensitivity).all()) and not mass < 0.0 and abs(mass) != np.inf
     if not sound or len(levels) != len(seed.values) or not set(widened) <= set(seed.parameter_names):
         raise InputError("checkpoint: state and covariance are not those of a filter; delete it to start over")
     return Kept(x, 0.5 * (covariance + covariance.T), sensitivity, mass, levels, widened)
 
 
 def _key(crane: Crane, seed: FrictionModel) -> dict[str, Any]:
-    return {"crane": crane.name, "seed": seed.name, "terms": list(seed.term_names), "seed_values": list(seed.values)}
+    """What the state means: what was learned with another gear, drum or prior would be wrong friction, surely known."""
+    machine = {
+        "crane": crane.name, "drive": crane.drive.kind, "gear_ratio": crane.gear_ratio, "inertia": crane.inertia,
+        "layer_radii": list(crane.drum.layer_radii), "groups": dict(crane.groups),
+        "max_displacement": crane.max_displacement,
+    }  # fmt: skip
+    prior = {"terms": list(seed.term_names), "seed_values": list(seed.values), "seed_std": seed.std.tolist()}
+    return {**machine, "seed": seed.name, **prior}
 
 
 def _sound(x: FloatArray, covariance: FloatArray) -> bool:

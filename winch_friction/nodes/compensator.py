@@ -63,6 +63,8 @@ class CompensatorNode(WinchNode):
             self.get_logger().warning(f"model '{model.name}': over, and not taken out: {past}")
         if withheld := self.service.law.status()["withheld"]:
             self.get_logger().warning(str(withheld))
+        if hazard := self.service.options.hazard(bool(self.get_parameter("use_sim_time").value)):
+            self.get_logger().warning(hazard)
         self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
         self.inputs = Inputs(self, self.service, self._answer, self._latest(config))
         patience = self.options.watchdog_timeout

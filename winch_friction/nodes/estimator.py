@@ -185,7 +185,10 @@ class EstimatorNode(WinchNode):
             "contradicted": f": {status['contradictions']}",
         }
         level = {"waiting": WARN, "rejected": WARN, "contradicted": ERROR}.get(state, OK)
-        return Health("filter", level, f"{state}{why.get(state, '')}", status)
+        said = f"{state}{why.get(state, '')}"
+        if suspicion := str(status["suspicion"]):
+            level, said = max(level, WARN), f"{said}; {suspicion}"
+        return Health("filter", level, said, status)
 
     def _parameter_health(self) -> Health:
         values: dict[str, Any] = {}

@@ -208,7 +208,7 @@ class Inputs:
         receipt, now = self.node.ros_now(), self.node.service_now()
         for source, subscription in self._held:
             for message, info in drain(subscription):
-                self._service.take(source, message, receipt, now, info["source_timestamp"])
+                self._service.take(source, message, receipt, now, _sent(info))
 
     def _on_speed(self, message: Any, info: Any) -> None:
         """The others first, all that have come: stamps decide what belongs to which speed."""
@@ -218,7 +218,7 @@ class Inputs:
         self.poll()
         receipt, now = self.node.ros_now(), self.node.service_now()
         for each, sent in self._in_time(source, waiting):
-            answer = self._service.take(source, each, receipt, now, sent["source_timestamp"])
+            answer = self._service.take(source, each, receipt, now, _sent(sent))
             if answer is not None:
                 self._answer(answer)
 
@@ -229,6 +229,11 @@ class Inputs:
         kept = [each for each in waiting if newest - stamp_time(each[0]) <= self.latest]
         self.late += len(waiting) - len(kept)
         return kept
+
+
+def _sent(info: Mapping[str, Any]) -> float:
+    """When a message was sent, s by its sender's clock."""
+    return float(info["source_timestamp"] * 1e-9)
 
 
 def _never(_: Any) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online.doubt import Doubt, span
 from winch_friction.online.load_agreement import LoadAgainstDrive
+from winch_friction.online.standing_readings import StandingReadings
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges
@@ -150,6 +151,7 @@ class Agreement:
         self._command = self._step = math.nan
         self._jumps: list[float] = []
         self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(self._crane, self._ranges)
+        self._still = StandingReadings(AGAINST_SPEED * self._crane.speed_scale)
         # messages in batches: a command that is right in one sample of each is none
         self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 
@@ -166,6 +168,7 @@ class Agreement:
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
             self._load.contradiction(sample, dt): True,
+            self._still.contradiction(sample, dt): True,
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
         }
         return tuple(name for name, stands in found.items() if name and stands)
@@ -181,7 +184,9 @@ class Agreement:
         step = sample.speed_reference - self._command
         if step * self._step < 0.0 and min(abs(step), abs(self._step)) > CHATTER_STEP * self._ranges.speed:
             self._jumps.append(sample.time)
-        self._command, self._step = sample.speed_reference, step
+        self._command = sample.speed_reference
+        if step != 0.0:  # a command that is held has not turned back
+            self._step = step
         self._jumps = [each for each in self._jumps if 0.0 <= sample.time - each < CHATTER_TIME]
         return len(self._jumps) >= CHATTER_COUNT
 

@@ -70,8 +70,7 @@ def _learned_at(model: FrictionModel) -> float:
 
 # -- models that arrive as text
 LARGEST = 96 * 1024  # characters; a model of 30 parameters with its correlations has 20 thousand
-MOST_BRACKETS = 2000  # lists and mappings that open; a correlation has one a parameter
-DEEPEST = 100  # columns of indentation
+MOST_BRACKETS, DEEPEST = 2000, 100  # lists and mappings that open (a correlation has one a parameter), columns
 PERIOD = 1.0  # s between two models that are looked at
 
 
@@ -186,7 +185,8 @@ class CompensatorService:
         self.contradictions = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
         self._silence = _Silence(sample.time + self.law.config.max_age)
         self._last_stamp = sample.time
-        return self.law.step(sample, now if self.options.paced else None, self.contradictions)
+        asked = self.inputs.hold.stamp("speed_reference", sample.time)
+        return self.law.step(sample, now if self.options.paced else None, self.contradictions, asked)
 
     # -- silence
     def tick(self, now: float) -> Feedforward | None:

@@ -15,6 +15,7 @@ from winch_friction.online.doubt import span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.online.load_agreement import LoadAgainstDrive, LoadBalance
+from winch_friction.online.standing_readings import StandingReadings
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -57,6 +58,7 @@ class EstimatorService:
         crane = self.law.crane
         self._balance = LoadBalance(AGAINST_SPEED * crane.speed_scale)
         self._load = LoadAgainstDrive(crane, self.inputs.ranges)
+        self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
 
     def take(
         self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
@@ -84,7 +86,8 @@ class EstimatorService:
 
     def _doubt(self, sample: Sample, accepted: bool) -> None:
         """A load that is far off is seen without the filter, which would take in none of its samples."""
-        lost = self._load.contradiction(sample, span(self._seen, sample.time))
+        passed = span(self._seen, sample.time)
+        lost = self._load.contradiction(sample, passed) or self._still.contradiction(sample, passed)
         self._seen = sample.time
         if accepted:
             gain = self._gain.contradiction(sample)
@@ -158,7 +161,8 @@ class EstimatorService:
         elif self.last is not None and not self.last.accepted:
             status["state"] = "rejected"
         status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
-        status["enabled"] = self._enabled
+        status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
+        status["suspicion"] = self._balance.suspicion
         return status
 
     @property

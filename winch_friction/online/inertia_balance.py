@@ -75,7 +75,7 @@ class InertiaBalance:
 
     def contradiction(self, sample: Sample) -> str:
         """What does not fit, in words, '' for nothing."""
-        if not self.crane.drive.hydraulic or not self.crane.drum.has(sample.wire_layer):
+        if not self.crane.drum.has(sample.wire_layer):
             return ""
         lever = self.crane.drum.radius(sample.wire_layer) / self.crane.gear_ratio
         load, torque = sample_load(sample), sample_drive_torque(sample, self.crane)
@@ -152,5 +152,5 @@ class InertiaBalance:
             return ""
         return (
             f"the drive's torque has changed its gain by {self.change:+.0%}, inertia and friction alike: "
-            "displacement or pressures"
+            f"{' or '.join(self.crane.drive.channels) or 'displacement or pressures'}"
         )

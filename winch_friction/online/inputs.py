@@ -47,6 +47,15 @@ class ServiceOptions:
         """Whether the stamps are bound to the clock that the service is told."""
         return self.watchdog_timeout <= LONGEST_REAL_TIME
 
+    def hazard(self, simulated: bool) -> str:
+        """What is dangerous about these settings where time is not `simulated`, in words; '' for nothing."""
+        if self.paced or simulated:
+            return ""
+        return (
+            f"watchdog_timeout {self.watchdog_timeout:g} s: above {LONGEST_REAL_TIME:g} s time is taken for simulated, "
+            "and late data are obeyed; never beside a machine"
+        )
+
     @property
     def watch_period(self) -> float:
         """s between two looks at the silence."""
@@ -178,8 +187,11 @@ class InputGate:
         """Whether a held input's stamp is not ahead of the speed's clock: it would lock the input out until then."""
         if math.isinf(self.last_stamp):
             return math.isfinite(stamp)
-        window = max(self.options.stamp_window, self.options.watchdog_timeout)
-        return stamp <= self.last_stamp + max(now - self.last_arrival, 0.0) + window
+        return stamp <= self.last_stamp + max(now - self.last_arrival, 0.0) + self._window
+
+    @property
+    def _window(self) -> float:
+        return max(self.options.stamp_window, self.options.watchdog_timeout)
 
     def _speed(self, source: Input, message: Any, receipt: float, now: float, sent: float | None) -> Sample | None:
         arrivals = self.arrivals[source.topic]
@@ -191,6 +203,8 @@ class InputGate:
         elif worth is not Stamp.GOOD:
             self._refuse(arrivals, worth.value)
             return None
+        if math.isinf(self.last_stamp):  # until now nothing told what is ahead
+            self.hold.drop_after(stamp + self._window)
         sample = self._stream.take_speed(source, message, stamp, receipt if sent is None else sent)
         if sample is None:
             self._refuse(arrivals, self._refusal or UNREADABLE)

@@ -23,6 +23,8 @@ MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of
 # the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
 # displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
 BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
+# from here on it is said: five times what the shipped scenarios show, half of what stops the learning
+SUSPECT_SHARE = 0.05
 
 
 class LoadBalance:
@@ -36,7 +38,8 @@ class LoadBalance:
     def __init__(self, moving: float = AGAINST_SPEED) -> None:
         self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
         self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
-        self._by = ""  # the channel that showed the load last
+        self._by, self._apart = "", math.nan  # the channel that showed the load last, and by how much it is off
+        self._suspect = Doubt(BALANCE_TIME, BALANCE_TIME)
 
     def contradiction(self, apart: float, sample: Sample) -> str:
         """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown. A
@@ -45,16 +48,28 @@ class LoadBalance:
         self._hoisted += dt if sample.motor_speed > self._moving else 0.0
         self._lowered += dt if sample.motor_speed < -self._moving else 0.0
         wrong: bool | None = False
+        suspect: bool | None = False
         if math.isfinite(sample_load(sample)):
-            self._by = _shown_by(sample)
+            self._by, self._apart = _shown_by(sample), apart
             wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
+            suspect = abs(apart) > SUSPECT_SHARE if apart == apart else None
         both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
         if not both_ways and wrong is False:
             self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
+        self._suspect.step(suspect if both_ways else False, dt)
         if not self._doubt.step(wrong, dt) or not both_ways:
             return ""
         return (
             f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
+        )
+
+    @property
+    def suspicion(self) -> str:
+        """What does not fit well, though it stops nothing, in words; '' for nothing."""
+        if not self._suspect.stands or self._doubt.stands:
+            return ""
+        return (
+            f"the balance of torques adds {self._apart:+.0%} to {self._by}: load cell, tare, displacement or pressures?"
         )
 
     @property

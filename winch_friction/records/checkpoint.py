@@ -28,6 +28,8 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
     remove_stale(path)
     if not path.exists():
         return None
+    if not path.is_file():  # a pipe would be waited for, and no signal heard
+        raise InputError(f"{path}: not a checkpoint, nor a file at all; delete it to start over")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
@@ -41,7 +43,8 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
 
 
 def set_aside(path: Path | str) -> Path:
-    """Give a file that was refused another name, so that the next checkpoint does not replace it; the name.
+    """Give a file that was refused another name, so that the next checkpoint does not replace it; the name. Where none
+    can be given, its own: it stands where nothing can be written.
 
     Raises `InputError` for what is no file, and could not be written either, and for another file of this package,
     which somebody needs where it is.
@@ -53,8 +56,11 @@ def set_aside(path: Path | str) -> Path:
     if other is not None:
         raise InputError(f"{path}: a file of schema '{other[1].decode()}', not a checkpoint: name another")
     names = (path.with_name(f"{path.name}.refused{number}") for number in itertools.chain(("",), itertools.count(2)))
-    kept = next(each for each in names if not each.exists())
-    path.rename(kept)
+    try:
+        kept = next(each for each in names if not each.exists())
+        path.rename(kept)
+    except OSError:  # a disk that is read-only, or a name as long as it may be: nothing is written over there either
+        return path
     return kept
 
 

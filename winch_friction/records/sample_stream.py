@@ -22,6 +22,7 @@ from winch_friction.records.topics import Input, TopicMap, stamp_time
 # -- holding
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
 DEPTH = 1024  # values kept per input: all that a node which was paused for five seconds at 200 Hz finds waiting
+NOTHING = math.nan, math.nan  # stamp and value of an input that shows nothing
 MOST_STROKE = 2.0  # of max_displacement: a feedback in per cent shows more, and no scale that is off so much
 
 
@@ -98,17 +99,27 @@ class InputHold:
         """Forget everything, after a jump of the clock."""
         self._held.clear()
 
+    def stamp(self, column: str, time: float) -> float:
+        """Stamp in s of what a sample at `time` s shows of a column; NaN for nothing."""
+        return self._found(column, time)[0]
+
+    def drop_after(self, time: float) -> None:
+        """Forget every input whose latest stamp is later than this, s: nothing newer would ever take its place."""
+        for column in [column for column, held in self._held.items() if held[-1][0] > time]:
+            del self._held[column]
+
     def _value(self, column: str, time: float) -> float:
+        stamp, value = self._found(column, time)
+        return value if time - stamp <= self.limit(column) else math.nan
+
+    def _found(self, column: str, time: float) -> tuple[float, float]:
         held = self._held.get(column)
         if not held:
-            return math.nan
+            return NOTHING
         latest = time + SIMULTANEOUS
         # the last one, unless a node that lags behind finds later ones waiting already
         place = len(held) if held[-1][0] <= latest else bisect_right(held, latest, key=_stamp)
-        if not place:
-            return math.nan
-        stamp, value = held[place - 1]
-        return value if time - stamp <= self.limit(column) else math.nan
+        return held[place - 1] if place else NOTHING
 
     def limit(self, column: str) -> float:
         """Age in s beyond which a value of this column is lost."""
@@ -147,6 +158,9 @@ def _keep(own: Any, held: Any, name: str) -> None:
 
 
 # -- from messages to samples
+# s; who sent so much later than a speed that came after it goes by another machine's clock: what waits for a node that
+# was paused (`DEPTH`) is nearer
+OTHER_CLOCK = 10.0
 BACKWARD_JUMP = 1.0  # s; stamps that fall behind by more are a new recording, not a late message
 
 
@@ -176,7 +190,7 @@ class SampleStream:
         self.counts: Counter[str] = Counter()
         self.rejected: Counter[str] = Counter()
         self.last_stamp = float("-inf")
-        self._unstamped: list[tuple[float, Input, Any]] = []
+        self._unstamped: dict[str, deque[tuple[float, Input, Any]]] = {}
 
     def take(self, source: Input, message: Any, receipt: float, sent: float | None = None) -> Sample | None:
         """Hold what a message says; the sample, if it was a speed.
@@ -193,8 +207,8 @@ class SampleStream:
         return None
 
     def put_off(self, source: Input, message: Any, sent: float) -> None:
-        """Keep a message without a stamp until the next speed that was sent after it."""
-        self._unstamped.append((sent, source, message))
+        """Keep a message without a stamp until the next speed sent after it; of one topic the latest `DEPTH`."""
+        self._unstamped.setdefault(source.topic, deque(maxlen=DEPTH)).append((sent, source, message))
 
     def take_speed(self, source: Input, message: Any, stamp: float, sent: float) -> Sample | None:
         """The sample at a speed's stamp in s; None where the message shows none."""
@@ -208,18 +222,14 @@ class SampleStream:
         return self.hold.sample(stamp)
 
     def _date_unstamped(self, stamp: float, sent: float) -> None:
-        later = []
-        for each in self._unstamped:
-            if each[0] <= sent:
-                self.put(each[1], stamp, each[2])
-            else:
-                later.append(each)
-        self._unstamped = later
+        for waiting in self._unstamped.values():
+            while waiting and not sent < waiting[0][0] <= sent + OTHER_CLOCK:
+                self.put(waiting[0][1], stamp, waiting.popleft()[2])
 
     def forget(self) -> None:
         """Drop what is held, after a jump of time."""
         self.hold.reset()
-        self._unstamped = []
+        self._unstamped = {}
         self.last_stamp = float("-inf")
 
     def put(self, source: Input, stamp: float, message: Any) -> bool:

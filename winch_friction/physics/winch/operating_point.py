@@ -61,7 +61,7 @@ class SpeedPredictor:
         self._time = math.nan
         self._speed = 0.0
         self._acceleration = math.nan
-        self._jerk = 0.0
+        self._jerk = self._half = 0.0
 
     def step(self, time: float, speed: float) -> PredictedSpeed:
         """Take the speed in rad/s at `time` s; a time that does not advance leaves the derivatives as they are."""
@@ -71,12 +71,13 @@ class SpeedPredictor:
         if not dt <= 0.0:
             self._time, self._speed = time, speed
         acceleration = 0.0 if math.isnan(self._acceleration) else self._acceleration
-        age = self._lead + (0.5 * dt if dt > 0.0 else 0.0)
+        age = self._lead + self._half
         ahead = acceleration + self._jerk * age
         mean = acceleration + self._jerk * (age - 0.5 * self._lead)
         return PredictedSpeed(speed + mean * self._lead, ahead)
 
     def _differentiate(self, dt: float, slope: float) -> None:
+        self._half = 0.5 * dt
         if math.isnan(self._acceleration):
             self._acceleration = slope
             return

@@ -1,0 +1,91 @@
+"""A controller that hangs and goes on sending what it read last, with new stamps."""
+
+import math
+from itertools import count
+
+import pytest
+from sea import PERIOD, SEED, Fed, check_invariants, swell
+
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.standing_readings import PATIENCE, SAID, StandingReadings
+from winch_friction.physics.signals import Sample
+
+MOVING = 5.0  # rad/s
+
+
+def test_a_sender_that_hangs_in_mid_wave_is_believed_no_longer():
+    """Its last torque had been published, `valid`, for good."""
+    fed = Fed()
+    fed.run(7.0)
+    last = swell(fed.now)
+
+    def hang(sample):
+        sample.motor_speed, sample.speed_reference, sample.groups = last.motor_speed, last.speed_reference, last.groups
+
+    assert abs(last.motor_speed) > 50.0
+    said = fed.run(PATIENCE + 0.5 + 0.5, hang)
+    assert said[0].friction_torque != 0.0
+    assert said[-1].friction_torque == 0.0
+    assert not said[-1].valid
+    assert SAID in fed.service.status(fed.now)["contradictions"]
+    check_invariants(fed)
+    assert fed.run(4.0)[-1].valid, "it sends again"
+
+
+def said_of(change, seconds=5.0, rate=50.0):
+    own, said = StandingReadings(MOVING), ""
+    for k in range(round(seconds * rate)):
+        sample = Sample(k / rate, 60.0, 60.0, motor_torque=20.0, hook_load=math.nan)
+        change(sample, k)
+        said = own.contradiction(sample, 1.0 / rate)
+    return said
+
+
+def test_readings_that_stand_still_while_it_turns_are_a_sender_that_hangs():
+    assert said_of(lambda sample, k: None) == SAID
+    assert not said_of(lambda sample, k: None, seconds=0.9 * PATIENCE)
+
+
+@pytest.mark.parametrize("channel", ["motor_speed", "motor_torque", "hook_load", "shaft_angle", "heave_velocity"])
+def test_one_that_lives_is_enough(channel):
+    """Also one that comes but twice a second: of a hook load, or of a slow bus."""
+    assert not said_of(lambda sample, k: setattr(sample, channel, 50.0 + 0.1 * (k // 25)))
+
+
+def test_at_rest_and_without_a_torque_nothing_need_move():
+    def at_rest(sample, k):
+        sample.motor_speed = sample.speed_reference = 0.0
+
+    assert not said_of(at_rest)
+    assert not said_of(lambda sample, k: setattr(sample, "motor_torque", math.nan))
+
+
+def test_a_command_that_stands_beside_standing_readings_is_one_too():
+    """Near a reversal the speed that was read last is small."""
+    assert said_of(lambda sample, k: setattr(sample, "motor_speed", 0.5 * MOVING)) == SAID
+
+
+def test_nothing_is_learned_from_a_sender_that_hangs():
+    fed, numbers = Fed(), count()
+    service = EstimatorService(fed.service.law.crane, SEED, fed.service.inputs.topics)
+
+    def learn(seconds, change=lambda sample: None):
+        for _ in range(round(seconds / PERIOD)):
+            now = next(numbers) * PERIOD
+            sample = swell(now)
+            change(sample)
+            service.take_row(sample)
+
+    learn(8.0)
+    last = swell(8.0 - PERIOD)
+
+    def hang(sample):
+        sample.motor_speed, sample.speed_reference = last.motor_speed, last.speed_reference
+
+    learn(2.0 * PATIENCE, hang)
+    assert service.contradiction == SAID
+    learned = service.law.counts["learned_from"]
+    learn(5.0, hang)
+    assert service.law.counts["learned_from"] == learned
+    learn(2.0)
+    assert not service.contradiction

@@ -18,7 +18,7 @@ from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.time_columns import settle_time
 from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
-from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, is_share, usual_units
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 
@@ -185,14 +185,8 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
         )
     for name, entry in draft.log_map.columns.items():
         channel = name.rpartition(".")[2]
-        shares = (
-            entry.unit
-            and len(CHANNEL_UNITS[channel]) > 1
-            and CHANNEL_UNITS[channel][1] == "1"
-            and channel != "displacement"
-        )
-        if shares and not entry.of and entry.unit.strip() in ("%", "percent", "Prozent", "prosent"):
-            own = CHANNEL_UNITS[channel][0]
+        if entry.unit and channel != "displacement" and not entry.of and is_share(channel, entry.unit):
+            own = usual_units(channel)[0]
             draft.questions.append(
                 f"{name}: '{entry.source}' is in {entry.unit}; of what? --set '{name}.of=NUMBER {own}'"
             )

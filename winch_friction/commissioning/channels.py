@@ -10,6 +10,7 @@ import numpy as np
 
 from winch_friction.commissioning.view import broken_cells, usable
 from winch_friction.physics.channels import LIMITS, display_unit
+from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
@@ -123,7 +124,7 @@ def clock_findings(run: Run) -> Iterator[Finding]:
         yield Finding("warning", "jitter", said, "time", (run.name,), {"scatter": scatter})
     gaps = steps[steps > GAP * usual]
     if gaps.size:
-        said = f"{run.name}: {gaps.size} gaps in time, the widest {gaps.max():.3g} s"
+        said = f"{run.name}: {counted(gaps.size, 'gap', 'gaps')} in time, the widest {gaps.max():.3g} s"
         yield Finding("note", "gaps", said, "time", (run.name,), {"count": int(gaps.size), "widest": float(gaps.max())})
 
 

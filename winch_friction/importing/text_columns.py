@@ -11,7 +11,7 @@ from winch_friction.importing.layout import Layout
 from winch_friction.importing.log import LogColumn, unique_names
 from winch_friction.importing.text_rows import TextRows
 from winch_friction.importing.units import bare_unit, looks_like_unit
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import FloatArray
 
 _BLOCK = 4096  # rows cut at once: a few MB of cells
@@ -54,11 +54,14 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
     body = Body(rows, layout)
     width = body.width
     if body.repeated:
-        notes.append(f"the header stands {len(body.repeated)} times more (line {body.repeated[0]}): left out")
+        notes.append(
+            f"the header stands {counted(len(body.repeated), 'time', 'times')} more (line {body.repeated[0]}): left out"
+        )
     if body.short:
         shown = ", ".join(map(str, body.short[:3]))
         notes.append(
-            f"{len(body.short)} lines are shorter than the {width} columns (line {shown}): their cells are missing"
+            f"{counted(len(body.short), 'line is', 'lines are')} shorter than the {width} columns (line {shown}): "
+            "their cells are missing"
         )
     names = rows.row(layout.names)
     if layout.names >= 0 and layout.width > len(names) > 1:

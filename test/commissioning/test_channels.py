@@ -5,7 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
+from winch_friction.commissioning.channels import (
+    channel_findings,
+    clock_findings,
+    frozen_findings,
+    runs_say,
+    told_slow_clock,
+)
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.physics.signals import Run
@@ -102,3 +108,14 @@ def test_one_run_fits_and_several_fit():
     assert runs_say(("a.csv",), 1, "fit") == "run a.csv fits"
     assert runs_say(("a.csv",), 3, "leave") == "1 of 3 runs (a.csv) leaves"
     assert runs_say(("a", "b"), 2, "say") == "all 2 runs say"
+
+
+@pytest.mark.parametrize(("during", "stuck"), [(0.0, []), (20.0, ["shaft_angle"])])
+def test_an_angle_that_stands_with_the_winch_is_not_stuck(during, stuck, crane_150t):
+    """Every joystick cycle that ended in a rest of 3 s was warned of."""
+    time = np.arange(0.0, 40.0, 0.02)
+    rest = (time > 15.0) & (time < 20.0)
+    speed = np.where(rest, during, 30.0 + np.sin(time))
+    angle = np.cumsum(np.where(rest, 0.0, speed)) * 0.02
+    found = channel_findings(Run("r", {"time": time, "motor_speed": speed, "shaft_angle": angle}), crane_150t)
+    assert [each.channel for each in found if each.cause == "stuck" and each.channel == "shaft_angle"] == stuck

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from winch_friction.identification.supplier_shape import refuse_another_shape, refuse_two_of_a_point
 from winch_friction.identification.supplier_table import SupplierTable
 from winch_friction.physics.channels import OF_GROUP, WINCH, factor_to_si
 from winch_friction.physics.errors import InputError, Problems
@@ -13,7 +14,6 @@ from winch_friction.records.table import Table, read_table
 _AXES = {"speed": "rad/s", "pressure": "Pa", "displacement": "m^3/rad"}
 LEAST_BEST_EFFICIENCY = 0.1  # any piston motor reaches several times that somewhere in its table
 _MOST_LOST = 0.5  # of the largest D dp of a table: a piston motor loses a tenth there
-_REPEATED = 0.02  # of D dp, between rows of one point: twice what MJ4 misses a table by (paper 1), so each is as good
 _MAY_BE = {"torque_loss": "name it 'torque' if it is the torque at the shaft",
            "torque": "name it 'torque_loss' if it is what is lost",
            "efficiency": "an efficiency is what is left, not what is lost"}  # fmt: skip
@@ -32,7 +32,7 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     `InputError` naming file, row and column.
     """
     table = read_table(Path(path))
-    _refuse_another_shape(table)
+    refuse_another_shape(table, _AXES)
     problems, axes = Problems(), {}
     for name, unit in _AXES.items():
         with problems:
@@ -45,7 +45,7 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     displacement = axes["displacement"]
     loss = _torque_loss(table, axes["pressure"] * displacement)
     _refuse_another_torque(table, loss, axes["pressure"] * displacement)
-    _refuse_two_of_a_point(table, list(axes.values()), loss / (axes["pressure"] * displacement))
+    refuse_two_of_a_point(table, list(axes.values()), loss / (axes["pressure"] * displacement))
     return SupplierTable(
         name=table.name,
         torque_loss=loss,
@@ -53,31 +53,6 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
         max_displacement=float(max_displacement or displacement.max()),
         **axes,
     )
-
-
-def _refuse_another_shape(table: Table) -> None:
-    """A table none of whose columns is an axis: names of another language or in parentheses, or a map of the losses."""
-    if not any(name in table for name in _AXES):
-        raise InputError(
-            f"{table.path}: the columns must be 'speed [rpm]', 'pressure [bar]', 'displacement [cm^3/rev]' and one of "
-            f"'efficiency [%]', 'torque [N*m]' and 'torque_loss [N*m]'; found {', '.join(table.cells)}; a map with a "
-            "speed per row and a pressure per column needs a row per point"
-        )
-
-
-def _refuse_two_of_a_point(table: Table, axes: list[FloatArray], share: FloatArray) -> None:
-    """Rows of one speed, pressure and displacement that lose another share of D dp: two motors, or two efficiencies."""
-    _, first, point = np.unique(np.column_stack(axes), axis=0, return_index=True, return_inverse=True)
-    earlier = first[point.ravel()]
-    at_odds = np.flatnonzero(np.abs(share - share[earlier]) > _REPEATED)
-    if at_odds.size:
-        row, other = table.rows[at_odds[0]], table.rows[earlier[at_odds[0]]]
-        more = f", and {at_odds.size - 1} more such rows" if at_odds.size > 1 else ""
-        raise InputError(
-            f"{table.path} row {row}: the same speed, pressure and displacement as in row {other}, and "
-            f"{100.0 * abs(share[at_odds[0]] - share[earlier[at_odds[0]]]):.3g} % of D dp between their losses{more}: "
-            "two motors, or two kinds of efficiency? Leave in those of one"
-        )
 
 
 def _torque_loss(table: Table, nominal: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.kinematics import Agreement, agreements
 from winch_friction.commissioning.view import views_of
+from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
@@ -68,8 +69,9 @@ class CheckResult:
         runs = f"{count} run{'s' if count > 1 else ''}"
         open_ = sum(each.score > self.limit for each in self.balance)
         if open_:
+            some = "it leaves" if count == 1 else counted(open_, "of them leaves", "of them leave")
             return (
-                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {open_} of them leave more of the "
+                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {some} more of the "
                 "torque balance open than ordinary errors do, which may be this drive's own friction and inertia"
             )
         if all(each.before != each.before for each in self.balance):

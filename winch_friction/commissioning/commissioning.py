@@ -67,7 +67,7 @@ class CheckResult:
             return first.sentence
         count, whose = len(self.runs), f"of crane '{self.crane.name}'"
         runs = f"{count} run{'s' if count > 1 else ''}"
-        open_ = sum(each.score > self.limit for each in self.balance)
+        open_ = sum(each.score > self.limit for each in self.closures)  # without what other channels tell of the speed
         if open_:
             some = "it leaves" if count == 1 else counted(open_, "of them leaves", "of them leave")
             return (
@@ -79,7 +79,9 @@ class CheckResult:
                 f"plausible, not confirmed: nothing contradicts {runs} {whose}, but the winch does not move long "
                 "enough in them to compare torques; log hoisting and lowering"
             )
-        return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance"
+        wrong = next((each.sentence.partition("; ")[0] for each in self.findings if each.cause == "companion"), "")
+        but = f", but {wrong}" if wrong else ""
+        return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance{but}"
 
     def content(self) -> dict[str, Any]:
         """Plain types, for check.json."""

@@ -1,9 +1,11 @@
 """A wire that is counted on the drum: the speed was turned by it, and swapped ports were said to be the cause."""
 
+import numpy as np
 import pytest
 from importing.logs import GERMAN, example, rows_of, write_text
 
 from winch_friction.cli.main import run
+from winch_friction.importing.balance import opposes_motion
 
 
 @pytest.fixture
@@ -57,3 +59,11 @@ def test_a_speed_that_counts_lowering_is_turned_by_the_wire(proposed):
     status, said = proposed(rows_of(example("test_02"), words))
     assert status == 0, said.err
     assert "motor_speed <- Windendrehzahl [1/min] (-1 * 1/min)" in said.out
+
+
+def test_a_row_without_a_time_hides_no_friction(crane_150t):
+    """It ended in a traceback: a log with a second table below it has such rows."""
+    columns = {name: values.copy() for name, values in example("test_02").columns.items()}
+    told = opposes_motion(columns, crane_150t)
+    columns["time"][100] = np.nan
+    assert opposes_motion(columns, crane_150t) == pytest.approx(told, rel=0.1)

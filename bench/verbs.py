@@ -22,9 +22,9 @@ def measure(smoke: bool = False) -> list[Row]:
         runs = [Run(f"run_{k:02d}", each) for k, each in enumerate(columns[: 6 if smoke else None])]
         files = [str(write_run(run, Path(folder) / f"{run.name}.parquet")) for run in runs]
         # the first may have to fill the caches of equations and compiled code, as after an installation
-        verb = VERB.format(["gap", *files, *KNOWN, "--out", f"{folder}/gap"])
+        verb = VERB.format(["gap", *files, *KNOWN, "--out", f"{folder}/gap", "--overwrite"])
         cold = [processor_time(verb) for _ in range(1 if smoke else 2)]
-        practice = ["identify", "practice", "practice_150t", "--out", f"{folder}/practice"]
+        practice = ["identify", "practice", "practice_150t", "--out", f"{folder}/practice", "--overwrite"]
         few = ["--resamples", "2", "--restarts", "1", "--evaluations", "500"] if smoke else []
         identify = processor_time(VERB.format([*practice, *few]))
     hours = sum(float(run.time[-1] - run.time[0]) for run in runs) / 60.0

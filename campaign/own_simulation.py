@@ -171,6 +171,7 @@ def named_by_fmu(effect: str, seed: int, crane: Crane, folder: Path) -> tuple[bo
         "a6vm215_crane2",
         "--out",
         str(place / "gap"),
+        "--overwrite",
     ]
     said, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):

@@ -94,7 +94,7 @@ def carried_through(study: Study, folder: Path) -> Outcome:
     status = _step(out, "check", ["check", *map(str, out.runs), *named, "--out", str(folder / "check")])
     force = ["--force"] if status else []
     seen = [str(path) for path in out.runs[:: study.every]]
-    _step(out, " ".join(["gap", *force]), ["gap", *seen, *named, "--out", str(folder / "gap"), *force])
+    _step(out, " ".join(["gap", *force]), ["gap", *seen, *named, "--out", str(folder / "gap"), "--overwrite", *force])
     aside = ["--crane", study.crane, "--motor", study.model, "--out", str(folder / "identified.yaml")]
     _step(out, " ".join(["identify system", *force]), ["identify", "system", *seen, *aside, *force])
     if out.written.is_file():

@@ -38,7 +38,7 @@ def table(runs: list[Path], crane: Crane, model: str, folder: Path) -> list[str]
     for number, (name, used) in enumerate(splits(len(runs))):
         others = [k for k in range(len(runs)) if k not in used]
         out = folder / f"split_{number:02d}"
-        named = ["--crane", crane.name, "--model", model, "--out", str(out)]
+        named = ["--crane", crane.name, "--model", model, "--out", str(out), "--overwrite"]
         said_of(["gap", *(str(runs[k]) for k in used), *named])
         found = json.loads((out / "gap.json").read_text(encoding="utf-8"))
         effects = [each["name"] for each in found["effects"]]

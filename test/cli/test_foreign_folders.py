@@ -68,6 +68,41 @@ def test_an_earlier_result_and_a_folder_of_other_things_are_no_hindrance(tmp_pat
     refuse_foreign(tmp_path, ("model.yaml",), "gap.json", "winch_friction.gap/")
 
 
+EARLIER = {
+    "gap": ("gap.json", '{"schema": "winch_friction.gap/2"}', ["model.yaml", "report.html"]),
+    "practice": ("report.html", "<title>Friction practice: of last week</title>", ["motor.yaml", "seed.yaml"]),
+}
+
+
+@pytest.mark.parametrize("verb", EARLIER)
+def test_an_earlier_result_is_replaced_only_when_told_so(verb, tmp_path, monkeypatch, capsys):
+    """A search of an hour, or a seed, was gone after the next call without a word."""
+    words, work, *_ = VERBS[verb]
+    mark, text, others = EARLIER[verb]
+    (tmp_path / mark).write_text(text)
+    for name in others:
+        (tmp_path / name).write_text("of last week")
+    module, _, function = work.rpartition(".")
+
+    def begun(*_, **__):
+        raise InputError("the work has begun")
+
+    monkeypatch.setattr(importlib.import_module(module), function, begun)
+    assert run([*words, "--out", str(tmp_path)]) == 2
+    assert f"--out {tmp_path}: holds an earlier result ({mark})" in capsys.readouterr().err
+    assert (tmp_path / mark).read_text() == text
+    assert run([*words, "--out", str(tmp_path), "--overwrite"]) == 2
+    assert "the work has begun" in capsys.readouterr().err
+
+
+def test_a_seal_that_was_opened_is_not_lost_to_the_next_trial(tmp_path, capsys):
+    (tmp_path / "trial_02").mkdir()
+    (tmp_path / "trial_02" / "gap.json").write_text("of last week")
+    assert run(["gap", "--blind", "2", "--out", str(tmp_path)]) == 2
+    assert "trial_02/gap.json: exists already" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == ["trial_02"]
+
+
 DYING = """
 import os, signal, sys
 from winch_friction.cli import main
@@ -92,7 +127,7 @@ def test_what_a_killed_search_has_left_is_its_own(tmp_path):
     assert died.returncode == -signal.SIGKILL
     assert [each.name for each in tmp_path.iterdir() if each.name[0] != "."] == ["gap.json"]
     (tmp_path / "proposal_7.py").write_text("of an earlier call")
-    assert run(words) == 0
+    assert run([*words, "--overwrite"]) == 0
     found = json.loads((tmp_path / "gap.json").read_text())["next_experiment"]
     assert {each.name for each in tmp_path.iterdir()} == {"gap.json", "model.yaml", found["scenario"]}
 

@@ -164,7 +164,12 @@ BROKEN = {
 @pytest.mark.parametrize("damage", BROKEN, ids=lambda damage: damage.__name__)
 def test_a_broken_folder_is_one_line_and_good_results_stay(damage, folder, good, capsys):
     damage(folder)
-    assert run(["identify", "practice", str(folder), "--out", str(good), *QUICK[:2], "--evaluations", "100"]) == 2
+    assert (
+        run(
+            ["identify", "practice", str(folder), "--out", str(good), *QUICK[:2], "--evaluations", "100", "--overwrite"]
+        )
+        == 2
+    )
     said = capsys.readouterr().err.strip().splitlines()
     assert len([line for line in said if line.startswith("winch-friction:")]) == 1
     assert re.search(BROKEN[damage], said[-1]), said

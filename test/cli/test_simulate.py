@@ -43,6 +43,7 @@ def test_hidden_effects_and_truth(short, tmp_path):
         (["no_such_scenario"], "neither a file nor a shipped name"),
         (["{short}", "--hide", "rust"], "--hide rust: not an effect"),
         (["{short}", "--hide", "brake_drag=much"], "'much' is not a number"),
+        (["{short}", "--hide", "brake_drag=-1"], "--hide brake_drag=-1: brake_drag only takes and cannot be negative"),
         (["gap_campaign", "--out", "one.csv"], "needs a folder"),
         (["{short}", "--format", "xlsx"], "not a kind of run file"),
         (["{short}", "--crane", "emps"], "electric"),

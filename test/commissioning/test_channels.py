@@ -7,7 +7,13 @@ import pytest
 
 from winch_friction.api.work import simulate
 from winch_friction.commissioning.balance import _top
-from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
+from winch_friction.commissioning.channels import (
+    channel_findings,
+    clock_findings,
+    frozen_findings,
+    runs_say,
+    told_slow_clock,
+)
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.excitation import Taught
@@ -135,3 +141,14 @@ def test_recordings_of_several_days_in_one_file_are_looked_at_one_by_one(pause):
 def test_a_run_without_a_number_in_its_speed_warns_of_nothing():
     assert np.isnan(_top(np.full(5, np.nan)))
     assert _top(np.array([np.nan, 3.0, 3.0])) == 3.0
+
+
+@pytest.mark.parametrize(("during", "stuck"), [(0.0, []), (20.0, ["shaft_angle"])])
+def test_an_angle_that_stands_with_the_winch_is_not_stuck(during, stuck, crane_150t):
+    """Every joystick cycle that ended in a rest of 3 s was warned of."""
+    time = np.arange(0.0, 40.0, 0.02)
+    rest = (time > 15.0) & (time < 20.0)
+    speed = np.where(rest, during, 30.0 + np.sin(time))
+    angle = np.cumsum(np.where(rest, 0.0, speed)) * 0.02
+    found = channel_findings(Run("r", {"time": time, "motor_speed": speed, "shaft_angle": angle}), crane_150t)
+    assert [each.channel for each in found if each.cause == "stuck" and each.channel == "shaft_angle"] == stuck

@@ -73,4 +73,43 @@ def test_a_range_that_leaves_nothing_says_where_the_table_lies(read):
     table = read("torque_loss [N*m]", lost, AXES.replace(" [rpm]", ""))
     with pytest.raises(InputError, match=r"speed 4775 \.\.\. 2\.387e\+04 rpm \(400 \.\.\. 2500 count\)") as caught:
         FitRange().select(table)
-    assert "none there: SI" in str(caught.value)
+    assert "a column without one is SI" in str(caught.value)
+
+
+def test_two_losses_of_one_point_are_no_table(tmp_path):
+    """Two motors' rows, or two efficiencies', in one file were averaged without a word: K3 became nine times itself."""
+    rows = [f"{n},{p},{d},{e}" for e in (92.0, 87.0) for n, p, d in ROWS]
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join([f"{AXES},efficiency [%]", *rows]))
+    with pytest.raises(InputError) as caught:
+        read_supplier_table(path)
+    assert "row 20: the same speed, pressure and displacement as in row 2, and 5 % of D dp" in str(caught.value)
+    assert "and 17 more such rows: two motors, or two kinds of efficiency?" in str(caught.value)
+
+
+def test_a_point_that_was_measured_twice_is_no_other_motor(tmp_path):
+    rows = [f"{n},{p},{d},{e}" for e in (92.0, 91.0) for n, p, d in ROWS]
+    (tmp_path / "table.csv").write_text("\n".join([f"{AXES},efficiency [%]", *rows]))
+    assert len(read_supplier_table(tmp_path / "table.csv")) == 36
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["n\\p,50,100\n400,89.5,91\n500,89,90\n", "Drehzahl [1/min],Druck [bar],Wirkungsgrad [%]\n400,50,89\n"],
+    ids=["a map", "another language"],
+)
+def test_a_table_of_another_shape_is_told_in_one_line(tmp_path, text):
+    (tmp_path / "table.csv").write_text(text)
+    with pytest.raises(
+        InputError, match="a map with a speed per row and a pressure per column needs a row per point"
+    ) as e:
+        read_supplier_table(tmp_path / "table.csv")
+    assert len(e.value.problems) == 1
+    assert "'displacement [cm^3/rev]'" in str(e.value)
+
+
+def test_a_spreadsheet_is_told_as_one(tmp_path):
+    """Its bytes were said to be no UTF-8, and to be saved as that."""
+    (tmp_path / "table.xlsx").write_bytes(b"PK\3\4\xff")
+    with pytest.raises(InputError, match=r"a spreadsheet; save it as \.csv"):
+        read_supplier_table(tmp_path / "table.xlsx")

@@ -115,3 +115,19 @@ def test_formulas_without_stored_values_are_said(tmp_path, crane_150t):
         row[2] = f"=B{k}*2"
     log = write_workbook(tmp_path / "log.xlsx", rows)
     assert any("formula without a stored value" in note for note in read_log(log).notes)
+
+
+@pytest.mark.parametrize(
+    ("names", "encoding", "noted"),
+    [
+        ("Время;Обороты двигателя;Давление А", "cp1251", True),
+        ("時間;モーター速度;圧力A", "cp932", True),
+        ("Zeit;Öltemperatur;Seillänge ausgelegt", "cp1252", False),
+        ("Время;Обороты двигателя;Давление А", "utf-8", False),
+    ],
+)
+def test_names_in_an_encoding_that_is_not_told_are_noted(tmp_path, names, encoding, noted):
+    """They were Àáâ without a word, and one of them a channel."""
+    rows = [names, *(f"{0.02 * k:.2f};{k};{100 + k}" for k in range(50))]
+    (tmp_path / "log.csv").write_bytes("\n".join(rows).encode(encoding))
+    assert any("save it as UTF-8" in each for each in read_log(tmp_path / "log.csv").notes) == noted

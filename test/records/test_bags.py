@@ -293,3 +293,28 @@ def test_what_a_bag_holds_beside_the_winch_is_read_past_and_said(tmp_path):
             writer.write("/arm/joint_states", joint_state(MESSAGES, header, "boom", velocity=1.0), 1000.0 + 0.02 * k)
     with open_bag(tmp_path / "bag") as bag:
         assert bag.warnings == ["bag: topics that are not the winch's, read past: /arm/joint_states"]
+
+
+def spoken(tmp_path, crane, joint, name="bag"):
+    """A bag whose speed bears this joint's name; `winch_drum` turns with the drum."""
+    run = make_run(groups=("active", "passive"), rows=5)
+    conventions = {"speed_joint": joint} | ({"motor_joint": joint} if joint != "winch_drum" else {})
+    return run, write_bag(run, tmp_path / name, crane_topics(crane, run.groups, **conventions))
+
+
+def test_a_drums_joint_by_its_own_name_needs_no_word(tmp_path, crane_150t):
+    """The contract knows both names; a bag with the drum's was refused as one without a speed."""
+    run, bag = spoken(tmp_path, crane_150t, "winch_drum")
+    assert same(run, read_run(bag, crane_150t), rel=1e-11)
+    with pytest.raises(InputError, match="no finite speed of joint 'winch_motor'"):
+        read_run(bag, crane_150t, speed_joint="winch_motor")  # what is said holds
+
+
+def test_a_joint_of_another_name_is_told_with_what_to_say(tmp_path, crane_150t, crane2_model):
+    run, bag = spoken(tmp_path, crane_150t, "Winch_Motor")
+    for read in (lambda: read_run(bag, crane_150t), lambda: replay_recording(bag, crane_150t, crane2_model)):
+        with pytest.raises(
+            InputError, match="joint 'winch_motor'; found Winch_Motor: name the winch's, replay --joint"
+        ):
+            read()
+    assert same(run, read_run(bag, crane_150t, speed_joint="Winch_Motor", motor_joint="Winch_Motor"), rel=1e-11)

@@ -124,7 +124,7 @@ def changed(line, old, new):
         ("", "empty"),
         ("\n\n", "empty"),
         ("time,motor_speed,motor_torque\n", "no rows under the header; a run needs at least two"),
-        ("time,motor_speed,motor_torque\n0,1,2\n", "1 rows are too few"),
+        ("time,motor_speed,motor_torque\n0,1,2\n", "1 row is too few"),
         (changed(1, "[rpm]", "[bar]"), "'motor_speed [bar]': unit 'bar' cannot be read as rad/s, e.g. 'rpm'"),
         (changed(1, "[rpm]", "[Hz]"), "unit 'Hz'"),
         (changed(1, "[cm^3/rev]", "[cm^3]"), "unit 'cm^3' cannot be read as m^3/rad, e.g. 'cm^3/rev'"),
@@ -218,8 +218,8 @@ def test_repeated_times_gaps_and_short_runs_are_warned_of(tmp_path):
     rows = [f"{t},1,2" for t in (0, 0.02, 0.02, 0.04, 0.06, 0.08, 0.5, 0.52)]
     run = read_run(table(tmp_path, "\n".join(["time,motor_speed,motor_torque", *rows])))
     assert len(run) == 7
-    assert "1 repeated times left out, line 4" in run.warnings[0]
-    assert "1 gaps (widest 0.42 s, usual step 0.02 s), before line 8" in run.warnings[1]
+    assert "1 repeated time left out, line 4" in run.warnings[0]
+    assert "1 gap (widest 0.42 s, usual step 0.02 s), before line 8" in run.warnings[1]
     assert "only 0.52 s long" in run.warnings[2]
 
 

@@ -174,3 +174,16 @@ def test_unknown_effects_are_refused(ahc, crane, model):
 def test_a_log_does_not_betray_what_was_hidden(warm, crane, model):
     run = simulate(warm, crane, model, hidden=[("brake_drag", 1.0)]).run
     assert "brake_drag" not in repr(run.metadata) + run.name
+
+
+@pytest.mark.parametrize("name", ["brake_drag", "presliding", "slip_leakage", "entrained_air", "signal_delay"])
+def test_what_only_takes_cannot_be_negative(name, ahc, crane_150t, crane2_model):
+    """A brake of -1 drove the winch, and the runs were written."""
+    with pytest.raises(InputError, match=f"hidden effect '{name}=-1': {name} only takes and cannot be negative"):
+        simulate(ahc.override({"duration": 1.0}), crane_150t, crane2_model, hidden={name: -1.0})
+
+
+@pytest.mark.parametrize("name", ["gear_asymmetry", "tare_load", "pressure_offset", "inertia_error", "layer_radius"])
+def test_what_lies_on_either_side_may_be_negative(name):
+    effect_names()
+    EFFECTS[name].refuse(-1.0, "there")

@@ -161,11 +161,11 @@ def refuse_existing(overwrite: bool, *places: Path | None) -> None:
             raise InputError(f"--out {place}: exists already; give another name, or --overwrite to replace it")
 
 
-def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: str = "") -> None:
+def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: str = "", overwrite: bool = True) -> None:
     """Raise `InputError` where a folder holds files that a verb writes, and they are not those of an earlier call.
 
-    An earlier call has left `mark`, which says `schema`; the names may be patterns. A folder that is to be made under
-    the name of a file is refused as well.
+    An earlier call has left `mark`, which says `schema`; the names may be patterns. Without `overwrite` an earlier
+    result is refused as well. So is a folder that is to be made under the name of a file.
     """
     if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv"):
         raise InputError(f"--out {out}: this verb writes a folder of files; give a name without {out.suffix}")
@@ -173,7 +173,11 @@ def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: st
         return
     made = out / mark
     if made.is_file() and schema.encode() in made.read_bytes()[:_HEAD]:
-        return
+        if overwrite:
+            return
+        raise InputError(
+            f"--out {out}: holds an earlier result ({mark}); give another folder, or --overwrite to replace it"
+        )
     there = sorted(each.name for name in names for each in out.glob(name))
     if there:
         raise InputError(

@@ -22,7 +22,7 @@ UNIX = 1e8  # s; a time below it counts from some origin of its own and has no d
 class FleetVerb:
     """How a verb is called: its words, where its result goes, whether one crane's recordings go in together.
 
-    `own_file`: the result is a file that the verb replaces only when told so; a fleet makes its own anew.
+    `own_file`: the result is what the verb replaces only when told so; a fleet makes its own anew.
     """
 
     words: tuple[str, ...]
@@ -35,7 +35,7 @@ class FleetVerb:
 VERBS = {
     "replay": FleetVerb(("replay",), "replay/{crane}/{name}.parquet", together=False, own_file=True),
     "check": FleetVerb(("check",), "check/{crane}/{name}", together=False),
-    "gap": FleetVerb(("gap",), "gap/{crane}", together=True),
+    "gap": FleetVerb(("gap",), "gap/{crane}", together=True, own_file=True),
     "identify": FleetVerb(("identify", "system"), "identify/{crane}.yaml", together=True, own_file=True),
 }
 

@@ -9,7 +9,7 @@ import typer
 
 from winch_friction.cli.console import progress, search_at_hand, show_json, show_table, show_warnings, stepping
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths
+from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError
 
 HELP = """Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink.
@@ -55,6 +55,7 @@ def command(
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; gap.json says so.")] = False,
+    overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print gap.json instead of a table.")] = False,
     blind: Annotated[int, typer.Option(help="No runs: hide an effect N times, search for it, then open the seal.")] = 0,
 ) -> None:
@@ -64,9 +65,9 @@ def command(
         from winch_friction.records.model_file import load_model
 
         model = model or MODEL
-        blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json)
+        blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json, overwrite)
         return
-    files = (fmu, fmu_map, params_file)
+    files = (fmu, fmu_map, params_file, overwrite)
     content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, *files)
     if as_json:
         show_json(content)
@@ -88,6 +89,7 @@ def run_gap(
     fmu: Path | None = None,
     fmu_map: Path | None = None,
     params_file: Path | None = None,
+    overwrite: bool = False,
 ) -> dict[str, Any]:
     """The workflow from files to files; returns the content of gap.json."""
     from winch_friction.cli.console import refuse_foreign, refuse_input_as_output
@@ -104,7 +106,7 @@ def run_gap(
     paths = run_paths(paths)
     for name in ("model.yaml", "gap.json", "addition.csv"):
         refuse_input_as_output(out / name, [model, *paths])
-    refuse_foreign(out, WRITTEN, "gap.json", "winch_friction.gap/")
+    refuse_foreign(out, WRITTEN, "gap.json", "winch_friction.gap/", overwrite)
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired

@@ -8,19 +8,23 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.console import progress, refuse_existing, show_json, show_table
 from winch_friction.physics.errors import InputError
 
 NOTHING = "nothing"  # drawn as well: a search that always finds something is worth nothing
 SIZES = (0.5, 2.0)  # of the typical size
 
 
-def blind_trials(count: int, crane: str, model: str, out: Path, seed: int, as_json: bool) -> None:
+def blind_trials(
+    count: int, crane: str, model: str, out: Path, seed: int, as_json: bool, overwrite: bool = False
+) -> None:
     """Run `count` trials and say what was hidden only after each verdict stands in its file."""
     if count < 1:
         raise InputError(f"--blind {count}: give a number of trials, 1 or more")
+    folders = [out / f"trial_{k + 1:02d}" for k in range(count)]
+    refuse_existing(overwrite, *(folder / name for folder in folders for name in ("gap.json", "seal.json")))
     rng = np.random.default_rng([seed, 271])
-    rows = [_trial(k, crane, model, out / f"trial_{k + 1:02d}", rng) for k in progress(range(count), "blind trials")]
+    rows = [_trial(k, crane, model, folders[k], rng) for k in progress(range(count), "blind trials")]
     right = sum(row["right"] for row in rows)
     if as_json:
         show_json({"trials": rows, "right": right, "of": count})

@@ -220,6 +220,7 @@ def practice(
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
     force: Force = False,
+    overwrite: Overwrite = False,
     json: Json = False,
 ) -> None:
     """All four steps, the second loop, the joint fit and the verification of paper 2, from one folder into one report.
@@ -242,7 +243,7 @@ def practice(
     from winch_friction.report.practice import summary_lines, write_practice_report
 
     refuse_unwritable(out / "report.html")
-    refuse_foreign(out, ("report.html", "motor.yaml", "seed.yaml"), "report.html", PRACTICE)
+    refuse_foreign(out, ("report.html", "motor.yaml", "seed.yaml"), "report.html", PRACTICE, overwrite)
     folder = read_practice(_example(example))
     refuse_copies([*folder.tests, *folder.held_out])
     forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)

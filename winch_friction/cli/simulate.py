@@ -92,7 +92,7 @@ def command(
 
 
 def _effect(text: str) -> tuple[str, float]:
-    from winch_friction.simulation.hidden.catalogue import effect_names
+    from winch_friction.simulation.hidden.catalogue import EFFECTS, effect_names
 
     name, _, size = text.partition("=")
     if name not in effect_names():
@@ -104,6 +104,7 @@ def _effect(text: str) -> tuple[str, float]:
         raise InputError(f"--hide {text}: '{size}' is not a number; write EFFECT=SIZE, 1 = typical") from None
     if not abs(value) <= LARGEST_EFFECT:
         raise InputError(f"--hide {text}: the size must be {-LARGEST_EFFECT:g} ... {LARGEST_EFFECT:g} (1 = typical)")
+    EFFECTS[name].refuse(value, f"--hide {text}")
     return name, value
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from winch_friction.commissioning.view import broken_cells, usable
 from winch_friction.physics.channels import LIMITS, display_unit
+from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
@@ -123,7 +124,7 @@ def clock_findings(run: Run) -> Iterator[Finding]:
         yield Finding("warning", "jitter", said, "time", (run.name,), {"scatter": scatter})
     gaps = steps[steps > GAP * usual]
     if gaps.size:
-        said = f"{run.name}: {gaps.size} gaps in time, the widest {gaps.max():.3g} s"
+        said = f"{run.name}: {counted(gaps.size, 'gap', 'gaps')} in time, the widest {gaps.max():.3g} s"
         yield Finding("note", "gaps", said, "time", (run.name,), {"count": int(gaps.size), "widest": float(gaps.max())})
 
 
@@ -287,12 +288,11 @@ def _read(column: str, value: float, of_size: bool = False) -> str:
 
 
 def _rests(run: Run, each: ChannelSummary) -> bool:
-    """Whether it is a speed of zero that stands: a winch at rest, if nothing else moved meanwhile (`dead_findings`)."""
-    if each.channel != "motor_speed":
-        return False
-    values = run["motor_speed"]
-    places = np.concatenate(([0], np.flatnonzero(np.diff(values) != 0.0) + 1, [len(values) - 1]))
-    return bool(values[places[np.diff(run.time[places]).argmax()]] == 0.0)
+    """Whether the winch rests: its speed is zero, or turned the angle by two steps (`dead_findings` asks on)."""
+    places = np.concatenate(([0], np.flatnonzero(np.diff(run[each.channel]) != 0.0) + 1, [len(run) - 1]))
+    k = int(np.diff(run.time[places]).argmax())
+    turned = abs(float(np.mean(run["motor_speed"][places[k] : places[k + 1]]))) * each.longest_still
+    return turned <= {"motor_speed": 0.0, "shaft_angle": 2.0 * each.step}.get(each.channel, -1.0)
 
 
 def _changes_always(values: FloatArray) -> bool:

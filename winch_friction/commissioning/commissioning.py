@@ -17,6 +17,7 @@ from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.kinematics import Agreement, agreements
 from winch_friction.commissioning.view import views_of
+from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
@@ -67,10 +68,11 @@ class CheckResult:
             return first.sentence
         count, whose = len(self.runs), f"of crane '{self.crane.name}'"
         runs = f"{count} run{'s' if count > 1 else ''}"
-        open_ = sum(each.score > self.limit for each in self.balance)
+        open_ = sum(each.score > self.limit for each in self.closures)  # without what other channels tell of the speed
         if open_:
+            some = "it leaves" if count == 1 else counted(open_, "of them leaves", "of them leave")
             return (
-                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {open_} of them leave more of the "
+                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {some} more of the "
                 "torque balance open than ordinary errors do, which may be this drive's own friction and inertia"
             )
         if all(each.before != each.before for each in self.balance):
@@ -78,7 +80,9 @@ class CheckResult:
                 f"plausible, not confirmed: nothing contradicts {runs} {whose}, but the winch does not move long "
                 "enough in them to compare torques; log hoisting and lowering"
             )
-        return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance"
+        wrong = next((each.sentence.partition("; ")[0] for each in self.findings if each.cause == "companion"), "")
+        but = f", but {wrong}" if wrong else ""
+        return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance{but}"
 
     def content(self) -> dict[str, Any]:
         """Plain types, for check.json."""

@@ -12,6 +12,7 @@ import numpy as np
 from winch_friction.commissioning.balance import static_torque
 from winch_friction.commissioning.view import GroupView, RunView
 from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
 
 # channel -> relative error that is ordinary, 1 sigma: an encoder counts, a wire lies on a layer or slips, a sea drifts
 ORDINARY = {"shaft_angle": 0.03, "speed_reference": 0.12, "wire_out": 0.12, "heave_velocity": 0.15}
@@ -116,6 +117,21 @@ def excesses(view: RunView) -> dict[str, float]:
 def range_score(view: RunView) -> float:
     """The excesses as one score."""
     return sum(min((np.log(ratio) / STEEP) ** 2, MOST_BEYOND) for ratio in excesses(view).values())
+
+
+INERTIAL = 0.02  # of the torque: a wrong unit takes ten times and more off what the inertia of a quick drive asks
+
+
+def tells_speed(view: RunView, crane: Crane) -> bool:
+    """Whether a record tells how large its speed is: by another channel, or by what the inertia asks of the torque.
+
+    A torque that is measured, of a slow drive whose friction is not known beforehand, hardly feels the speed: a wrong
+    one only makes room for the friction.
+    """
+    if crane.drive.kind not in (ELECTRIC, CURRENT) or view.rates:
+        return True
+    inertial, drive = view.inertia * view.acceleration, view.drive_torque
+    return bool(np.nanmean(np.square(inertial)) > INERTIAL**2 * np.nanmean(np.square(drive)))
 
 
 def _top(values: FloatArray) -> float:

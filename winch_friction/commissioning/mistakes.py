@@ -19,6 +19,7 @@ from winch_friction.commissioning.kinematics import (
     port_times,
     speed_times,
     speeds_times,
+    tells_speed,
 )
 from winch_friction.commissioning.other_cranes import claim
 from winch_friction.commissioning.view import RunView
@@ -75,7 +76,8 @@ class Mistake:
 def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, Crane]) -> Iterator[Mistake]:
     """All mistakes without a free number that these runs can hold."""
     groups = tuple(dict.fromkeys(name for view in views for name in view.groups))
-    yield from _units(views, crane, groups)
+    told = any(tells_speed(view, crane) for view in views)
+    yield from (each for each in _units(views, crane, groups) if told or each.channel != "motor_speed")
     yield from _signs(views, groups, crane)
     yield from _swaps(views, groups)
     yield from _cranes(views, crane, others)

@@ -9,7 +9,7 @@ import numpy as np
 from winch_friction.identification.complex_method import complex_method
 from winch_friction.identification.fit_data import CountedModel, FitData
 from winch_friction.identification.least_squares import least_squares
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 
@@ -47,8 +47,8 @@ def fit(
     """Fit all parameters of `model`; `options` go to the complex method (restarts, max_evaluations)."""
     if len(data) < len(model.values):
         raise InputError(
-            f"{data.name}: {len(data)} observations cannot determine the {len(model.values)} parameters "
-            f"of '{model.name}'"
+            f"{data.name}: {counted(len(data), 'observation', 'observations')} cannot determine the "
+            f"{len(model.values)} parameters of '{model.name}'"
         )
     values, cost, evaluations = _solver(method)(model, data, seed, options)
     fitted = model.with_values(values)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from winch_friction.identification.supplier_shape import refuse_another_shape, refuse_two_of_a_point
 from winch_friction.identification.supplier_table import SupplierTable
 from winch_friction.physics.channels import OF_GROUP, WINCH, factor_to_si
 from winch_friction.physics.errors import InputError, Problems
@@ -31,6 +32,7 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     `InputError` naming file, row and column.
     """
     table = read_table(Path(path))
+    refuse_another_shape(table, _AXES)
     problems, axes = Problems(), {}
     for name, unit in _AXES.items():
         with problems:
@@ -43,6 +45,7 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     displacement = axes["displacement"]
     loss = _torque_loss(table, axes["pressure"] * displacement)
     _refuse_another_torque(table, loss, axes["pressure"] * displacement)
+    refuse_two_of_a_point(table, list(axes.values()), loss / (axes["pressure"] * displacement))
     return SupplierTable(
         name=table.name,
         torque_loss=loss,

@@ -118,7 +118,7 @@ class FitRange:
         if not keep.any():
             raise InputError(
                 f"{table.name}: no row lies inside the range of the fit: {self._off(table)}; widen the range, or "
-                "correct the unit in the header (none there: SI)"
+                "correct the unit in the header (a column without one is SI)"
             )
         return table.where(keep)
 

@@ -130,7 +130,7 @@ def opposes_motion(columns: Columns, crane: Crane) -> float:
     rest = drive - load if load is not None else drive - np.nanmedian(drive)
     step = max(1, len(rest) // _MOST)
     speed, time = columns["motor_speed"], columns["time"]
-    width = max(1, int(0.2 / max(float(np.median(np.diff(time))), 1e-4)))
+    width = max(1, int(0.2 / max(float(np.nanmedian(np.diff(time))), 1e-4)))
     kernel = np.ones(width) / width
     smooth = np.convolve(np.nan_to_num(speed), kernel, mode="same")
     change = np.gradient(smooth, np.maximum(time - time[0], 0.0) + 1e-9 * np.arange(len(time)))

@@ -13,7 +13,7 @@ from winch_friction.importing.reading import read_log
 from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.units import CHANNEL_UNITS, conversion
 from winch_friction.physics.channels import limits_of
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
@@ -243,7 +243,8 @@ def _say_bad_cells(log: Log, name: str, column: LogColumn, policy: str, said: li
         return
     shown = ", ".join(f"{log.place(row)} '{cell}'" for row, cell in column.bad[:_SHOWN])
     more = f" and {len(column.bad) - _SHOWN} more" if len(column.bad) > _SHOWN else ""
-    text = f"{name}: column '{column.name}': {len(column.bad)} cells are no numbers: {shown}{more}"
+    cells = counted(len(column.bad), "cell is no number", "cells are no numbers")
+    text = f"{name}: column '{column.name}': {cells}: {shown}{more}"
     if policy == "refuse" or len(column.bad) > max(3, STRAY * len(column.values)):
         problems.append(f"{text}; mend them, or map another column")
     else:
@@ -259,7 +260,8 @@ def _within_limits(log: Log, name: str, channel: str, column: LogColumn, values:
         return values
     shown = ", ".join(f"{log.place(int(row))} '{column.values[row]:.6g}'" for row in out[:_SHOWN])
     usual = f"{low:g} to {high:g} {CHANNEL_UNITS[channel][0]}"
-    text = f"{name}: column '{column.name}': {out.size} values that no sensor gives ({usual}): {shown}"
+    how_many = counted(out.size, "value", "values")
+    text = f"{name}: column '{column.name}': {how_many} that no sensor gives ({usual}): {shown}"
     if out.size > max(3, STRAY * len(values)):
         problems.append(f"{text}; is the unit right?")
         return values
@@ -276,5 +278,6 @@ def _without_footer(columns: Mapping[str, FloatArray], log: Log, said: list[str]
     count = len(empty) - (np.flatnonzero(~empty)[-1] + 1) if (~empty).any() else 0
     if not count:
         return dict(columns)
-    said.append(f"{count} rows at the end are no samples (from {log.place(len(empty) - int(count))}): left out")
+    rows = counted(int(count), "row at the end is no sample", "rows at the end are no samples")
+    said.append(f"{rows} (from {log.place(len(empty) - int(count))}): left out")
     return {name: values[: len(values) - count] for name, values in columns.items()}

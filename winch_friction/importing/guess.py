@@ -16,6 +16,7 @@ from winch_friction.importing.units import (
     conversion,
     fitting_si_unit,
     header_readings,
+    is_share,
     says_unit,
     usual_units,
 )
@@ -158,6 +159,8 @@ def _reading_score(
     if slot.channel == "motor_speed" and fitting == "m/s":
         return 0.0, ""  # a speed of the rope has its own slot
     concepts = _concepts(bare)
+    if fitting == "1" and not _says_whose_share(slot.channel, unit, concepts):
+        return 0.0, ""
     if slot.channel == "rope_speed" and not unit and not any("rope" in token for token in concepts):
         return 0.0, ""
     if slot.channel in _EXTRAS and _is_elsewhere(slot.channel, concepts):
@@ -169,6 +172,17 @@ def _reading_score(
     if slot.group and score:
         score *= _group_factor(concepts, bare, slot, groups)
     return score * (1.0 if unit else _NO_UNIT), why + (f", unit '{unit}'" if unit and "unit" not in why else "")
+
+
+def _says_whose_share(channel: str, unit: str, concepts: Sequence[Concepts]) -> bool:
+    """Whether the name of a share says nothing but the channel, as that of a fan's speed in % does not; the drum is
+    named. A plain 1 is no share of a speed: it is the end of `min-1`.
+    """
+    if channel not in ("motor_speed", "drum_speed"):
+        return True
+    if conversion(channel, unit, "", of=1.0).scale == 1.0:
+        return False
+    return all(concepts) and (channel == "motor_speed" or any("drum" in token for token in concepts))
 
 
 def _is_other(slot: Slot, concepts: Sequence[Concepts]) -> bool:
@@ -227,6 +241,8 @@ def _with_size(score: float, column: LogColumn, unit: str, channel: str, crane: 
 
 def plausible_units(column: LogColumn, unit: str, channel: str, crane: Crane | None) -> list[str]:
     """The units in which a column has the size of the channel: of the one that is said, else of the usual ones."""
+    if unit and channel != "displacement" and is_share(channel, unit):
+        return [unit]  # of what, the person says; then its size is looked at
     return [
         each
         for each in ([unit] if unit else usual_units(channel))

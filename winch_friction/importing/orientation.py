@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from winch_friction.importing.balance import closure, groups_of, opposes_motion, power_ratio, told
+from winch_friction.importing.balance import closure, drive_torque, groups_of, opposes_motion, power_ratio, told
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import in_si
 from winch_friction.importing.kinematics import rope_over_motor
@@ -58,6 +58,8 @@ def _settle_speed(draft: Draft, crane: Crane) -> None:
         draft.change("motor_speed", sign=-1, because="sign turned: the name says that paying out counts positive")
         return
     ratios = [r.value for c in draft.converted() if (r := rope_over_motor(c.columns, crane)) is not None]
+    if ratios and _friction_denies(draft, crane, float(np.median(ratios))):
+        return
     if ratios and np.median(ratios) < 0.0:
         draft.change("motor_speed", sign=-1, because="sign turned: the wire comes in while it counts negative")
         return
@@ -78,6 +80,27 @@ def _settle_speed(draft: Draft, crane: Crane) -> None:
     elif len(groups) <= 1:
         draft.change("motor_speed", sign=-1, because="sign turned: friction would drive the motion otherwise")
     # with several groups swapped ports would do the same: left to the contradictions, as a question
+
+
+def _friction_denies(draft: Draft, crane: Crane, ratio: float) -> bool:
+    """Whether the load is held and friction says the opposite of the wire: then it is the wire that counts the other
+    way, as what lies on the drum does. Asked; the speed's sign is friction's.
+    """
+    done = draft.converted()
+    t_value = float(np.median([opposes_motion(each.columns, crane) for each in done]))
+    several = len(groups_of(done[0].columns)) > 1  # of which one's ports may be swapped
+    if "wire_out" not in draft.log_map.columns or several or not told(t_value) or t_value * ratio > 0.0:
+        return False
+    held = [drive_torque(each.columns, crane) for each in done]
+    if not _mean_mismatch(draft) < 1.0 or not all(h is not None and np.nanmean(h) > 0.0 for h in held):
+        return False  # ports or units are what is wrong
+    draft.change("motor_speed", sign=1 if t_value > 0.0 else -1, because="friction opposes the motion with this sign")
+    draft.questions.append(
+        f"wire_out: '{draft.log_map.columns['wire_out'].source}' grows where friction and load say that the winch "
+        "hoists: is it the wire that lies on the drum? Take wire_out out of the map then; if it is what is paid out, "
+        f"turn the speed: --set motor_speed.sign={-1 if t_value > 0.0 else 1}"
+    )
+    return True
 
 
 def speed_by_motion(draft: Draft, crane: Crane) -> None:

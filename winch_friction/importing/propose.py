@@ -18,7 +18,8 @@ from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.time_columns import settle_time
 from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
-from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit
+from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, is_share, usual_units
+from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 
@@ -179,20 +180,15 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
             if c.name not in {e.source for e in draft.log_map.columns.values()}
             and c.name not in draft.log_map.time_from
         ]
+        left = f"not used are {listed(free)}" if free else "none is left over"
         draft.problems.append(
-            f"{', '.join(lacking)}: no column found; not used are {listed(free)}; "
+            f"{', '.join(lacking)}: no column found; {left}; "
             f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN"
         )
     for name, entry in draft.log_map.columns.items():
         channel = name.rpartition(".")[2]
-        shares = (
-            entry.unit
-            and len(CHANNEL_UNITS[channel]) > 1
-            and CHANNEL_UNITS[channel][1] == "1"
-            and channel != "displacement"
-        )
-        if shares and not entry.of and entry.unit.strip() in ("%", "percent", "Prozent", "prosent"):
-            own = CHANNEL_UNITS[channel][0]
+        if entry.unit and channel != "displacement" and not entry.of and is_share(channel, entry.unit):
+            own = usual_units(channel)[0]
             draft.questions.append(
                 f"{name}: '{entry.source}' is in {entry.unit}; of what? --set '{name}.of=NUMBER {own}'"
             )
@@ -215,7 +211,8 @@ def _settle_contradictions(draft: Draft) -> None:
 def _bad_cells(logs: Sequence[Log], log_map: LogMap) -> list[str]:
     used = {e.source: name for name, e in log_map.columns.items()}
     return [
-        f"{log.path.name}: {used[c.name]}: {len(c.bad)} cells of '{c.name}' are no numbers: "
+        f"{log.path.name}: {used[c.name]}: "
+        f"{counted(len(c.bad), f'cell of {c.name!r} is no number', f'cells of {c.name!r} are no numbers')}: "
         f"{log.place(c.bad[0][0])} '{c.bad[0][1]}'"
         for log in logs
         for c in log.columns

@@ -7,11 +7,12 @@ from itertools import islice
 import numpy as np
 
 from winch_friction.importing.cells import as_column, plain_numbers
+from winch_friction.importing.group_names import with_groups
 from winch_friction.importing.layout import Layout
 from winch_friction.importing.log import LogColumn, unique_names
 from winch_friction.importing.text_rows import TextRows
 from winch_friction.importing.units import bare_unit, looks_like_unit
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import FloatArray
 
 _BLOCK = 4096  # rows cut at once: a few MB of cells
@@ -54,11 +55,14 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
     body = Body(rows, layout)
     width = body.width
     if body.repeated:
-        notes.append(f"the header stands {len(body.repeated)} times more (line {body.repeated[0]}): left out")
+        notes.append(
+            f"the header stands {counted(len(body.repeated), 'time', 'times')} more (line {body.repeated[0]}): left out"
+        )
     if body.short:
         shown = ", ".join(map(str, body.short[:3]))
         notes.append(
-            f"{len(body.short)} lines are shorter than the {width} columns (line {shown}): their cells are missing"
+            f"{counted(len(body.short), 'line is', 'lines are')} shorter than the {width} columns (line {shown}): "
+            "their cells are missing"
         )
     names = rows.row(layout.names)
     if layout.names >= 0 and layout.width > len(names) > 1:
@@ -69,9 +73,8 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
     units, remarks = padded(rows.row(layout.units), width), padded(rows.row(layout.notes_row), width)
     if "unit" in units[0].lower() and not looks_like_unit(units[0]):
         units[0] = ""  # the label of a row of units
-    heads = [
-        (name, bare_unit(units[k]), remarks[k].strip()) for k, name in enumerate(unique_names(padded(names, width)))
-    ]
+    told = unique_names(with_groups(padded(names, width), rows.row(layout.names - 1) if layout.names > 0 else ()))
+    heads = [(name, bare_unit(units[k]), remarks[k].strip()) for k, name in enumerate(told)]
     found = {k: LogColumn(heads[k][0], values, heads[k][1], note=heads[k][2])
              for k, values in _numbers(body, marks).items()}  # fmt: skip
     others = [k for k in range(width) if k not in found]

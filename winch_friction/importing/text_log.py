@@ -21,6 +21,8 @@ _PACKED = 64 << 20  # bytes from which a packed file is looked at more closely
 _RATIO = 100  # times smaller packed than unpacked: numbers of a log pack to a third or a tenth
 _WIDEST = 1 << 16  # characters of one line: a header of a thousand columns has a quarter of it
 _HEAD = 4000  # bytes that tell an encoding
+_WESTERN = ("cp1252", "latin-1")  # what any bytes can be read as
+_HEAD_LINES, _ACCENTED = 5, 0.4  # lines with the names; of letters: no Western language has a fifth of them accented
 _MOST_COLUMNS = 1000  # no winch log has more
 _DELIMITERS = (";", ",", "\t", "|")
 
@@ -54,8 +56,12 @@ def _decoded(path: Path, encoding: str | None, notes: list[str]) -> tuple[str, l
     if padding > 1 and 0 not in raw[:_HEAD]:  # a logger that lost its power leaves the room it had taken
         notes.append(f"{padding} zero bytes at the end are no text: left out")
         raw = raw[: len(raw) - padding]
-    encoding = encoding or _encoding(path, raw)
-    return encoding, _lines(path, raw, encoding)
+    told, encoding = encoding, encoding or _encoding(path, raw)
+    lines = _lines(path, raw, encoding)
+    letters = [c for c in "".join(lines[:_HEAD_LINES]) if c.isalpha()]
+    if not told and encoding in _WESTERN and sum(not c.isascii() for c in letters) > _ACCENTED * len(letters):
+        notes.append(f"read as {encoding}, in which its names make no words: save it as UTF-8 if they should be read")
+    return encoding, lines
 
 
 def _unpacked(path: Path) -> bytes:

@@ -2,7 +2,7 @@
 
 Forms: `seconds` (any unit, from any origin), `unix` (counted since 1970), `excel` and `matlab` (days), `filetime` and
 `dotnet` (tenths of a microsecond since 1601 and since year 1), `datetime` (dates with a time of day, in one column or
-two) and `clock` (a time of day alone, from midnight, as a text or as a number such as 95959.5).
+two), `parts` (a column for each part of them) and `clock` (a time of day alone, as a text or a number like 95959.5).
 """
 
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
+from winch_friction.importing.calendar_columns import CLOCK, calendar_seconds
 from winch_friction.importing.log import LogColumn, Place
 from winch_friction.importing.summer_time import from_utc, hour_back
 from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
@@ -22,11 +23,10 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.headers import conversion_to_si
 
-FORMS = ("seconds", "unix", "excel", "matlab", "filetime", "dotnet", "datetime", "clock")
+FORMS = ("seconds", "unix", "excel", "matlab", "filetime", "dotnet", "datetime", "parts", "clock")
 ORDERS = ("ymd", "dmy", "mdy")
 _DAY = 86_400.0
-_EXCEL_EPOCH = 25_569.0  # days from 1899-12-30 to 1970-01-01
-_MATLAB_EPOCH = 719_529.0  # days from year 0 to 1970-01-01
+_EXCEL_EPOCH, _MATLAB_EPOCH = 25_569.0, 719_529.0  # days from 1899-12-30 and from year 0 to 1970-01-01
 _TICK = 1e-7  # s
 _MILLI = 3  # digits of a count of ms
 _EPOCHS = {"filetime": 11_644_473_600.0, "dotnet": 62_135_596_800.0}  # s from their origin to 1970
@@ -63,7 +63,9 @@ class TimeGuess:
 
 def guess_form(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     """How the cells of a column, or of a date and a clock beside it, can be read as times, whether they rise or not."""
-    return _guess_text(columns) if not columns[0].numeric else _guess_numbers(columns[0], unit)
+    if columns[0].numeric:
+        return _guess_parts(columns) if len(columns) > 1 else _guess_numbers(columns[0], unit)
+    return _guess_text(columns)
 
 
 def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
@@ -92,6 +94,12 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     return guess
 
 
+def _guess_parts(columns: Sequence[LogColumn]) -> TimeGuess:
+    if len(columns) == CLOCK:
+        return TimeGuess(TimeBase("parts"), 0.95, "a time of day in three columns, from midnight")
+    return TimeGuess(TimeBase("parts", zone="UTC"), 0.95, "a date in six columns; no zone is given, taken for UTC")
+
+
 def _guess_numbers(column: LogColumn, unit: str) -> TimeGuess | None:
     values = column.values[np.isfinite(column.values)]
     if len(values) < 2:
@@ -115,7 +123,8 @@ def _guess_numbers(column: LogColumn, unit: str) -> TimeGuess | None:
 
 
 def _guess_bare_numbers(values: FloatArray) -> TimeGuess:
-    step = float(np.median(np.diff(values)))
+    steps = np.diff(values)
+    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0  # rows may share a tick
     if 1e-4 <= step <= 1.5:
         return TimeGuess(TimeBase("seconds", "s"), 0.85, f"no unit; a step of {step:.4g} is taken for seconds")
     if 1.5 < step <= 2000.0:
@@ -175,16 +184,25 @@ def to_seconds(
         scale, _ = conversion_to_si(base.fraction, "s", where)
         *whole, beyond = columns
         return to_seconds(whole, replace(base, fraction=""), where, place, strict) + scale * beyond.values
-    if len(columns) > 1 and any(each.numeric for each in columns):
+    if base.form != "parts" and len(columns) > 1 and any(each.numeric for each in columns):
         raise InputError(
             f"{where}: time.from: a date and a time of day are joined where both are texts; column "
             f"'{next(each.name for each in columns if each.numeric)}' holds plain numbers: name one column"
         )
-    if columns[0].numeric:
+    if base.form == "parts":
+        seconds = _from_parts(columns, base, where)
+    elif columns[0].numeric:
         seconds = _from_numbers(columns[0].values, base, where)
     else:
         seconds = _from_text(columns, base, where, place, strict)
     return spread_ticks(seconds) if base.spread else seconds
+
+
+def _from_parts(columns: Sequence[LogColumn], base: TimeBase, where: str) -> FloatArray:
+    seconds, zone = calendar_seconds(columns, where), _zone(base, where)
+    if len(columns) == CLOCK:
+        return _over_midnight(seconds)
+    return seconds if zone is None else seconds - from_utc(seconds, zone)
 
 
 def _from_numbers(values: FloatArray, base: TimeBase, where: str) -> FloatArray:
@@ -255,7 +273,7 @@ def _joined(columns: Sequence[LogColumn]) -> Any:
         return columns[0].text
     return [
         " ".join(str(part).removesuffix(" 00:00:00") for part in row)
-        for row in zip(*(c.text for c in columns), strict=True)
+        for row in zip(*(c.values if c.text is None else c.text for c in columns), strict=True)
     ]
 
 
@@ -270,7 +288,7 @@ def _first(cells: Any) -> str:
 
 def _zone(base: TimeBase, where: str) -> ZoneInfo | None:
     """The zone of dates without an offset, None for UTC."""
-    if not base.zone or base.zone == "UTC" or base.form != "datetime":
+    if not base.zone or base.zone == "UTC" or base.form not in ("datetime", "parts"):
         return None
     try:
         return ZoneInfo(base.zone)

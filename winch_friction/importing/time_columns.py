@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from winch_friction.importing.calendar_columns import calendar_columns
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.names import name_concepts, name_score
@@ -14,6 +15,7 @@ from winch_friction.importing.time_numbers import counts_rows
 from winch_friction.importing.units import fitting_si_unit, header_readings
 
 _DATED = 0.3  # a date beside the clock: worth more than the order of day and month, if open, makes it unsure
+_PARTS = 3  # columns of a time whose parts stand apart, at least; their names have said what they are
 _SURE = 0.5  # how well a name says a time, from which it is one and nothing else
 
 
@@ -24,7 +26,7 @@ def settle_time(draft: Draft) -> None:
         bare, unit = _time_reading(columns[0])
         if unit and fitting_si_unit("time", unit) is None:
             continue
-        named = _named(bare)
+        named = _named(bare) if len(columns) < _PARTS or columns[0].text is not None else 1.0
         guess = guess_time(columns, unit)
         if guess is None or (not named and not _steady(draft.logs[0], columns)):
             continue
@@ -118,7 +120,8 @@ def _time_reading(column: LogColumn) -> tuple[str, str]:
 def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:
     single = [(c,) for c in log.columns]
     texts = [c for c in log.columns if not c.numeric]
-    return single + [(a, b) for a in texts for b in texts if a is not b]
+    parts = calendar_columns(log.columns)
+    return ([parts] if parts else []) + single + [(a, b) for a in texts for b in texts if a is not b]
 
 
 def _steady(log: Log, columns: Sequence[LogColumn]) -> bool:

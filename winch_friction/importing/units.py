@@ -15,8 +15,8 @@ from winch_friction.records.headers import AMBIGUOUS, SPELLINGS, conversion_to_s
 # channel (without its group) -> the SI units that it may be logged in, its own first
 CHANNEL_UNITS: dict[str, tuple[str, ...]] = {
     "time": ("s",),
-    "motor_speed": ("rad/s", "m/s"),
-    "drum_speed": ("rad/s",),
+    "motor_speed": ("rad/s", "m/s", "1"),
+    "drum_speed": ("rad/s", "1"),
     "rope_speed": ("m/s",),
     "speed_reference": ("rad/s",),
     "pressure_a": ("Pa",),
@@ -45,6 +45,7 @@ _FOREIGN_SI = ("m^3/s", "m^2/s", "kg/m^3", "kg/s", "m/s^2", "Pa/s", "K/s", "N/m"
 _FOREIGN = frozenset({"v", "mv", "kv", "volt", "va", "kva", "wh", "kwh", "mwh", "j", "kj", "mj", "ah", "ohm", "cst",
                       "l", "ltr", "liter", "litre", "gal", "lpm", "gpm", "slpm", "m3", "m^3", "kg/m3", "ppm", "db",
                       "dba", "rh", "%rh"})  # fmt: skip
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _WORDED = (("_per_", "/"), (" per ", "/"), (" pro ", "/"))
 
 
@@ -110,7 +111,8 @@ def looks_like_unit(text: str, marked: bool = True) -> bool:
 
 
 def worded(unit: str) -> str:
-    """A unit in words as a formula: `cm3_per_rev` -> `cm3/rev`."""
+    """A unit in words as a formula: `cm3_per_rev` -> `cm3/rev`; with a decimal point: `0,1 bar` -> `0.1 bar`."""
+    unit = _DECIMAL_COMMA.sub(".", unit)
     for word, mark in _WORDED:
         unit = unit.replace(word, mark)
     return _OVER.sub(r"\1/\2", unit.strip())
@@ -129,11 +131,21 @@ def _converts(unit: str, si_unit: str) -> bool:
 
 def fitting_si_unit(channel: str, unit: str) -> str | None:
     """Which of a channel's SI units a unit belongs to, an ambiguous spelling included; None when it fits none."""
-    unit = worded(unit)
+    unit = _of_one_turn(channel, worded(unit))
     for si in CHANNEL_UNITS[channel]:
         if known_spelling(unit, si) or _converts(unit, si):
             return si
     return None
+
+
+def is_share(channel: str, unit: str) -> bool:
+    """Whether a unit makes a channel a share of something that must be said, as `%` of a speed."""
+    return CHANNEL_UNITS[channel][0] != "1" and fitting_si_unit(channel, unit) == "1"
+
+
+def _of_one_turn(channel: str, unit: str) -> str:
+    """The unit of a displacement that is written as a volume: in the trade it is that of one revolution (ISO 3019)."""
+    return f"{unit}/rev" if channel == "displacement" and plain_spelling(unit) in ("cm3", "cm^3") else unit
 
 
 def ambiguity(channel: str, unit: str) -> str:
@@ -154,7 +166,7 @@ def conversion(channel: str, unit: str, where: str, *, of: float = float("nan"),
     if si is None:
         examples = " or ".join(f"'{next(iter(SPELLINGS.get(each, {each: ()})))}'" for each in (own, *others))
         raise InputError(f"{where}: unit '{unit}' is no unit of {channel}; write e.g. {examples}")
-    scale, offset = conversion_to_si(worded(unit), si, where)
+    scale, offset = conversion_to_si(_of_one_turn(channel, worded(unit)), si, where)
     if si == own:
         return Conversion(scale, offset)
     if si == "1":
@@ -184,8 +196,8 @@ _USUAL: dict[str, tuple[str, ...]] = {
     "drum_speed": ("rpm", "rad/s"),
     "rope_speed": ("m/s",),
     "speed_reference": ("rpm", "rad/s", "rev/s"),
-    "pressure_a": ("bar", "Pa", "MPa", "psi", "kPa"),
-    "pressure_b": ("bar", "Pa", "MPa", "psi", "kPa"),
+    "pressure_a": ("bar", "Pa", "MPa", "psi", "kPa", "0.1 bar"),  # the last: whole numbers of a controller
+    "pressure_b": ("bar", "Pa", "MPa", "psi", "kPa", "0.1 bar"),
     "displacement": ("cm^3/rev", "%", "-", "m^3/rad"),
     "motor_torque": ("N*m", "kN*m"),
     "load_torque": ("N*m", "kN*m"),

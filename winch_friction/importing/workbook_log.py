@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.importing.cells import as_column, decimal_mark, is_missing
+from winch_friction.importing.group_names import with_groups
 from winch_friction.importing.layout import Layout, find_layout
 from winch_friction.importing.log import Log, LogColumn, Place, listed, unique_names
 from winch_friction.importing.optional import library
@@ -129,7 +130,8 @@ def _columns(rows: Sequence[Sequence[Any]], body: Sequence[Sequence[Any]], layou
             "" if is_missing(c) else str(c) for c in [*cells[: layout.width], *[None] * (layout.width - len(cells))]
         ]
 
-    names, units, remarks = unique_names(head(layout.names)), head(layout.units), head(layout.notes_row)
+    plain, units, remarks = head(layout.names), head(layout.units), head(layout.notes_row)
+    names = unique_names(with_groups(plain, rows[layout.names - 1] if layout.names > 0 else ()))
     cells = list(zip(*([*row[: layout.width], *[None] * (layout.width - len(row))] for row in body), strict=True))
     return [
         as_column(name, cells[k], decimal, thousands, bare_unit(units[k]), remarks[k]) for k, name in enumerate(names)

@@ -67,6 +67,11 @@ def meant(name: str, known: Iterable[str]) -> str:
     return f" did you mean {' or '.join(near)}?" if near else ""
 
 
+def counted(count: int, one: str, more: str) -> str:
+    """A number with what is counted, in the singular for one: `1 cell is no number`, `2 cells are no numbers`."""
+    return f"{count} {one if count == 1 else more}"
+
+
 def unknown_key(key: str, known: Iterable[str]) -> str:
     """What is said of a key that a file cannot have: what may be meant, or else which keys there are."""
     known = list(known)

@@ -10,6 +10,7 @@ from typing import Any
 from winch_friction.physics.channels import DRIVE_SCALARS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.bag_joints import joints_on, no_speed, told_joint
 from winch_friction.records.bag_storage import readable, refused, storage_of
 from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
@@ -106,6 +107,12 @@ class Bag:
                 self._broken[connection.topic] = self._broken.get(connection.topic, 0) + 1
                 continue
             yield connection.topic, receipt * NANOSECOND, message
+
+    def no_speed(self) -> str:
+        """What to say when no message tells the winch's speed."""
+        speed = self.actual[self.topics.speed_topic]
+        heard = joints_on(self._reader, self._typestore, speed)
+        return no_speed(f"topic '{speed}'", self.topics.speed_joint, heard)
 
     def topics_ending(self, suffix: str) -> list[str]:
         """Topics by the end of their name, e.g. `/friction_torque`; those of another winch in the bag are not ours."""
@@ -220,6 +227,7 @@ def _topics(
         plain = [found[f"winch/{g}/displacement"] for g in groups if f"winch/{g}/displacement" in found]
         conventions["displacement_unit"] = _displacement_unit(reader, typestore, plain)
     if crane is not None:
+        conventions |= told_joint(joints_on(reader, typestore, found["winch/joint_states"]), conventions)
         return crane_topics(crane, groups, drive_scalars=DRIVE_SCALARS, **conventions)
     if conventions["displacement_unit"] == "fraction" and groups:
         raise InputError(f"{path}: displacements are fractions; give the crane, whose max_displacement they refer to")

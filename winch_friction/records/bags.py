@@ -44,8 +44,8 @@ def read_bag(
         hold = InputHold(groups, max_age, {**SLOW_INPUTS, **(max_ages or {})})
         columns = _columns(bag_samples(bag, hold), groups)
         warnings, speed = list(bag.warnings), bag.actual[bag.topics.speed_topic]
-    if not len(columns["time"]):
-        raise InputError(f"{path}: topic '{speed}' has no finite speed of the winch's joint", *lost_of(warnings))
+        if not len(columns["time"]):
+            raise InputError(f"{path}: {bag.no_speed()}", *lost_of(warnings))
     if len(columns["time"]) > 1 and not np.ptp(columns["time"]):
         raise InputError(
             f"{path}: every message on '{speed}' is stamped {columns['time'][0]:g} s: its sender knows no time; "

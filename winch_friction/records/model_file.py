@@ -11,7 +11,7 @@ from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.friction import FrictionModel, registered_terms, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
-from winch_friction.physics.friction.symbols import CONSTANTS
+from winch_friction.physics.friction.symbols import CONSTANT_LIMITS, CONSTANTS
 from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.records.atomic import shipped, write_text
 from winch_friction.records.corrections import corrections_content, read_corrections, read_tables, tables_content
@@ -191,6 +191,14 @@ def _constants(top: Section) -> dict[str, float]:
         section.get(each.name)  # known, whether this file has it or not
     values = {each.name: section.quantity(each.name, each.unit) for each in CONSTANTS if each.name in section}
     section.close()
+    units, wrong = {each.name: each.unit for each in CONSTANTS}, []
+    for name, value in values.items():
+        low, high = CONSTANT_LIMITS[name]
+        if not low <= value <= high:
+            shown = f"{name} is {value:.4g} {units[name]}".removesuffix(" 1")
+            wrong.append(f"{section.where}: {shown}, outside {low:g} ... {high:g}; is the unit right?")
+    if wrong:
+        raise InputError(*wrong)
     return values
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.channels import plausible
-from winch_friction.physics.errors import InputError, Problems, meant
+from winch_friction.physics.errors import InputError, Problems, counted, meant
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import ELECTRIC, HYDRAULIC, Crane, Drive
 
@@ -140,7 +140,7 @@ def _check_time(name: str, columns: Columns, place: Place) -> None:
         raise InputError(f"{name}: column 'time' is missing; found {', '.join(columns) or 'no known column'}")
     time = columns["time"]
     if len(time) < 2:
-        raise InputError(f"{name}: {len(time)} rows are too few; a run needs at least two")
+        raise InputError(f"{name}: {counted(len(time), 'row is', 'rows are')} too few; a run needs at least two")
     missing = np.flatnonzero(~np.isfinite(time))
     if missing.size:
         raise InputError(f"{name}: {place(missing[0])}, column 'time': no time; fill it in or remove the row")
@@ -158,15 +158,16 @@ def _rows_of_new_time(name: str, time: FloatArray, place: Place, said: list[str]
     timeless = int(np.argmax(time != 0.0))  # 0 also where all are
     if timeless and time[timeless] > NO_TIME_YET:
         said.append(
-            f"{name}: column 'time': {timeless} rows of time 0, {time[timeless]:.4g} s before the next, left out: the "
-            f"clock was not set yet, {_places(np.arange(timeless), place)}"
+            f"{name}: column 'time': {counted(timeless, 'row', 'rows')} of time 0, {time[timeless]:.4g} s before the "
+            f"next, left out: the clock was not set yet, {_places(np.arange(timeless), place)}"
         )
         keep[:timeless] = True
     else:
         timeless = 0
     repeated = np.flatnonzero(~keep)
     if repeated.size:
-        said.append(f"{name}: column 'time': {repeated.size} repeated times left out, {_places(repeated, place)}")
+        times = counted(repeated.size, "repeated time", "repeated times")
+        said.append(f"{name}: column 'time': {times} left out, {_places(repeated, place)}")
     if keep.sum() < 2:
         raise InputError(f"{name}: column 'time': all rows have the same time")
     return np.flatnonzero(keep)[timeless:]
@@ -185,7 +186,9 @@ def _with_finite_values(name: str, columns: Columns, place: Place, said: list[st
             said.append(f"{name}: column '{column}' has no value at all and is left out")
             continue
         if bad.size:
-            share = f"{bad.size} of {len(values)} values are not numbers"
+            share = counted(
+                bad.size, f"of {len(values)} values is not a number", f"of {len(values)} values are not numbers"
+            )
             said.append(f"{name}: column '{column}': {share}, {_places(bad, place)}")
             values = np.where(np.isfinite(values), values, np.nan)
         kept[column] = values
@@ -272,7 +275,9 @@ def _note_gaps(name: str, time: FloatArray, place: Place, said: list[str]) -> No
     gaps = np.flatnonzero(steps > GAP * usual)
     if gaps.size:
         widest = f"widest {steps[gaps].max():.3g} s, usual step {usual:.3g} s"
-        said.append(f"{name}: column 'time': {gaps.size} gaps ({widest}), before {_places(gaps + 1, place)}")
+        said.append(
+            f"{name}: column 'time': {counted(gaps.size, 'gap', 'gaps')} ({widest}), before {_places(gaps + 1, place)}"
+        )
     if time[-1] - time[0] < SHORT:
         said.append(f"{name}: only {time[-1] - time[0]:.3g} s long ({len(time)} rows)")
 

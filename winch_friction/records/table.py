@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError, Problems
+from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
 from winch_friction.records.csv_file import as_floats, separator_of
@@ -18,6 +18,7 @@ from winch_friction.records.headers import conversion_to_si, parse_header
 from winch_friction.records.strict_yaml import utf_8_text
 
 _SHOWN = 3  # places named of one kind of problem
+_SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 
 
@@ -82,10 +83,14 @@ class Table:
 
 def read_table(path: Path) -> Table:
     """A CSV file (comma, semicolon or tab) as a table; lines starting with # are comments."""
+    if path.suffix.lower() in _SPREADSHEETS:
+        raise InputError(f"{path}: a spreadsheet; save it as .csv, with a point in decimals, and give that")
     lines = utf_8_text(path).splitlines()
     numbered = [(k + 1, line) for k, line in enumerate(lines) if line.strip() and not line.startswith("#")]
     if len(numbered) < 2:
-        raise InputError(f"{path}: a header and at least one row are needed, found {len(numbered)} line(s)")
+        raise InputError(
+            f"{path}: a header and at least one row are needed, found {counted(len(numbered), 'line', 'lines')}"
+        )
     records = list(csv.reader((line for _, line in numbered), delimiter=separator_of(numbered[0][1])))
     return _table(Path(path), records, [row for row, _ in numbered])
 

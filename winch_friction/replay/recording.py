@@ -100,8 +100,8 @@ def _replay_bag(
             if learned is not None and learn and not recorded:
                 compensator.offer(learned)
         warnings = (*spoilt, *bag.warnings)
-    if not len(compensator.steps):
-        raise InputError(f"{path}: no finite speed of the winch's joint, nothing to replay", *lost_of(warnings))
+        if not len(compensator.steps):
+            raise InputError(f"{path}: nothing to replay: {bag.no_speed()}", *lost_of(warnings))
     replayed = _replayed(path.name, compensator, estimator, warnings)
     runs = {name: getattr(replayed, name) for name in ("compensator", "estimator", "watchdog")}
     return replace(replayed, live=tuple(compare_live(path, runs, crane=crane, **options)))

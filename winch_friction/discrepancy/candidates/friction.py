@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import (
+    OF_WINCH,
     REFERENCE_MOTORS,
     REVERSALS,
     Candidate,
@@ -76,9 +77,9 @@ def shipped_friction() -> list[Candidate]:
         _of("brake_drag", presumes=COULOMB),
         _of("coulomb", plain=True, reversal_rival=True),
         _of("viscous", plain=True, reversal_rival=True),
-        _of_winch("torque_offset", plain=True),
+        _of("torque_offset", plain=True),
         # marginality: the slope of what depends on direction is never taken without its intercept
-        _of_winch("direction_asymmetry", plain=True, brings=("torque_offset",)),
+        _of("direction_asymmetry", plain=True, brings=("torque_offset",)),
         # every imperfection of timing looks like a little presliding, and a very short travel is within its blur
         _of("presliding", {"d_z": BRISTLE_TRAVEL}, regime=REVERSALS, reversal_gain=0.3, reversal_rival=True,
             shortest=("d_z", min(BRISTLE_TRAVEL))),
@@ -86,13 +87,11 @@ def shipped_friction() -> list[Candidate]:
 
 
 def _of(name: str, grid: Grid | None = None, **more: Any) -> Candidate:
-    return friction_candidate(term_named(name), grid or {}, **more)
-
-
-def _of_winch(name: str, **more: Any) -> Candidate:
-    """A torque of the whole winch, of which a term states what is typical of one motor."""
-    linear = [replace(p, typical=REFERENCE_MOTORS * p.typical) for p in term_named(name).parameters]
-    return _of(name, linear=tuple(linear), **more)
+    term = term_named(name)
+    if name in OF_WINCH:  # a torque of the whole winch, of which the term states what is typical of one motor
+        linear = (replace(p, typical=REFERENCE_MOTORS * p.typical) for p in term.parameters)
+        more = {"linear": tuple(linear), **more}
+    return friction_candidate(term, grid or {}, **more)
 
 
 def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Candidate:

@@ -53,6 +53,12 @@ CONSTANTS = (
     _signal("gear_ratio", "i", "1", "gear ratio motor to drum", 1.0),
 )
 
+# between what each lies, SI: a displacement of 0 is none; oils weigh 750 (light) to 1450 kg/m^3 (phosphate ester), and
+# are as thin as hot water and as thick as gear oil in frost; twice as much each way is a slip of the unit
+CONSTANT_LIMITS = {
+    "max_displacement": (0.0, 6e-2), "density": (400.0, 3000.0), "viscosity": (1e-4, 100.0), "gear_ratio": (1e-3, 1e5),
+}  # fmt: skip
+
 _BY_NAME = {signal.name: signal.symbol for signal in (*WINCH_SIGNALS, *GROUP_SIGNALS, *CONSTANTS)}
 
 s = _BY_NAME["direction"]

@@ -34,21 +34,32 @@ class Target:
 
 @dataclass(frozen=True)
 class HiddenEffect:
-    """One effect: its size in words and what it does to the plant."""
+    """One effect: its size in words and what it does to the plant; `either_sign`: it may be less than nothing as well.
+
+    What only takes (a brake, a bristle, a leak) is no such effect: below zero it would drive the winch.
+    """
 
     name: str
     typical: str
     apply: Callable[[Target, float], None]
+    either_sign: bool = False
+
+    def refuse(self, size: float, where: str) -> None:
+        """Raise `InputError` for a size that the effect cannot have."""
+        if size < 0.0 and not self.either_sign:
+            raise InputError(f"{where}: {self.name} only takes and cannot be negative; give a size from 0 on")
 
 
 EFFECTS: dict[str, HiddenEffect] = {}
 
 
-def effect(name: str, typical: str) -> Callable[[Callable[[Target, float], None]], Callable[[Target, float], None]]:
+def effect(
+    name: str, typical: str, either_sign: bool = False
+) -> Callable[[Callable[[Target, float], None]], Callable[[Target, float], None]]:
     """Declare an effect."""
 
     def declare(function: Callable[[Target, float], None]) -> Callable[[Target, float], None]:
-        EFFECTS[name] = HiddenEffect(name, typical, function)
+        EFFECTS[name] = HiddenEffect(name, typical, function, either_sign)
         return function
 
     return declare
@@ -69,6 +80,7 @@ def apply_effects(
     for name, size in pairs:
         if name not in EFFECTS:
             raise InputError(f"hidden effect '{name}' is not known; known effects are {', '.join(sorted(EFFECTS))}")
+        EFFECTS[name].refuse(size, f"hidden effect '{name}={size:g}'")
         EFFECTS[name].apply(target, float(size))
     torque["present"] = float(any(torque[0][name] != 0.0 for name in HIDDEN_FIELDS))
     return torque

@@ -20,12 +20,12 @@ def _dwell(t: Target, size: float) -> None:
     t.torque["dwell_angle"] = 1.0
 
 
-@effect("gear_asymmetry", "0.6 % of T_d/i between hoisting and lowering")
+@effect("gear_asymmetry", "0.6 % of T_d/i between hoisting and lowering", either_sign=True)
 def _asymmetry(t: Target, size: float) -> None:
     t.torque["gear_asymmetry"] = 0.006 * size
 
 
-@effect("gear_load_loss", "4.5 % of T_d/i")
+@effect("gear_load_loss", "4.5 % of T_d/i", either_sign=True)
 def _gear_loss(t: Target, size: float) -> None:
     t.torque["gear_loss"] = 0.045 * size
 
@@ -35,7 +35,7 @@ def _sheave(t: Target, size: float) -> None:
     t.torque["sheave_loss"] = 0.03 * size
 
 
-@effect("wear_drift", "4 N m per motor and month of Coulomb friction")
+@effect("wear_drift", "4 N m per motor and month of Coulomb friction", either_sign=True)
 def _wear(t: Target, size: float) -> None:
     t.torque["wear_rate"] = 4.0 / MONTH * size
     t.torque["wear_epoch"] = WEAR_EPOCH
@@ -46,7 +46,7 @@ def _low_displacement(t: Target, size: float) -> None:
     t.torque["low_displacement"] = 2.74e-6 * size
 
 
-@effect("port_turbulence", "22 % of the turbulent losses, exponent 2.4")
+@effect("port_turbulence", "22 % of the turbulent losses, exponent 2.4", either_sign=True)
 def _turbulence(t: Target, size: float) -> None:
     t.torque["turbulence"] = 0.22 * 64.9 * size
     t.torque["turbulence_exponent"] = 2.4
@@ -68,12 +68,12 @@ def _mixed(t: Target, size: float) -> None:
     t.torque["mixed"] = 14.0 / (350.0 * BAR) ** 2 * size
 
 
-@effect("case_pressure", "5 bar at 180 bar of p_A + p_B")
+@effect("case_pressure", "5 bar at 180 bar of p_A + p_B", either_sign=True)
 def _case(t: Target, size: float) -> None:
     t.torque["case"] = 9.5e-7 * size
 
 
-@effect("torque_ripple", "1 % of T_d/i, once per motor revolution")
+@effect("torque_ripple", "1 % of T_d/i, once per motor revolution", either_sign=True)
 def _ripple(t: Target, size: float) -> None:
     t.torque["ripple_share"] = 0.01 * size
     t.torque["ripple_order"] = 1.0
@@ -95,7 +95,7 @@ def _presliding(t: Target, size: float) -> None:
     t.plant["presliding"] += 2.0 * DEGREE * size
 
 
-@effect("layer_radius", "the wire lies one layer lower than the log says")
+@effect("layer_radius", "the wire lies one layer lower than the log says", either_sign=True)
 def _layer(t: Target, size: float) -> None:
     layer = int(t.plant["layer"])
     neighbour = layer - 2 if layer > 1 else layer
@@ -124,7 +124,7 @@ def _thermal(t: Target, size: float) -> None:
     t.plant["gas_start"] = 1.0 + 0.02 * size
 
 
-@effect("inertia_error", "10 % more inertia at the shaft")
+@effect("inertia_error", "10 % more inertia at the shaft", either_sign=True)
 def _inertia(t: Target, size: float) -> None:
     t.plant["inertia"] *= 1.0 + 0.1 * size
 
@@ -134,7 +134,7 @@ def _air(t: Target, size: float) -> None:
     t.plant["air"] += 0.01 * size
 
 
-@effect("tare_load", "2 t: 0.8 t of hook and the wire's weight")
+@effect("tare_load", "2 t: 0.8 t of hook and the wire's weight", either_sign=True)
 def _tare(t: Target, size: float) -> None:
     t.plant["wire_mass"] = 24.5 * size
     more = (800.0 + 24.5 * float(t.plant["wire_out"])) * size
@@ -147,13 +147,13 @@ def _tare(t: Target, size: float) -> None:
 
 
 # -- the sensors
-@effect("pressure_offset", "1.5 bar on the driven group's pressure A")
+@effect("pressure_offset", "1.5 bar on the driven group's pressure A", either_sign=True)
 def _offset(t: Target, size: float) -> None:
     for row in t.sensor("main.pressure_a", "active.pressure_a"):
         row["offset"] += 1.5 * BAR * size
 
 
-@effect("pressure_scale", "0.5 % of the driven group's pressures")
+@effect("pressure_scale", "0.5 % of the driven group's pressures", either_sign=True)
 def _scale(t: Target, size: float) -> None:
     for row in t.sensor("main.pressure_a", "active.pressure_a", "main.pressure_b", "active.pressure_b"):
         row["scale"] *= 1.0 + 0.005 * size
@@ -165,7 +165,7 @@ def _delay(t: Target, size: float) -> None:
         row["delay"] += 0.05 * size
 
 
-@effect("swivel_offset", "1 cm^3/rev of the driven group's displacement feedback")
+@effect("swivel_offset", "1 cm^3/rev of the driven group's displacement feedback", either_sign=True)
 def _swivel(t: Target, size: float) -> None:
     for row in t.sensor("main.displacement", "active.displacement"):
         row["offset"] += 1.0 * CM3_PER_REV * size

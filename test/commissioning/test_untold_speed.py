@@ -1,0 +1,53 @@
+"""What tells how large a speed is, and what the first line of a check says where only that is wrong."""
+
+from dataclasses import replace
+
+import pytest
+
+from winch_friction.commissioning.check import quick_check
+from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.kinematics import tells_speed
+from winch_friction.commissioning.view import views_of
+from winch_friction.records.atomic import config_directory
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.records.runs import read_run
+
+
+def example_of_the_worm_drive(name):
+    from winch_friction.importing.carry_out import import_log
+    from winch_friction.importing.mapping import load_map
+
+    folder = config_directory() / "examples" / "worm_drive"
+    return import_log(folder / name, load_map(folder / "map.yaml"), load_crane("worm_drive"))
+
+
+@pytest.mark.parametrize("name", ["20.csv", "n20.csv", "n60.csv"])
+def test_a_measured_torque_tells_no_speed(name):
+    """Of a worm drive, most of whose torque is friction, the speed was said to be the drum's: that made room for it."""
+    run, crane = example_of_the_worm_drive(name), load_crane("worm_drive")
+    found = quick_check([run], crane, load_model("worm_viscous"))
+    assert found
+    assert not [each for each in found if "motor_speed holds" in each.sentence]
+    heavy = replace(crane, inertia=1e4 * crane.inertia)
+    slow, quick = (tells_speed(views_of([(run, each)])[0], each) for each in (crane, heavy))
+    assert (slow, quick) == (False, True)
+
+
+def test_one_run_that_leaves_the_balance_open_is_not_one_of_them():
+    run, crane = example_of_the_worm_drive("20.csv"), load_crane("worm_drive")
+    sentence = check([run], crane, load_model("worm_viscous"), {}).sentence
+    assert "nothing contradicts 1 run of crane 'worm_drive', but it leaves more of the torque balance open" in sentence
+
+
+def test_a_channel_that_is_wrong_beside_the_balance_is_in_the_first_line(crane_150t, crane2_model):
+    """The balance closed, and was said to be open, and that to be friction."""
+    run = read_run(config_directory() / "examples" / "practice_150t" / "test_02.parquet")
+    turned = replace(run, columns={**run.columns, "wire_out": 400.0 - run["wire_out"]})
+    result = check([turned], crane_150t, crane2_model, {})
+    assert result.plausible
+    assert (
+        "1 run of crane 'crane_150t' closes the torque balance, but wire_out contradicts motor_speed" in result.sentence
+    )
+    assert result.sentence.endswith("times the speed")
+    assert check([run], crane_150t, crane2_model, {}).sentence.endswith("closes the torque balance")

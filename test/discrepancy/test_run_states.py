@@ -13,7 +13,8 @@ from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.run_states import EACH_RUN, follows_a_signal, levels_of, told_by_a_signal, two_levels
+from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
+from winch_friction.discrepancy.run_states import EACH_RUN, levels_of, two_levels
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
 from winch_friction.records.crane_file import load_crane
@@ -152,6 +153,13 @@ def test_what_a_logged_signal_tells_is_no_state():
     assert told_by_a_signal(layers, there)  # all runs on layer 3, which is neither the lowest nor the highest
     layers[3].channels["wire_layer"][:] = 3
     assert not told_by_a_signal(layers, there)
+    for each, layer in zip(layers, (2, 4, 3, 1, 3), strict=True):
+        each.channels["wire_layer"][:] = layer
+    assert not told_by_a_signal(layers, there)  # each on a layer of its own: by chance
+    three = np.array([True, True, True, False, False])
+    for each, layer in zip(layers, (2, 4, 2, 3, 1), strict=True):
+        each.channels["wire_layer"][:] = layer
+    assert told_by_a_signal(layers, three)
     same = [run(60e3, two), run(20e3, two), run(20e3, one), run(25e3, one), run(70e3, one)]
     assert told_by_a_signal(same, there)
 
@@ -160,9 +168,12 @@ def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake(
     def run(k, load, mode=("main",)):
         group = SimpleNamespace(balances=True, displacement=np.full(5, 2e-5), pressure=np.zeros(5))
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
+        channels["wire_layer"] = np.full(5, 1.0 + k % 4)
+        channels["oil_temperature"] = np.full(5, 20.0 + 7.0 * (k * 5 % 12))
         return SimpleNamespace(
-            channels=channels, used=np.ones(5, bool), mode=mode, groups=[group], start=1e9 + 600.0 * k
-        )
+            channels=channels, used=np.ones(5, bool), mode=mode, groups=[group], start=1e9 + 41_000.0 * k,
+            load=channels["hook_load"],
+        )  # fmt: skip
 
     seeming = []
     for seed in range(80):
@@ -176,6 +187,11 @@ def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake(
         later = 0.5 * np.arange(FULL) + noise
         of_mode, step = np.where(np.arange(FULL) < 8, 0.0, 6.0), 3.0 * (load > np.sort(load)[4]) + noise
         assert all(follows_a_signal(runs, levels) for levels in (heavier, bent, later, heavier + of_mode, step)), seed
+        oil = np.array([each.channels["oil_temperature"][0] for each in runs])
+        warm = 1e-6 * load * (oil - 40.0) + noise  # the product of two
+        of_layer = np.array([0.0, 4.0, 0.0, 4.0])[np.arange(FULL) % 4] + noise  # on two layers that are no neighbours
+        by_night = 3.0 * np.sin(2.0 * np.pi * np.array([each.start for each in runs]) / 86400.0) + noise
+        assert all(follows_a_signal(runs, levels) for levels in (warm, of_layer, by_night)), seed
     assert np.mean(seeming) < 0.15
     few = [run(k, load) for k, load in enumerate((1e4, 5e4, 7e4, 9e4, 1.2e5))]
     assert follows_a_signal(few, np.array([1.0, 5.0, 2.0, 4.0, 3.0]))  # five runs never tell that it does not

@@ -19,6 +19,7 @@ from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.problem import Problem
+from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -28,11 +29,8 @@ from winch_friction.physics.friction.table import Table, tabulated
 
 BRAKE, SOME_RUNS, SINCE, EACH_RUN = "brake_drag", "in some runs", "since a date", "by another amount in each run"
 SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
-NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
-NUMBERED = ("wire_layer",)  # whose values are names: the middle one may be wrong
 THEN = "_then"  # behind the name of a parameter that is there for a time
 FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
-FEWEST_FREE = 3  # runs beyond what a parabola uses up, to tell that levels do not follow it
 MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
 
 Windows = tuple[tuple[float, float], ...]
@@ -117,44 +115,6 @@ def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], mod
     windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
     weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
     return [_brake(windows, EACH_RUN, weights)]
-
-
-def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
-    """Whether a parabola or a step over the medians of something that was logged, or over the date, says most of what
-    the runs' levels differ by, beside what hoisting and heave compensation differ by."""
-    modes = sorted({run.mode for run in runs})
-    beside = np.array([[float(run.mode == mode) for mode in modes] for run in runs])
-    if len(runs) - len(modes) - 2 < FEWEST_FREE:
-        return True
-    most = LIMITS.told_by_signal * _left_by(beside, levels)
-    for values in (np.array([run.start for run in runs]), *_medians(runs).values()):
-        if not np.isfinite(values).all() or np.ptp(values) <= 1e-9 * np.abs(values).max():
-            continue
-        x = (values - values.mean()) / np.ptp(values)
-        steps = (np.column_stack([beside, x > at]) for at in np.unique(x)[:-1])
-        if min(_left_by(own, levels) for own in (np.column_stack([beside, x, x**2]), *steps)) < most:
-            return True
-    return False
-
-
-def _medians(runs: Sequence[PreparedRun]) -> dict[str, FloatArray]:
-    """What every signal that all runs have was in the middle of each one's samples; nan where a run has none."""
-    known = []
-    for run in runs:  # what the driving group does, whatever its name: it is another one in heave compensation
-        drives = [{"displacement": g.displacement, "pressure": g.pressure} for g in run.groups if g.balances]
-        known.append({**run.channels, **(drives or [{}])[0]})
-    return {
-        name: np.array(
-            [np.median(x[name][r.used]) if r.used.any() else np.nan for r, x in zip(runs, known, strict=True)]
-        )
-        for name in sorted(set.intersection(*map(set, known)) - set(NO_SIGNAL))
-    }
-
-
-def _left_by(columns: FloatArray, values: FloatArray) -> float:
-    """Sum of squares that a fit leaves, per value that it does not use up."""
-    left = values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]
-    return float(left @ left) / max(len(values) - columns.shape[1], 1)
 
 
 def _within(candidate: Candidate, state: State, run: PreparedRun, values: Values) -> FloatArray:
@@ -283,17 +243,3 @@ def _two_lines(
     weight = weights[np.concatenate([low, high])]
     slope = float(own @ (weight * off)) / max(float(own @ (weight * own)), 1e-300)
     return float(weight @ (off - slope * own) ** 2), slope
-
-
-def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
-    """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
-    may hang on it."""
-    if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
-        return len({run.mode for run in runs}) > 1
-    for name, medians in _medians(runs).items():
-        yes, no = medians[there], medians[~there]
-        if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
-            return True
-        if name in NUMBERED and len(set(yes)) == 1 and yes[0] not in no:
-            return True
-    return False

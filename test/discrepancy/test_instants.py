@@ -29,7 +29,7 @@ def test_a_locked_run_between_tells_on_which_side_of_a_change_it_lies(before, cr
     by_name = sorted(runs, key=lambda run: run.name)
     split = lock_holdout(by_name, OPTIONS.holdout, np.random.default_rng(OPTIONS.seed))
     dates = sorted(runs, key=lambda run: run.time[0])
-    k = next(k for k in range(4, 9) if dates[k].name in split.holdout and dates[k + 1].name in split.train)
+    k = next(k for k in range(2, 10) if dates[k].name in split.holdout and dates[k + 1].name in split.train)
     first, second = (k - 1, k) if before else (k, k + 1)
     since = 0.5 * (dates[first].time[-1] + dates[second].time[0])
     result = find_gap([dragging(run, crane_150t, since) for run in runs], crane_150t, crane2_model, OPTIONS)

@@ -6,8 +6,8 @@ from itertools import count
 import pytest
 from sea import PERIOD, SEED, Fed, check_invariants, swell
 
+from winch_friction.online.doubt import PATIENCE, SAID, StandingReadings
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.online.standing_readings import PATIENCE, SAID, StandingReadings
 from winch_friction.physics.signals import Sample
 
 MOVING = 5.0  # rad/s

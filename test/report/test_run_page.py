@@ -52,7 +52,7 @@ def test_a_value_that_its_unit_takes_beyond_all_numbers_is_missing(tmp_path):
     (tmp_path / "r.csv").write_text("time,motor_speed,motor_torque [kN*m]\n0,1,1e308\n1,1,2\n2,1,3\n")
     run = read_run(tmp_path / "r.csv")
     assert np.isnan(run["motor_torque"]).tolist() == [True, False, False]
-    assert "1 of 3 values are not numbers, line 2" in run.warnings[0]
+    assert "1 of 3 values is not a number, line 2" in run.warnings[0]
 
 
 def test_one_run_is_one_run(tmp_path):

@@ -119,9 +119,7 @@ class Thresholds:
     # -- locked runs
     fewest_to_lock_whole: int = 4  # runs; with fewer, the end of every run is locked instead
     lock_draws: int = 200  # of locked runs, of which the one is taken that reaches least beyond the others
-    lock_cover: float = (
-        0.1  # of what the locked runs cover themselves; the rest of the choice is what they reach beyond
-    )
+    lock_cover: float = 0.03  # weight of what the locked runs cover, beside that of what they reach beyond the others
     lock_range: tuple[float, float] = (0.05, 0.95)  # quantiles of a signal between which a run covers it
     guard_time: float = 0.5  # s between the two parts of a divided run
     bootstrap_draws: int = 1000  # of segments, for an interval

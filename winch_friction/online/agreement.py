@@ -10,9 +10,8 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, span
+from winch_friction.online.doubt import Doubt, StandingReadings, span
 from winch_friction.online.load_agreement import LoadAgainstDrive
-from winch_friction.online.standing_readings import StandingReadings
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges

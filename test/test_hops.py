@@ -26,8 +26,8 @@ from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.runs import write_run
 
 ROOT = str(Path(winch_friction.__file__).parent) + "/"
-MOST_OF_A_GAP = 75 + 2
-MOST_OF_A_MESSAGE = 14 + 2
+MOST_OF_A_GAP = 76 + 2
+MOST_OF_A_MESSAGE = 15
 
 
 class Visited:

@@ -6,8 +6,7 @@ import pytest
 from sea import CRANE
 
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.doubt import Doubt
-from winch_friction.online.load_agreement import BALANCE_TIME, LoadBalance
+from winch_friction.online.doubt import BALANCE_TIME, Doubt, LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 

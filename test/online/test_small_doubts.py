@@ -17,8 +17,7 @@ from winch_friction.online.agreement import (
     Voices,
 )
 from winch_friction.online.consumer import HeldTorque
-from winch_friction.online.doubt import LONGEST_SPAN, Doubt, span
-from winch_friction.online.load_agreement import LEAST_KNOWN, MEMORY, LoadAgainstDrive, _Way
+from winch_friction.online.doubt import LEAST_KNOWN, LONGEST_SPAN, MEMORY, Doubt, LoadAgainstDrive, _Way, span
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES

@@ -36,6 +36,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
+from winch_friction.records.broken_samples import without_broken
 from winch_friction.records.parts import apart
 
 # -- names that one law outdoes
@@ -203,9 +204,10 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     _check(runs, options)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
+    parts, broken = without_broken(parts)
     every = against_simulations([thinned(run) for run in parts], model, crane)
     runs, notes = adequacy.long_enough(every)
-    notes = [*holes, *notes]
+    notes = [*holes, *broken, *notes]
     checks = adequacy.of_records(every, runs)
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model)

@@ -1,6 +1,6 @@
 """What is believed: a stamp that advances, a sender with one voice, and inputs that fit each other.
 
-The last are the command and the speed; the load and the drive's torque are in `load_agreement`.
+The last are the command and the speed; the load and the drive's torque are in `doubt`.
 """
 
 import math
@@ -10,8 +10,7 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, StandingReadings, span
-from winch_friction.online.load_agreement import LoadAgainstDrive
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, span
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges

@@ -1,5 +1,5 @@
-"""How long a contradiction must last before it counts, and how long an agreement before it is over; and whether the
-readings live.
+"""How long a contradiction must last before it counts, and how long an agreement before it is over; whether the
+readings live; and whether load, torque and what the filter finds can be of one machine.
 
 A controller that hangs may go on sending what it read last, with new stamps, for ever. One sensor that stands still may
 have nothing to say; all that tell of the drive together, to the last digit, cannot while the winch turns: pumps
@@ -9,7 +9,10 @@ pulsate, pistons pass, transducers and encoders have noise and steps.
 import math
 from dataclasses import dataclass, field
 
+from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
+from winch_friction.physics.winch.operating_point import ChannelRanges
 
 LONGEST_SPAN = 0.1  # s between two samples that count: a gap shows nothing
 FORGOTTEN = 30.0  # s that show nothing, longer than half of any wave: what was wrong before, and did not count, is over
@@ -95,3 +98,173 @@ def _readings(sample: Sample) -> tuple[object, ...]:
     )  # fmt: skip
     groups = [(each.pressure_a, each.pressure_b, each.displacement) for each in sample.groups.values()]
     return tuple(None if each != each else each for values in (scalars, *groups) for each in values)
+
+
+# -- the load that is shown, the drive's torque and what the filter finds: can they be of one machine
+# the load and the drive: inertia, friction and waves are a third of it at most
+TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
+SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
+# the same of what friction may add hoisting, and take lowering: an empty hook is moved by friction alone (30 % of the
+# nominal torque of hydraulic manipulators, Lischinsky et al. 1999)
+MOST_FRICTION = 0.3
+# the same in the middle between hoisting and lowering: a cell and a feedback of some per cent each, a tare and wire
+# that are not weighed, of up to a tenth of the rated load. A load that is taken for 1.4 times what it is makes the
+# compensated share, 0.9, one of 1.26: from 1.3 on a winch may cycle
+MIDDLE_SHARE = 0.4  # of the larger one
+MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of one of 10 s
+# the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
+# displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
+BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
+# from here on it is said: five times what the shipped scenarios show, half of what stops the learning
+SUSPECT_SHARE = 0.05
+
+
+class LoadBalance:
+    """Whether the load that the estimator finds is the one that the load cell shows.
+
+    A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
+    with m g r. It is not said which one is wrong, but that nothing may be learned from them. Nor is it before the winch
+    has turned both ways, faster than `moving` rad/s: one way, friction that the seed does not know looks like load.
+    """
+
+    def __init__(self, moving: float = AGAINST_SPEED) -> None:
+        self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
+        self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
+        self._by, self._apart = "", math.nan  # the channel that showed the load last, and by how much it is off
+        self._suspect = Doubt(BALANCE_TIME, BALANCE_TIME)
+
+    def contradiction(self, apart: float, sample: Sample) -> str:
+        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown. A
+        sample without a load contradicts nothing: what hangs there may be another one than was shown last."""
+        dt, self._time = span(self._time, sample.time), sample.time
+        self._hoisted += dt if sample.motor_speed > self._moving else 0.0
+        self._lowered += dt if sample.motor_speed < -self._moving else 0.0
+        wrong: bool | None = False
+        suspect: bool | None = False
+        if math.isfinite(sample_load(sample)):
+            self._by, self._apart = _shown_by(sample), apart
+            wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
+            suspect = abs(apart) > SUSPECT_SHARE if apart == apart else None
+        both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
+        if not both_ways and wrong is False:
+            self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
+        self._suspect.step(suspect if both_ways else False, dt)
+        if not self._doubt.step(wrong, dt) or not both_ways:
+            return ""
+        return (
+            f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
+        )
+
+    @property
+    def suspicion(self) -> str:
+        """What does not fit well, though it stops nothing, in words; '' for nothing."""
+        if not self._suspect.stands or self._doubt.stands:
+            return ""
+        return (
+            f"the balance of torques adds {self._apart:+.0%} to {self._by}: load cell, tare, displacement or pressures?"
+        )
+
+    @property
+    def pending(self) -> bool:
+        """Whether the two loads are apart, though it may not be said yet."""
+        return self._doubt.pending
+
+
+@dataclass
+class _Way:
+    """Means over the motion one way, of the shown load's torque and of the drive's, N m; `known` s of it."""
+
+    load: float = 0.0
+    drive: float = 0.0
+    known: float = 0.0
+
+    def step(self, load: float, drive: float, dt: float) -> None:
+        """`dt` s more."""
+        self.known = self.known * math.exp(-dt / MEMORY) + dt
+        share = dt / self.known if self.known else 0.0
+        self.load += share * (load - self.load)
+        self.drive += share * (drive - self.drive)
+
+
+class LoadAgainstDrive:
+    """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
+
+    A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
+    the rope's force, else `assumed` kg, which somebody has set. A winch that stands still shows nothing: its brake may
+    carry the load.
+
+    A cell that is off by less than a dead one is seen in the middle between hoisting and lowering: there friction,
+    which opposes both, cancels, and so does what accelerates the shaft from one reversal to the next.
+    """
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges, assumed: float = math.nan) -> None:
+        self._crane, self.assumed = crane, assumed
+        self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
+        self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
+        self._hoisting, self._lowering = _Way(), _Way()
+        self._by = ""  # what showed the load last
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing."""
+        at_once = both_ways = None
+        if math.isnan(self._load(sample)):  # nothing is shown that could be wrong, whatever was before
+            at_once = both_ways = False
+            self._hoisting, self._lowering = _Way(), _Way()
+        else:
+            self._by = _shown_by(sample)
+            if self._tells(sample):
+                at_once, both_ways = self._compared(sample, dt)
+        # both look at every sample
+        stand = self._at_once.step(at_once, dt), self._both_ways.step(both_ways, dt)
+        if not any(stand):
+            return ""
+        how = "" if stand[0] else ", hoisting and lowering"
+        return f"{self._by} contradicts the drive torque{how}"
+
+    @property
+    def pending(self) -> bool:
+        """Whether they differ, though it may not be said yet."""
+        return self._at_once.pending or self._both_ways.pending
+
+    def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, bool | None]:
+        """Whether load and drive differ in this sample, and in the middle between both ways."""
+        lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
+        load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
+        if not math.isfinite(drive - load):
+            return None, None
+        by_friction = (drive - load) * sample.motor_speed > 0.0
+        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
+        # a worm that holds its load by itself leaves an electric motor nothing of it lowering; its middle is the load
+        at_once = self._differ(load, drive, lever, by_friction) if self._crane.drive.hydraulic else None
+        return at_once, self._middles_differ(sample, lever)
+
+    def _tells(self, sample: Sample) -> bool:
+        moves = abs(sample.motor_speed) > self._moving
+        return moves and self._crane.drum.has(sample.wire_layer)
+
+    def _load(self, sample: Sample) -> float:
+        shown = sample_load(sample)
+        return shown if shown == shown else self.assumed
+
+    def _differ(self, load: float, drive: float, lever: float, by_friction: bool) -> bool | None:
+        large, apart = max(abs(load), abs(drive)), abs(drive - load)
+        if not large > SMALLEST_TORQUE * lever * self._rated:
+            return None
+        if by_friction and TORQUE_SHARE * large < apart < MOST_FRICTION * lever * self._rated:
+            return None
+        return apart > TORQUE_SHARE * large
+
+    def _middles_differ(self, sample: Sample, lever: float) -> bool | None:
+        one, other = self._hoisting, self._lowering
+        if min(one.known, other.known) < LEAST_KNOWN:
+            return None
+        load, drive = 0.5 * (one.load + other.load), 0.5 * (one.drive + other.drive)
+        wire = self._crane.wire_mass * sample.wire_out if math.isfinite(sample.wire_out) else 0.0  # kg
+        apart = max(drive - load - lever * max(wire, 0.0), load - drive)  # a cell at the hook does not weigh the wire
+        return apart > max(MIDDLE_SHARE * max(load, drive), SMALLEST_TORQUE * lever * self._rated)
+
+
+def _shown_by(sample: Sample) -> str:
+    if sample.hook_load == sample.hook_load:
+        return "hook_load"
+    return "rope_force" if sample.rope_force == sample.rope_force else "load (the parameter)"

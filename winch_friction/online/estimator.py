@@ -11,10 +11,9 @@ from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import StandingReadings, span
+from winch_friction.online.doubt import LoadAgainstDrive, LoadBalance, StandingReadings, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
-from winch_friction.online.load_agreement import LoadAgainstDrive, LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed

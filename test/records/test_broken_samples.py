@@ -1,0 +1,68 @@
+"""A channel that hangs and samples that jump are missing ones, and what lives is left alone."""
+
+import numpy as np
+import pytest
+
+from winch_friction.physics.signals import Run
+from winch_friction.records.broken_samples import without_broken
+
+TIME = 0.02 * np.arange(3000)
+
+
+def log(rng=None, **changed):
+    rng = rng or np.random.default_rng(1)
+    noise = {name: 2e4 * rng.standard_normal(len(TIME)) for name in ("pressure_a", "pressure_b")}
+    columns = {
+        "time": TIME, "motor_speed": np.round(50.0 * np.sin(0.1 * TIME), 1),
+        "main.pressure_a": 2e7 + 1e6 * np.sign(np.sin(0.1 * TIME)) + noise["pressure_a"],
+        "main.pressure_b": 2e6 + noise["pressure_b"], "main.displacement": np.full(len(TIME), 3e-5),
+        "hook_load": np.full(len(TIME), 5e4),
+    }  # fmt: skip
+    for name, (at, values) in changed.items():
+        columns[name.replace("__", ".")] = columns[name.replace("__", ".")].copy()
+        columns[name.replace("__", ".")][at] = values
+    return Run("r.csv", columns)
+
+
+def mended(run):
+    (one,), notes = without_broken([run])
+    return {name: int(np.isnan(values).sum()) for name, values in one.columns.items() if np.isnan(values).any()}, notes
+
+
+def test_what_lives_is_left_alone():
+    """Steps of friction, a constant setting, a load of one number, a speed that rests on its digits."""
+    assert mended(log()) == ({}, [])
+    assert mended(log(motor_speed=(slice(500, 700), 40.0))) == ({}, [])
+
+
+def test_a_pressure_that_stands_still_beside_one_that_lives_was_not_measured():
+    held = log(main__pressure_a=(slice(500, 700), 2.1e7))
+    assert mended(held) == ({"main.pressure_a": 199}, ["r.csv: main.pressure_a stands still for 3.98 s; left out"])
+    short = log(main__pressure_a=(slice(500, 540), 2.1e7))  # 0.8 s: a slow transmitter
+    assert mended(short) == ({}, [])
+
+
+def test_a_log_that_stands_still_as_a_whole_is_no_single_sensor():
+    both = log(main__pressure_a=(slice(500, 700), 2.1e7), main__pressure_b=(slice(500, 700), 2e6))
+    assert mended(both)[0] == {}
+    held = log()
+    held.columns["main.pressure_b"] = np.repeat(held["main.pressure_b"][::5], 5)  # a transmitter of 10 Hz
+    held.columns["main.pressure_b"][500:600] = held["main.pressure_b"][500]
+    assert mended(held) == ({}, [])
+    coarse = log()
+    coarse.columns["main.pressure_a"] = np.round(coarse["main.pressure_a"], -6)  # a digit of 10 bar
+    assert mended(coarse) == ({}, [])
+
+
+@pytest.mark.parametrize("value", [0.0, 6.5535e7, -1e6])
+def test_single_samples_that_jump_are_lost_telegrams(value):
+    lost = log(main__pressure_a=([100, 900, 1700], value), motor_speed=([300], 900.0))
+    assert mended(lost) == (
+        {"motor_speed": 1, "main.pressure_a": 3},
+        ["r.csv: motor_speed jumps in 1 single sample; left out",
+         "r.csv: main.pressure_a jumps in 3 single samples; left out"],
+    )  # fmt: skip
+
+
+def test_what_jumps_in_more_than_one_of_a_hundred_is_how_the_sensor_is():
+    assert mended(log(main__pressure_a=(slice(10, None, 50), 0.0)))[0] == {}

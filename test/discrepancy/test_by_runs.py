@@ -73,7 +73,8 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "standing", lambda *_: None)
     monkeypatch.setattr(workflow, "not_one_law", lambda *_: trial(first))
-    monkeypatch.setattr(workflow, "by_surfaces", lambda split, crane, options, trial, rng: trial)
+    for step in ("by_surfaces", "by_groups"):
+        monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
     monkeypatch.setattr(workflow, "swings", lambda given: False)
     monkeypatch.setattr(workflow, "propose", lambda *_: laws)
     monkeypatch.setattr(workflow, "by_runs", lambda *_: seen.append(True) or named)
@@ -114,3 +115,31 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     windows = found.term.table.knots[0][1]
     assert all(windows[2 * k] < runs[7 - k].start < runs[7 - k].start + 60.0 < windows[2 * k + 1] for k in range(8))
     assert run_states.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []
+
+
+@pytest.mark.parametrize(
+    ("other", "two", "taken"),
+    [
+        (trial(MISSING, FLOOR, FLOOR), True, True),
+        (trial(MISSING, FLOOR, FLOOR), False, False),  # heave compensation drives by the group of hoisting
+        (trial(MISSING, 1.9 * FLOOR, FLOOR), True, False),
+        (trial(MISSING, FLOOR, 2.5 * FLOOR), True, False),
+        (trial(UNEXPLAINED, FLOOR, FLOOR), True, False),
+    ],
+)
+def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypatch, other, two, taken):
+    asked = []
+
+    def search(split, given, options, rng):
+        asked.append(options.candidates)
+        return other.search
+
+    monkeypatch.setattr(workflow, "of_one_group", lambda runs, model: ["one"] if two else [])
+    monkeypatch.setattr(workflow, "search_runs", search)
+    monkeypatch.setattr(workflow, "standing", lambda *_: other)
+    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    before = trial(UNEXPLAINED)
+    before.search.given = SimpleNamespace(prepared=(), model=None)
+    after = workflow.by_groups(SimpleNamespace(train=()), None, GapOptions(), before, np.random.default_rng(0))
+    assert (after is other) is taken
+    assert asked == [("one",)] * two

@@ -7,6 +7,7 @@ import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 NOWHERE = np.zeros(0)  # layers of a log that does not tell them
@@ -19,6 +20,20 @@ class Split:
     runs: tuple[Run, ...]
     train: tuple[str, ...]
     holdout: tuple[str, ...]
+
+
+def refuse(runs: Sequence[Run], fraction: float, seed: int) -> None:
+    """Raise `InputError` for what cannot be divided: no run, two of one name, a share or a seed that is none."""
+    if not runs:
+        raise InputError("no run given; name at least one run file")
+    names = [run.name for run in runs]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InputError(f"two runs are called '{twice[0]}'; a run's identity is its file name")
+    if not 0.05 <= fraction <= 0.6:
+        raise InputError(f"--holdout {fraction:g} is outside 0.05 ... 0.6")
+    if seed < 0:
+        raise InputError(f"seed {seed}: give a whole number, 0 or more")
 
 
 def lock_holdout(runs: Sequence[Run], fraction: float, rng: np.random.Generator) -> Split:

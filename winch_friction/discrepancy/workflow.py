@@ -22,9 +22,9 @@ from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
-from winch_friction.discrepancy.locking import Split, lock_holdout
+from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
 from winch_friction.discrepancy.preparation.grid import thinned
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun, against_simulations
+from winch_friction.discrepancy.preparation.prepared_run import against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
@@ -32,7 +32,6 @@ from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
-from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
@@ -46,14 +45,14 @@ _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
 
 def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What no known law explains, or one name's law not well, once more with laws that only the data know and errors
-    of one motor group alone; the trial as it is where that does not end in a proven name that leaves surely less."""
+    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
+    it is where that does not end in a proven name that leaves surely less."""
     given = trial.search
     named = given.verdict.kind in (MISSING, AMBIGUOUS)
     left = given.cross.excess(given.explanation)
     if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
         return trial
-    search = search_runs(split, given.given, options, rng, _last_resort)
+    search = search_runs(split, given.given, options, rng, partial(free_members, rows=SURFACES))
     if not search.selection.found:
         return trial
     if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
@@ -64,8 +63,15 @@ def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, r
     return other if not named or adds(trial.holdout, other.holdout, rng) else trial
 
 
-def _last_resort(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
-    return [*free_members(runs, model, rows=SURFACES), *of_one_group(runs, model)]
+def by_groups(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
+    """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
+    the locked runs to their floor, and the others near theirs."""
+    given = trial.search.given
+    own = of_one_group(given.prepared, given.model)
+    search = search_runs(split, given, replace(options, candidates=tuple(own)), rng) if own else None
+    if search is None or not search.selection.found:
+        return trial
+    return _closing(split, crane, options, search, trial, rng)
 
 
 def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
@@ -76,6 +82,13 @@ def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: 
     search = search_runs(split, trial.search.given, options, rng, by_run)
     if [each.slot.law for each in search.selection.found] != [EACH_RUN]:
         return trial
+    return _closing(split, crane, options, search, trial, rng)
+
+
+def _closing(
+    split: Split, crane: Crane, options: GapOptions, search: Search, trial: Trial, rng: np.random.Generator
+) -> Trial:
+    """What a search finds, if it brings the locked runs to their floor and the others near theirs; else the trial."""
     other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
     return other if named and at_the_floor(other.holdout) and not far_off(other.train) else trial
@@ -201,7 +214,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     all.
     """
     options = options or GapOptions()
-    _check(runs, options)
+    refuse(runs, options.holdout, options.seed)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
     parts, broken = without_broken(parts)
@@ -228,6 +241,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if trial.search.verdict.kind == UNEXPLAINED and search.verdict.untold:
         names = adequacy.of_names(search.verdict.refused)
         return insufficient([*checks, names], notes, crane, model, (given, split))
+    if trial.search.verdict.kind == UNEXPLAINED and not options.candidates:
+        trial = by_groups(split, crane, options, trial, rng)
     if trial.search.verdict.kind != NOTHING and not options.candidates:
         options.told("drawing surfaces")
         trial = by_surfaces(split, crane, options, trial, rng)
@@ -274,16 +289,3 @@ def _without_swing(
     other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
     return other if named and not swings(meet(split.runs, crane, other.repaired.model, ())) else trial
-
-
-def _check(runs: Sequence[Run], options: GapOptions) -> None:
-    if not runs:
-        raise InputError("no run given; name at least one run file")
-    names = [run.name for run in runs]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InputError(f"two runs are called '{twice[0]}'; a run's identity is its file name")
-    if not 0.05 <= options.holdout <= 0.6:
-        raise InputError(f"--holdout {options.holdout:g} is outside 0.05 ... 0.6")
-    if options.seed < 0:
-        raise InputError(f"seed {options.seed}: give a whole number, 0 or more")

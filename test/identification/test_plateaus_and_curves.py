@@ -52,6 +52,8 @@ def test_ramps_and_standstill_are_no_plateaus(truth, crane):
     ramp = replace(run, columns={**run.columns, "motor_speed": 0.5 * time})
     still = replace(run, columns={**run.columns, "motor_speed": np.zeros_like(time)})
     assert find_plateaus(ramp, crane) == []  # 5 rpm/s: slow enough for the slope alone
+    down = replace(run, columns={**run.columns, "motor_speed": 100.0 - 0.5 * time})
+    assert find_plateaus(down, crane) == []
     assert find_plateaus(still, crane) == []
 
 

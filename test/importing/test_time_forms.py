@@ -137,3 +137,11 @@ def test_the_last_tick_is_cut_short_and_no_slower():
 def test_tenths_of_a_microsecond_tell_from_their_size_since_when(form, noon):
     assert guess_time([numbers(noon + 2e5 * np.arange(9))], "").base.form == form
     assert guess_time([numbers(3.0 * noon + 2e5 * np.arange(9))], "").base.form != form
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1.0, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")])
+def test_a_count_since_1970_is_told_by_its_size_and_none_of_another_century_is(factor, unit):
+    told = guess_time([numbers(factor * (NOON + 0.1 * np.arange(9)))], "").base
+    assert (told.form, told.unit) == ("unix", unit)
+    late = guess_time([numbers(factor * (2.0 * NOON + 0.1 * np.arange(9)))], "")
+    assert late is None or (late.base.form, late.base.unit) != ("unix", unit)

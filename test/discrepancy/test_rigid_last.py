@@ -75,7 +75,8 @@ def answers(monkeypatch):
     monkeypatch.setattr(workflow, "search_runs", search_runs)
     monkeypatch.setattr(workflow, "standing", standing)
     monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
-    monkeypatch.setattr(workflow, "by_surfaces", lambda split, crane, options, trial, rng: trial)
+    for step in ("by_surfaces", "by_groups"):
+        monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
     monkeypatch.setattr(workflow, "as_rigid", lambda given: RIGID)
     monkeypatch.setattr(workflow, "swings", lambda given: given.swings)
     monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)

@@ -271,3 +271,11 @@ def test_a_noisy_motion_sensor_denies_no_swing_that_the_other_runs_tell(noise, e
     modes = _agreed_modes([*hoists, *held])
     assert [mode.damping for mode in modes] == pytest.approx([expected] * 7)
     assert [mode.unheard for mode in modes] == [False] * 4 + [noise] * 3
+
+
+def test_a_log_that_does_not_say_how_long_its_wire_is_has_no_share_of_one_damper():
+    """Runs that agree on a damper give a ratio by frequency, which that log has none of."""
+    hoists = [prepared(Mode(5.0 + k, 0.3 / (5.0 + k), False)) for k in range(4)]
+    modes = _agreed_modes([*hoists, prepared(Mode(0.0, 0.0), RUNG, noise=True)])
+    assert [mode.damping > 0.0 for mode in modes] == [True] * 4 + [False]
+    assert not modes[-1].unheard

@@ -214,8 +214,8 @@ def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
 
 def _rings(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     """Whether a computed wire would make its sensors' noise ring, and nothing that the motors feel."""
-    own = ratio(run.wire_mode[0], _mass(run))
-    return run.swing_noise and run.wire_mode[1] <= 0.0 and denies(run.swing_left, own)
+    tells = run.swing_noise and run.wire_mode[1] <= 0.0 and _slow(run)
+    return tells and denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
 
 
 def _said(run: PreparedRun) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from winch_friction.commissioning.balance import Closure
 from winch_friction.commissioning.channels import (
+    SEVERITIES,
     ChannelSummary,
     Finding,
     channel_findings,
@@ -109,9 +110,8 @@ def check(
     findings, diagnosis = diagnosed(runs, crane, model, others)
     per_channel = [finding for run in runs for finding in channel_findings(run, crane)]
     per_channel += [Finding("note", "gaps", said, "time") for said in holes]
-    order = {"error": 0, "warning": 1, "note": 2}
     # a stable sort: the diagnosis stays first among what is equally grave
-    findings = sorted([*findings, *per_channel], key=lambda finding: order[finding.severity])
+    findings = sorted([*findings, *per_channel], key=lambda finding: SEVERITIES.index(finding.severity))
     views = views_of([(run, crane) for run in runs if run.name in diagnosis.names])
     balance = [
         RunBalance(c.run, s, c.before, c.after, c.level, c.needed, tuple(agreements(view)))

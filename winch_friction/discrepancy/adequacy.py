@@ -1,7 +1,4 @@
-"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks.
-
-Some of them are locked away before anything else is looked at, for the proof.
-"""
+"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -191,6 +188,3 @@ def supplying(checks: Sequence[Check]) -> str:
         return "ahc_55t_215"
     many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
     return "experiment_loads" if many else "test_02"
-
-
-# -- runs that are locked away

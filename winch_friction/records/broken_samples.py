@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run
 
 # what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds
@@ -39,7 +40,9 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             if still.any():
                 notes.append(f"{run.name}: {name} stands still for {_length(run.time, still):.3g} s; left out")
             if jumping.any():
-                notes.append(f"{run.name}: {name} jumps in {_samples(int(jumping.sum()))}; left out")
+                notes.append(
+                    f"{run.name}: {name} jumps in {counted(int(jumping.sum()), 'single sample', 'single samples')}; left out"
+                )
             if (still | jumping).any():
                 mended[name] = np.where(still | jumping, np.nan, values)
         found.append(replace(run, columns=mended))
@@ -79,7 +82,3 @@ def _jumping(values: FloatArray) -> np.ndarray:
 
 def _length(time: FloatArray, marked: np.ndarray) -> float:
     return float(np.sum(np.diff(time)[marked[1:]]))
-
-
-def _samples(count: int) -> str:
-    return f"{count} single sample" + ("s" if count > 1 else "")

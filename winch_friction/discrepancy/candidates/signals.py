@@ -20,12 +20,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     Values,
     correction,
 )
-from winch_friction.discrepancy.candidates.groups import (
-    GroupLaw,
-    group_columns,
-    group_shapes,
-    groups_of,
-)
+from winch_friction.discrepancy.candidates.groups import GroupLaw, group_columns, group_shapes, groups_of
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
@@ -47,7 +42,6 @@ SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
-
 
 p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"

@@ -141,7 +141,7 @@ def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> 
 
 
 def _settled(grid: Grid, mode: Mode) -> np.ndarray:
-    if mode[1] <= 0.0:
+    if min(mode.frequency, mode.damping) <= 0.0:
         return np.ones(len(grid.time), bool)
     return np.asarray(grid.time > min(settling_time(*mode[:2]), MOST_SETTLING * grid.time[-1]))
 
@@ -150,7 +150,7 @@ def _rung_out(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np
     """Samples without a swing from before the record, on a wire that is taken for rigid though its stiffness is known:
     what moves it so little later may have moved it much."""
     everywhere = np.ones(len(gap), bool)
-    if mode.damping > 0.0 or mode.frequency <= 0.0:
+    if mode.damping > 0.0:
         return everywhere
     later = _settled(grid, Mode(mode.frequency, USUAL_DAMPING))
     begin, rest = gap[moving & ~later], gap[moving & later]

@@ -125,6 +125,7 @@ def _radius(grid: Grid, crane: Crane) -> FloatArray:
 
 # -- what damps the wire
 ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
+FEWEST_UNOPPOSED = 3  # of such runs, where as many others do not object
 # times what a run leaves on a rigid wire, from where on the mode that others agree on is denied by it: less a swing too
 # small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
 # with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
@@ -174,11 +175,11 @@ def shared_damping(
     find one damping.
     """
     swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
-    if len(swinging) < FEWEST_ALIKE - 1:
+    if len(swinging) < FEWEST_UNOPPOSED:
         return None
     frequency, ratio, mass = swinging.T
     alike = max((_closest(each) for each in (2.0 * ratio * frequency * mass, ratio)), key=np.sum)
-    if alike.sum() < FEWEST_ALIKE - 1 or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
+    if alike.sum() < FEWEST_UNOPPOSED or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
         return None
     agreed = agreed_damping(swinging[alike].tolist())
     if agreed is None:
@@ -186,7 +187,7 @@ def shared_damping(
     rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
     against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
     if alike.sum() < FEWEST_ALIKE and (against + (~alike).sum() > 0 or len(modes) < 2 * alike.sum()):
-        return None  # one less will do where as many others do not object
+        return None
     return agreed if alike.sum() > against + MOST_ASTRAY * (~alike).sum() else None
 
 

@@ -40,9 +40,8 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             if still.any():
                 notes.append(f"{run.name}: {name} stands still for {_length(run.time, still):.3g} s; left out")
             if jumping.any():
-                notes.append(
-                    f"{run.name}: {name} jumps in {counted(int(jumping.sum()), 'single sample', 'single samples')}; left out"
-                )
+                samples = counted(int(jumping.sum()), "single sample", "single samples")
+                notes.append(f"{run.name}: {name} jumps in {samples}; left out")
             if (still | jumping).any():
                 mended[name] = np.where(still | jumping, np.nan, values)
         found.append(replace(run, columns=mended))

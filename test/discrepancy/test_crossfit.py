@@ -102,15 +102,33 @@ def test_halves_of_gram_matrices_are_the_whole():
     blocks = problem_with(np.ones(RUNS)).blocks
     x = np.column_stack([blocks.x, blocks.x[:, 0] ** 2, blocks.y**3])
     weight = 1.0 / (1.0 + blocks.run)
-    own, index = np.array([3, 17, 4]), np.array([2, 0])
     kept = grams(replace(blocks, x=x, weight=weight))
-    z = x * weight[:, None]
-    whole = np.array([z[blocks.segment == k].T @ z[blocks.segment == k] for k in np.unique(blocks.segment)])
-    np.testing.assert_array_equal(kept.total(), whole.sum(axis=0))
-    np.testing.assert_array_equal(kept.total(own), whole[own].sum(axis=0))
-    beta = np.arange(2.0 * len(whole)).reshape(-1, 2) - 3.0
-    squares = [b @ part[np.ix_(index, index)] @ b for part, b in zip(whole, beta, strict=True)]
-    np.testing.assert_allclose(kept.squares(index, beta), squares, rtol=1e-12)
+    z, y = x * weight[:, None], blocks.y * weight
+    np.testing.assert_allclose(kept.total()[0], z.T @ z, rtol=1e-12)
+    np.testing.assert_allclose(kept.total()[1], z.T @ y, rtol=1e-9, atol=1e-12)
+    own = blocks.run == 3
+    np.testing.assert_allclose(kept.total(3)[0], z[own].T @ z[own], rtol=1e-12)
+    np.testing.assert_allclose(kept.total(3)[1], z[own].T @ y[own], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("runs", [RUNS, LIMITS.fewest_runs - 1])
+def test_held_out_losses_are_those_of_fits_to_the_other_folds(runs):
+    """Of every segment, by the coefficients of the fold that leaves it out, whatever the order of the blocks."""
+    blocks = problem_with(np.ones(RUNS)).blocks
+    mixed = np.random.default_rng(2).permutation(np.flatnonzero(blocks.run < runs))
+    some = {f.name: getattr(blocks, f.name)[mixed] for f in fields(blocks) if f.name != "features"}
+    blocks = replace(blocks, **some | {"weight": 1.0 / (1.0 + some["run"])})
+    problem = replace(problem_with(np.ones(RUNS)), blocks=blocks, grams=grams(blocks))
+    cross = CrossFit(problem)
+    found, columns = cross.explain((EFFECT,)), list(problem.columns((EFFECT,)))
+    for k, segment in enumerate(np.unique(blocks.segment)):
+        own = blocks.segment == segment
+        fold = problem.grams.fold[k]
+        left_out = np.isin(blocks.segment, np.unique(blocks.segment)[problem.grams.fold == fold])
+        z, y = (blocks.x[:, columns] * blocks.weight[:, None])[~left_out], (blocks.y * blocks.weight)[~left_out]
+        beta = problem.fit(z.T @ z, z.T @ y, columns)
+        left = (blocks.y - blocks.x[:, columns] @ beta)[own] * blocks.weight[own]
+        assert found.losses[k] == pytest.approx(float(left @ left), rel=1e-6)
 
 
 def test_segments_need_not_stand_in_order():
@@ -129,7 +147,8 @@ def test_segments_need_not_stand_in_order():
 def test_no_block_is_no_segment():
     blocks = problem_with(np.ones(RUNS)).blocks
     none = replace(blocks, **{f.name: getattr(blocks, f.name)[:0] for f in fields(blocks) if f.name != "features"})
-    assert grams(none).total().tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    assert grams(none).total()[0].tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    assert grams(none).by_segment(none.y).tolist() == []
 
 
 def test_what_is_asked_again_is_what_was_answered_first():

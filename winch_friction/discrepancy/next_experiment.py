@@ -105,7 +105,7 @@ def _simulated(name: str, crane: Crane, expansion: Expansion, seed: int, asked: 
     problem = build_problem([prepared], expansion.layout.only(asked)[0])
     whole = np.zeros(2 * (len(expansion.layout.scales),))
     columns = np.asarray(problem.base_columns + tuple(c for slot in asked for c in slot.columns))
-    whole[np.ix_(columns, columns)] = problem.grams.total()
+    whole[np.ix_(columns, columns)] = problem.grams.total()[0]
     return whole
 
 

@@ -1,4 +1,4 @@
-"""A gap and its regressors as block means, and their Gram matrices per segment: after this, every fit is small.
+"""A gap and its regressors as block means, and their Gram matrices per fold: after this, every fit is small.
 
 Values are in the gap's unit and weighted by each record's own noise. Where the gap lies is said in words, as regions
 of the operating space with a share each.
@@ -6,7 +6,6 @@ of the operating space with a share each.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 from typing import Any
 
@@ -73,37 +72,41 @@ class Blocks:
 
 @dataclass(frozen=True)
 class Grams:
-    """Per segment: Gram matrix, b (s, c), y2 (s,), count (s,) in units of the noise; and each segment's record.
+    """Gram matrices of every part, the segments of one record that one fold leaves out: b (p, c), y2 (p,), and each
+    part's record; and of every segment its fold, and the number of its blocks.
 
-    Of the symmetric matrices, the largest thing there is, the upper half is kept, row by row (s, c (c + 1)/2).
+    Of the symmetric matrices, the largest thing there is, the upper half is kept, row by row (p, c (c + 1)/2). The
+    blocks of a segment stand together in `order`, from its place in `starts` on.
     """
 
     upper: FloatArray
     b: FloatArray
     y2: FloatArray
-    count: FloatArray
     run: np.ndarray
+    part_fold: np.ndarray
+    fold: np.ndarray
+    count: FloatArray
+    order: np.ndarray
+    starts: np.ndarray
 
-    @cached_property
-    def _place(self) -> np.ndarray:
-        """Where each entry of a matrix stands in its upper half, (c, c)."""
+    def total(self, fold: int | None = None) -> tuple[FloatArray, FloatArray]:
+        """The sums over all parts or those of a fold: (c, c) and (c,)."""
+        own = slice(None) if fold is None else self.part_fold == fold
         size = self.b.shape[1]
         rows, columns = np.triu_indices(size)
-        place = np.empty((size, size), np.int32)
-        place[rows, columns] = place[columns, rows] = np.arange(len(rows))
-        return place
+        whole = np.empty((size, size))
+        whole[rows, columns] = whole[columns, rows] = self.upper[own].sum(axis=0)
+        return whole, np.asarray(self.b[own].sum(axis=0))
 
-    def total(self, own: np.ndarray | None = None) -> FloatArray:
-        """The sum over all segments or these, (c, c)."""
-        upper = self.upper if own is None else self.upper[own]
-        return np.asarray(upper.sum(axis=0)[self._place])
+    def by_segment(self, values: FloatArray) -> FloatArray:
+        """Sums over the blocks of every segment: (s,)."""
+        return np.add.reduceat(values[self.order], self.starts) if len(self.starts) else np.zeros(0)
 
-    def squares(self, index: np.ndarray, beta: FloatArray) -> FloatArray:
-        """What these columns by coefficients (s, index), of every segment its own, add up to, squared: (s,)."""
-        rows, columns = np.triu_indices(len(index))
-        twice = np.where(rows == columns, 1.0, 2.0)
-        half = self.upper[:, self._place[index[rows], index[columns]]]
-        return np.asarray(np.einsum("sh,h,sh,sh->s", half, twice, beta[:, rows], beta[:, columns]))
+    def of_segments(self, values: np.ndarray) -> np.ndarray:
+        """What every segment has, for each of its blocks: (blocks, ...)."""
+        found = np.empty((len(self.order), *values.shape[1:]), values.dtype)
+        found[self.order] = np.repeat(values, self.count.astype(int), axis=0)
+        return found
 
 
 def segment_length(total: float) -> float:
@@ -161,26 +164,35 @@ def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float]) -> Blocks:
 
 
 def grams(blocks: Blocks) -> Grams:
-    """Gram matrices of every segment."""
+    """Gram matrices of every part, and which blocks are a segment's."""
     order = np.argsort(blocks.segment, kind="stable")
-    segment, size = blocks.segment[order], blocks.x.shape[1]
-    _, starts = np.unique(segment, return_index=True)
-    ends = np.append(starts[1:], len(segment))[: len(starts)]
+    _, starts, count = np.unique(blocks.segment[order], return_index=True, return_counts=True)
+    run, size = blocks.run[order][starts], blocks.x.shape[1]
+    fold = np.unique(_folds(run), return_inverse=True)[1]  # numbered from 0
+    pairs, part = np.unique(np.column_stack([run, fold]), axis=0, return_inverse=True)
+    part_of_block = np.repeat(part.ravel(), count)
     rows, columns = np.triu_indices(size)
     half = rows * (size + 1) + columns
-    upper, b, y2 = np.empty((len(starts), len(half))), np.empty((len(starts), size)), np.empty(len(starts))
-    for k, (first, last) in enumerate(zip(starts, ends, strict=True)):
-        own = order[first:last]
+    upper, b, y2 = np.empty((len(pairs), len(half))), np.empty((len(pairs), size)), np.empty(len(pairs))
+    for k in range(len(pairs)):
+        own = order[part_of_block == k]
         z = np.column_stack([blocks.x[own], blocks.y[own]]) * blocks.weight[own, None]
         full = z.T @ z
         np.take(full.ravel(), half, out=upper[k], mode="clip")  # `mode` saves NumPy a copy; no place is outside
         b[k], y2[k] = full[:-1, -1], full[-1, -1]
-    return Grams(upper, b, y2, (ends - starts).astype(float), blocks.run[order][starts])
+    return Grams(upper, b, y2, pairs[:, 0], pairs[:, 1], fold, count.astype(float), order, starts)
+
+
+def _folds(run: np.ndarray) -> np.ndarray:
+    """The fold that leaves each segment out: its record, or of few records a stretch of time."""
+    if len(np.unique(run)) >= LIMITS.fewest_runs:
+        return run
+    return np.arange(len(run)) * min(LIMITS.folds, len(run)) // len(run)
 
 
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
-    """Parts behind each other; one alone as it is."""
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
+    """Parts behind each other, column by column in memory: a fit asks for a few columns of all blocks."""
+    return np.concatenate([part.T for part in parts], axis=1).T
 
 
 # -- regions of the operating space

@@ -46,14 +46,15 @@ class CrossFit:
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         g = problem.grams
-        self.fold = np.unique(_folds(g.run), return_inverse=True)[1]  # numbered from 0
-        self.total_g, self.total_b = g.total(), g.b.sum(axis=0)
+        self.fold = g.fold
+        self.total_g, self.total_b = g.total()
         self.total_y2 = float(g.y2.sum())
         self.unresolved = float(problem.unresolved.sum())
         self.sums = []
         for k in range(self.fold.max(initial=-1) + 1):
-            own = np.flatnonzero(self.fold == k)
-            self.sums.append((self.total_g - g.total(own), self.total_b - g.b[own].sum(axis=0)))
+            own_g, own_b = g.total(k)
+            self.sums.append((self.total_g - own_g, self.total_b - own_b))
+        self._fold_of_block = g.of_segments(g.fold)
         # a search asks for most sets three times; each answer keeps its slots alive, so that an id stays one slot's
         self._fits: dict[tuple[int, ...], tuple[float, FloatArray]] = {}
         self._explained: dict[tuple[int, ...], Explanation] = {}
@@ -94,14 +95,17 @@ class CrossFit:
 
     def _explain(self, slots: Sequence[Slot]) -> Explanation:
         columns = self.problem.columns(slots)
-        index = np.asarray(columns)
-        g = self.problem.grams
         loss, beta = self.train_loss(slots)
         fits = [self.problem.fit(sum_g, sum_b, columns, beta) for sum_g, sum_b in self.sums]
         left_out = np.reshape(fits, (-1, len(columns)))
-        without = left_out[self.fold]
-        losses = g.y2 - 2.0 * np.einsum("sc,sc->s", g.b[:, index], without) + g.squares(index, without)
-        return Explanation(tuple(slots), losses, beta, loss, left_out)
+        left = self._left(columns, left_out[self._fold_of_block])
+        return Explanation(tuple(slots), self.problem.grams.by_segment(left**2), beta, loss, left_out)
+
+    def _left(self, columns: Sequence[int], beta: FloatArray) -> FloatArray:
+        """What coefficients of all blocks (c,), or of each its own (blocks, c), leave of it in units of the noise."""
+        blocks = self.problem.blocks
+        x = blocks.x[:, list(columns)]
+        return np.asarray((blocks.y - np.einsum("bc,bc->b", x, np.broadcast_to(beta, x.shape))) * blocks.weight)
 
     def at_bound(self, explanation: Explanation, slot: Slot) -> bool:
         """Whether one of its effects would be larger than is believed, if it might."""
@@ -116,9 +120,7 @@ class CrossFit:
 
     def remainder(self, explanation: Explanation) -> FloatArray:
         """What an explanation leaves of the gap, block by block, in units of the noise."""
-        blocks = self.problem.blocks
-        columns = list(self.problem.columns(explanation.slots))
-        return np.asarray((blocks.y - blocks.x[:, columns] @ explanation.beta) * blocks.weight)
+        return self._left(self.problem.columns(explanation.slots), explanation.beta)
 
     def gain(self, before: Explanation, after: Explanation) -> FloatArray:
         """Share of the held-out error that `after` saves, beside what matters to nobody."""
@@ -148,12 +150,6 @@ class CrossFit:
         if not spread > 0.0:
             return 1.0
         return float(2.0 * stdtr(folds - 1, -abs(amplitude.mean()) / spread))
-
-
-def _folds(run: np.ndarray) -> np.ndarray:
-    if len(np.unique(run)) >= LIMITS.fewest_runs:
-        return run
-    return np.arange(len(run)) * min(LIMITS.folds, len(run)) // len(run)
 
 
 def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:

@@ -256,7 +256,7 @@ def problem_of(
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.columns(known))
-    beta = first.fit(first.grams.total(), first.grams.b.sum(axis=0), first.columns(known))
+    beta = first.fit(*first.grams.total(), first.columns(known))
     left = [t.y - t.x[:, columns] @ beta for t in tables]
     again = {
         k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k]))
@@ -272,5 +272,5 @@ def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
     g = problem.grams
     factor = ratio[g.run] ** 2
     np.multiply(g.upper, factor[:, None], out=g.upper)
-    again = Grams(g.upper, g.b * factor[:, None], g.y2 * factor, g.count, g.run)
+    again = replace(g, b=g.b * factor[:, None], y2=g.y2 * factor)
     return replace(problem, blocks=blocks, grams=again, noise=noise)

@@ -133,6 +133,7 @@ DENIED = 1.2
 # of those that agree, how many may swing as well but seem damped otherwise: a motion sensor's noise, an inertia that is
 # wrong and reversals all make them seem so, and which of them are alike is no chance: one in ten is within `ALIKE`
 MOST_ASTRAY = 0.5
+SWINGS_LEFT = 0.01  # of the swinging: what is left of it by less is told from nothing by nobody
 STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
 # of what a mode that is damped like a filter leaves of all runs together: winches whose motion sensor's noise was most
 # of it left 0.9 and more by any rope's damping, those whose load plainly swings 0.03 to 0.7
@@ -178,50 +179,61 @@ def shared_damping(
     if len(swinging) < FEWEST_UNOPPOSED:
         return None
     frequency, ratio, mass = swinging.T
-    alike = max((_closest(each) for each in (2.0 * ratio * frequency * mass, ratio)), key=np.sum)
-    if alike.sum() < FEWEST_UNOPPOSED or np.median(ratio[alike]) >= MOST_DAMPED / 2.0:
-        return None
-    agreed = agreed_damping(swinging[alike].tolist())
-    if agreed is None:
-        return None
     rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
-    against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
-    if alike.sum() < FEWEST_ALIKE and (against + (~alike).sum() > 0 or len(modes) < 2 * alike.sum()):
-        return None
-    return agreed if alike.sum() > against + MOST_ASTRAY * (~alike).sum() else None
+
+    def enough(alike: np.ndarray, agreed: Callable[[float, float], float]) -> bool:
+        against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
+        opposed = against + (~alike).sum() > 0 or len(modes) < 2 * alike.sum()
+        few = alike.sum() < FEWEST_ALIKE and opposed
+        return not few and bool(alike.sum() > against + MOST_ASTRAY * (~alike).sum())
+
+    found = []
+    for values in (2.0 * ratio * frequency * mass, ratio):
+        alike = _closest(values)
+        if alike.sum() >= FEWEST_UNOPPOSED and np.median(ratio[alike]) < MOST_DAMPED / 2.0:
+            agreed = agreed_damping(swinging[alike].tolist())
+            found += [(agreed, alike.sum())] if agreed is not None and enough(alike, agreed) else []
+    # by chance many of twelve runs are alike in the one or the other: what all of them leave tells which it is
+    known = [(mode, left) for mode, left in zip(modes, untold, strict=False) if len(left) and mode[0] > 0.0]
+    return min(found, key=lambda pair: (_leaves(known, pair[0]), -pair[1]), default=(None, 0))[0]
 
 
 def pooled_damping(
     modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], variances: Sequence[float]
 ) -> Callable[[float, float], float] | None:
     """The damping by which least is left of what swings in all runs together; None where that is not a rope's, or
-    leaves too much.
+    leaves too much of it.
 
     `modes` as in `shared_damping`, `left` and `variances` as in `Swing`; runs of which nothing is known have no part.
-    Where votes are at odds this decides: noise of a motion sensor rings on a computed wire as well, so that runs whose
-    load hardly moves the motors vote for a rigid one or one damped like a filter. A resonance has a damping that leaves
-    least; a wrong inertia or a late speed, which swing by no mode, leave alike whatever damps it.
+    What else a run's gap holds is its own, so that runs tell by the logarithm of what is left, as likelihoods of
+    unknown noise do: a calm hoist that rings down to nothing by one damping says more than a sea that is followed
+    alike by any. Where votes are at odds this decides: noise of a motion sensor rings on a computed wire as well, so
+    that runs whose load hardly moves the motors vote for a rigid one or one damped like a filter. A resonance has a
+    damping that leaves least; a wrong inertia or a late speed, which swing by no mode, leave alike whatever damps it.
     """
     known = [k for k, own in enumerate(left) if len(own) and modes[k][0] > 0.0]
     if len(known) < FEWEST_ALIKE or sum(variances[k] for k in known) <= 0.0:
         return None
-    swinging = np.array([modes[k] for k in known])
-    shares, weights = np.array([left[k] for k in known]), np.array([variances[k] for k in known])
-    critical = 2.0 * swinging[:, 0] * swinging[:, 2]  # N s/m
-    usual = float(np.median(critical))
-
-    def leaves(ratios: np.ndarray) -> float:
-        own = [_left_by(share, ratio) for share, ratio in zip(shares, ratios, strict=True)]
-        return float(np.average(own, weights=weights))
-
+    swings = [(modes[k], left[k]) for k in known]
+    usual = float(np.median([2.0 * own * mass for (own, _, mass), _ in swings]))  # N s/m
     grid = np.geomspace(DAMPING_RATIOS[0], DAMPING_RATIOS[-1], STEPS)
-    steady = np.array([leaves(np.full(len(known), ratio)) for ratio in grid])
-    damper = np.array([leaves(ratio * usual / critical) for ratio in grid])
-    best = min(steady, damper, key=lambda each: float(each.min()))
-    found, filtered = float(grid[np.argmin(best)]), float(best[grid >= MOST_DAMPED / 2.0].min())
-    if found >= MOST_DAMPED / 2.0 or best.min() > min(1.0 - LEAST_GAIN, CLEARLY_BEST * filtered):
+    tried = [*map(_one_ratio, grid), *(_one_damper(ratio * usual) for ratio in grid)]
+    leaves = np.array([_leaves(swings, each) for each in tried])
+    at = int(np.argmin(leaves))
+    kind, place = divmod(at, STEPS)
+    filtered = leaves[kind * STEPS : (kind + 1) * STEPS][grid >= MOST_DAMPED / 2.0].min()
+    if grid[place] >= MOST_DAMPED / 2.0 or leaves[at] > CLEARLY_BEST * filtered:
         return None
-    return _one_ratio(found) if best is steady else _one_damper(found * usual)
+    shares = [_left_by(own, tried[at](mode[0], mode[2])) for mode, own in swings]
+    return tried[at] if np.average(shares, weights=[variances[k] for k in known]) <= 1.0 - LEAST_GAIN else None
+
+
+def _leaves(
+    swings: Sequence[tuple[tuple[float, float, float], Sequence[float]]], agreed: Callable[[float, float], float]
+) -> float:
+    """The share of the swinging that runs leave by a damping, mean of the logarithm; 1 of no run."""
+    shares = [_left_by(left, agreed(frequency, mass)) for (frequency, _, mass), left in swings]
+    return float(np.exp(np.mean(np.log(np.array(shares) + SWINGS_LEFT)))) if shares else 1.0
 
 
 def _one_damper(damper: float) -> Callable[[float, float], float]:

@@ -290,3 +290,28 @@ def test_a_load_whose_swing_is_not_heard_moves_as_on_a_rigid_wire():
     load = SuspendedLoad(MASS * ones, ones, LEVER * ones, motion(TIME), motion(TIME))
     assert load.on_wire(DT, Mode(6.0, 0.06, None, unheard=True), None) is load
     assert np.ptp(load.on_wire(DT, Mode(6.0, 0.06), None).acceleration - load.acceleration) > 0.1
+
+
+def left_by_ringing(own, least):
+    """What a run leaves by a mode of each damping ratio, `own` its best one."""
+    return tuple(np.minimum(least + np.log(np.array(DAMPING_RATIOS) / own) ** 2, 1.5))
+
+
+FOLLOWED_BY_ANY = (0.11, 0.09, 0.08, *[0.075] * 4, *[0.072] * 4)  # a sea on kilometres of wire
+
+
+def test_what_all_runs_leave_tells_a_ratio_from_dampers_that_are_alike_by_chance():
+    """Joystick runs ring down alike; of as many seas that any damping follows five seem to have one damper."""
+    calm = [(2.0 + k, 0.05, 1e4) for k in range(5)]
+    seas = [(1.0 + 0.2 * k, 2e4 / (2.0 * (1.0 + 0.2 * k) * 3e4), 3e4) for k in range(5)]
+    left = [left_by_ringing(0.05, 0.005)] * 5 + [FOLLOWED_BY_ANY] * 5
+    found = shared_damping(calm + seas, left)
+    assert found(3.0, 1e4) == pytest.approx(0.05) and found(1.0, 3e4) == pytest.approx(0.05)
+
+
+def test_runs_that_ring_down_to_nothing_say_more_than_seas_that_any_damping_follows():
+    """However much more these swing."""
+    modes = [(2.0 + k, 0.0, 1e4) for k in range(3)] + [(1.0 + 0.2 * k, 0.0, 3e4) for k in range(5)]
+    left = [left_by_ringing(0.05, 0.005)] * 3 + [(0.6, 0.3, 0.16, 0.12, 0.1, 0.09, 0.08, 0.08, 0.08, 0.08, 0.09)] * 5
+    found = pooled_damping(modes, left, [1.0] * 3 + [30.0] * 5)
+    assert found(3.0, 1e4) == pytest.approx(0.05, rel=0.12)

@@ -83,7 +83,7 @@ def correction_std(correction: Correction) -> float:
 def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
     """Give every shape of every candidate its columns."""
     slots, scales = [], list(base.scale)
-    curves: list[tuple[tuple[int, ...], FloatArray]] = []
+    curves = list(_curves_of(model, base.scale))
     known = model.as_dict()
     lower, upper = list(base.lower), list(base.upper)
     sizes = machine_sizes(runs)
@@ -130,6 +130,18 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
         assert whole is not None
         whole[np.ix_(columns, columns)] = form
     return Layout(base, tuple(slots), np.array(scales), np.array(lower), np.array(upper), whole)
+
+
+def _curves_of(model: FrictionModel, scale: FloatArray) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+    """Columns and bending of each curve that the model has already, whose places have each a `scale` of its own: a
+    refit may bend it where it has been, and where no run comes it goes on as it went."""
+    at = {name: column for column, name in enumerate(model.parameter_names)}
+    for term in model.terms:
+        form = None if term.table is None else bending(term.table)
+        if form is not None:
+            columns = tuple(at[p.name] for p in term.parameters[len(term.parameters) - len(form) :])
+            own = scale[list(columns)] / np.median(scale[list(columns)])
+            yield columns, form * np.outer(own, own)
 
 
 def tolerance_columns(run: PreparedRun) -> FloatArray:

@@ -71,6 +71,9 @@ class Thresholds:
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third
     surface_knots: tuple[float, ...] = (0.02, 0.35, 0.65, 0.98)  # the same along each of two signals
+    # of what was covered: loads that are the same but for their cell, or a slope over next to nothing is the next run's
+    knots_apart: float = 0.02
+    resolved: float = 0.01  # of the largest value: what sensors of pressure, stroke, speed and load tell apart
     stiffness: float = 0.01  # of what the data know of an interval of a curve, that speaks against a change of slope
     law_accuracy: float = 0.1  # of itself: what the literature's laws of losses are good for on another machine
     near_the_floor: float = 3.0  # times it: what an inexact law may leave; more is seen by whoever looks at the runs

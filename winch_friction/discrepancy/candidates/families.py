@@ -32,6 +32,7 @@ ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pr
 POWERS = (0.5, 1.5, 2.0, 3.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL = ("oil_temperature",)
+RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose zero means nothing
 
 
 def literature() -> list[Candidate]:
@@ -182,7 +183,7 @@ def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequen
 def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candidate | None:
     curve, shares = len(row.signals) == 1, _shares(row, fine)
     knots = [_knots(_covered(signal, runs), shares) for signal in row.signals]
-    if any(len(at) < 3 or np.ptp(at) <= 1e-6 * np.abs(at).max() for at in knots):
+    if any(len(at) < 3 or np.ptp(at) <= _resolved(name, runs) for name, at in zip(row.signals, knots, strict=True)):
         return None
     size = np.prod([max(float(np.median(np.abs(_covered(each, runs)))), 1e-12) for each in row.times])
     torque = max(float(np.median([np.median(np.abs(run.drum_torque)) / run.gear_ratio for run in runs])), 1.0)
@@ -207,7 +208,8 @@ def _table(row: Free, knots: Sequence[FloatArray], typical: float) -> Table:
 
 def _shares(row: Free, fine: bool = False) -> tuple[float, ...]:
     own = row.knots if len(row.signals) == 1 else LIMITS.surface_knots
-    return _halved(own) if fine else own
+    between = (0.5 * (a + b) for a, b in itertools.pairwise(own))  # one more in the middle of every two
+    return tuple(sorted([*own, *between])) if fine else own
 
 
 def outlines() -> Iterator[Term]:
@@ -256,16 +258,18 @@ def bending(table: Table) -> FloatArray | None:
 
 
 def _knots(values: FloatArray, shares: Sequence[float]) -> FloatArray:
-    """Quantiles of what was covered, to nine digits so that a model file reads well."""
-    if not len(values):
-        return values
-    return np.unique([float(f"{k:.9g}") for k in np.quantile(values, shares)])
+    """Quantiles of what was covered, to nine digits for a readable file; the outermost, and none too near another."""
+    at = np.unique([float(f"{k:.9g}") for k in np.quantile(values, shares)]) if len(values) else values
+    kept = list(at[:1])
+    for knot in at[1:-1]:
+        kept += [knot] if min(knot - kept[-1], at[-1] - knot) >= LIMITS.knots_apart * np.ptp(at) else []
+    return np.array([*kept, *at[1:][-1:]])
 
 
-def _halved(shares: Sequence[float]) -> tuple[float, ...]:
-    """The same shares with one more in the middle of every two."""
-    between = (0.5 * (a + b) for a, b in itertools.pairwise(shares))
-    return tuple(sorted([*shares, *between]))
+def _resolved(signal: str, runs: Sequence[PreparedRun]) -> float:
+    """What its sensor tells apart of a signal, in its unit: by less, runs differ in that sensor alone."""
+    own = SWASH if signal == LEFT else signal  # what is left of a full stroke is as uncertain as the stroke
+    return RESOLVED.get(signal, LIMITS.resolved * float(np.abs(_covered(own, runs)).max(initial=0.0)))
 
 
 def _unit(times: tuple[str, ...]) -> str:

@@ -68,9 +68,9 @@ def literature() -> list[Candidate]:
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
             continuous=("n_l",)),
-        # of the flow through each motor it is a port's loss as well
-        _of("line_pressure_drop", "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, -0.5, 0.0, 0.5, 1.0)},
-            continuous=("n_le",)),
+        # of the flow through each motor it is a port's loss as well, by whatever exponent
+        *(_of(cause, "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, -0.5, 0.0, 0.5, 1.0)},
+              continuous=("n_le",)) for cause in ("line_pressure_drop", "port_turbulence")),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},
             law_name="cracking pressure one way", continuous=("n_l",)),

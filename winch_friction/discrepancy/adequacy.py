@@ -19,6 +19,8 @@ from winch_friction.records.parts import NO_RECORD
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"
+HEAVE = "runs of heave compensation that log heave_velocity, without which the crane is taken to stand still"
+MOVED = 0.5  # of a gap's variance, left where the load is taken to hang still: then the crane has moved
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
@@ -106,6 +108,7 @@ def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> l
     total = sum(float(run.time[-1]) for run in own)
     moving = _seconds(own)
     return [
+        *_of_heave(given.prepared),
         _at_least("moving time", moving, LIMITS.least_moving, "s"),
         _at_least("hoisting", _seconds(own, 1.0), LIMITS.least_each_way, "s"),
         _at_least("lowering", _seconds(own, -1.0), LIMITS.least_each_way, "s"),
@@ -117,6 +120,32 @@ def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> l
         _at_least("displacements", _distinct([_driving(run) for run in own]), 1.0),
         _at_least("oil temperatures, span", _span(own, "oil_temperature"), 0.0, "K"),
     ]
+
+
+def _of_heave(runs: Sequence[PreparedRun]) -> list[Check]:
+    """Whether the runs of heave compensation say how the crane moved, where the gap of some that do not is mostly what
+    a load would take that moves with the wire: their motors feel none of it. Nothing where all is well."""
+    compensating = [run for run in runs if len(run.groups) > 1]
+    silent = [run for run in compensating if "heave_velocity" not in run.channels and _hangs_still(run)]
+    known = len(compensating) - len(silent)
+    return [_at_least(HEAVE, known, len(compensating))] if silent else []
+
+
+def _hangs_still(run: PreparedRun) -> bool:
+    """Whether a run's gap is mostly the torque that its load would take if it moved with the wire."""
+    way = run.direction[run.used]
+    taken = (run.load * run.radius / run.gear_ratio * run.load_acceleration)[run.used]
+    gap, still = ((own - _by_way(own, way)) for own in (run.gap[run.used], run.gap[run.used] + taken))
+    return bool(len(gap) > 0 and np.sum(still**2) < MOVED * np.sum(gap**2))
+
+
+def _by_way(values: FloatArray, way: FloatArray) -> FloatArray:
+    """Their mean of each direction, for each sample: what friction that is off adds."""
+    found = np.zeros(len(values))
+    for sign in (-1.0, 0.0, 1.0):
+        own = way == sign
+        found[own] = np.mean(values[own]) if own.any() else 0.0
+    return found
 
 
 def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Check:
@@ -184,7 +213,7 @@ def _span(runs: Sequence[PreparedRun], channel: str) -> float:
 def supplying(checks: Sequence[Check]) -> str:
     """The shipped scenario that supplies what is lacking: both directions, nine speeds, three minutes at 50 Hz."""
     lacking = {check.what for check in checks if not check.met}
-    if SWING in lacking:
+    if SWING in lacking or HEAVE in lacking:
         return "ahc_55t_215"
     many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
     return "experiment_loads" if many else "test_02"

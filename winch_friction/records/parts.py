@@ -1,4 +1,6 @@
-"""Records that were merged into one file: each is a run of its own, for `gap` and `check` alike."""
+"""Runs as `gap` and `check` look at them: of records merged into one file each is a run of its own, and slower columns
+have values in every row.
+"""
 
 import itertools
 from collections.abc import Sequence
@@ -7,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.physics.signals import Run
+from winch_friction.records.slow_columns import filled
 
 NO_PAUSE = 1e9  # s, thirty years: a clock that is wrong, which `check` says
 SLOW = 10.0  # usual steps; a time in ms under [s] has steps of 20 s, and no hole where one is lost
@@ -16,7 +19,8 @@ LONGEST_HOLE = 30.0  # s without a sample, after which a record is another run: 
 
 def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
-    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
+    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows. So with what is said of
+    columns that are written in every n-th row only."""
     found, notes = list[Run](), list[str]()
     for run in runs:
         steps = np.diff(run.time)
@@ -30,7 +34,8 @@ def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
         longest = float(steps.max())
         notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
-    return found, notes
+    whole_rows = [filled(run) for run in found]
+    return [run for run, _ in whole_rows], notes + [note for _, said in whole_rows for note in said]
 
 
 def _part(run: Run, name: str, start: int, end: int) -> Run:

@@ -1,5 +1,5 @@
-"""Crane and runs as the practice looks at them: a crane whose only motor group has a name of its own has a main one, and
-slower columns have values in every row.
+"""Crane and runs as the practice looks at them: a crane whose only motor group has a name of its own has a main one,
+and slower columns have values in every row.
 """
 
 from dataclasses import replace
@@ -19,8 +19,9 @@ def as_main(crane: Crane) -> Crane:
 
 
 def run_as_main(run: Run, crane: Crane) -> Run:
-    """A run of `crane`, which still has the group's own name, with the columns of that group under main; columns that are
-    written in every n-th row only have values in every one.
+    """A run of `crane`, which still has the group's own name, with the columns of that group under main.
+
+    Columns that are written in every n-th row only have values in every one.
     """
     run, _ = filled(run)  # the reader has said which columns are slow
     if len(crane.groups) != 1:

@@ -1,6 +1,7 @@
 """Samples that no sensor measured: a channel that stands still while the others live, and single ones that jump.
 
-A transmitter that hangs repeats its last value to the last digit; a lost telegram is one sample of 0 or of full scale.
+A transmitter that hangs repeats its last value to the last digit, and where what it measures moved on meanwhile it
+leaps when it wakes; a lost telegram is one sample of 0 or of full scale.
 They are made missing, which every reader knows how to leave out, and said.
 """
 
@@ -13,7 +14,7 @@ import numpy as np
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run
 
-# what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds
+# what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds, and hangs if it leaps
 LIVING = (
     "pressure_a", "pressure_b", "motor_torque", "mechanical_power", "motor_current", "rope_force", "load_torque",
 )  # fmt: skip
@@ -22,6 +23,7 @@ STILL, FEWEST = 1.0, 20  # s and samples that a channel must repeat; slow logger
 LIVES = 0.5  # of the steps between samples, in which a channel changes that has noise, and so does not stand by chance
 LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse digit stands still for most of it
 JUMPS = 20.0  # usual steps between samples, from the median of three
+LEAPS, QUICK = 3.0, 99.0  # times a step of this percentile: those of the hardest ramps, hangs themselves are rarer
 MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
 
 
@@ -35,7 +37,8 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         for name, values in own.items():
             others = [each for other, each in changes.items() if other != name]
             lives = name.rpartition(".")[2] in LIVING
-            still = _standing(run.time, values, changes[name], others if lives else [])
+            find = _standing if lives else _hanging
+            still = find(run.time, values, changes[name], others)
             jumping = _jumping(values)
             if still.any():
                 notes.append(f"{run.name}: {name} stands still for {_length(run.time, still):.3g} s; left out")
@@ -51,9 +54,7 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
 def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     """Samples (samples,) that repeat the one before for long, while another channel lives; none of a winch at rest."""
     still = np.zeros(len(values), bool)
-    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
-    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST and values[a] != 0.0]
-    long = [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
+    long = [(a, b) for a, b in _long_spells(time, values, changes) if values[a] != 0.0]
     rest = np.ones(len(changes), bool)
     for a, b in long:
         rest[a : b - 1] = False
@@ -63,6 +64,26 @@ def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others:
         if any(each[a : b - 1].mean() >= LIVES for each in others):
             still[a + 1 : b] = True
     return still
+
+
+def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
+    leaps: a coarse one rests on its digits, and goes on from there by steps.
+    """
+    still, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    moved = steps[np.isfinite(steps) & (steps > 0.0)]
+    for a, b in _long_spells(time, values, changes) if len(moved) else ():
+        leaps = b < len(values) and steps[b - 1] > LEAPS * float(np.percentile(moved, QUICK))
+        if leaps and any(each[a : b - 1].mean() >= LIVES for each in others):
+            still[a + 1 : b] = True
+    return still
+
+
+def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
+    """First sample and end of what is repeated to the last digit for long."""
+    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
+    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST]
+    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
 
 
 def _jumping(values: FloatArray) -> np.ndarray:

@@ -108,7 +108,7 @@ def check(
     """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
     runs, holes = apart(runs)  # block means over days would each be one of minutes, in which nothing moves
     findings, diagnosis = diagnosed(runs, crane, model, others)
-    per_channel = [finding for run in runs for finding in channel_findings(run, crane)]
+    per_channel = [finding for run in runs for finding in channel_findings(run)]
     per_channel += [Finding("note", "gaps", said, "time") for said in holes]
     # a stable sort: the diagnosis stays first among what is equally grave
     findings = sorted([*findings, *per_channel], key=lambda finding: SEVERITIES.index(finding.severity))

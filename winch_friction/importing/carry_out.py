@@ -185,7 +185,7 @@ def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None)
             raise InputError(f"{name}: at: drum needs the crane's gear ratio; give the crane")
         found = type(found)(found.scale * gear ** _AT[channel], found.offset)
     factor = entry.sign * entry.factor
-    return found.scale * factor, found.offset * factor
+    return found.scale * factor, (found.offset + found.scale * entry.add) * factor
 
 
 def _rate(name: str, values: FloatArray, time: FloatArray, cutoff: float) -> FloatArray:

@@ -9,6 +9,7 @@ import numpy as np
 from winch_friction.importing.contradiction import contradictions
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import Match, group_sets, matches
+from winch_friction.importing.layers import ask_layers
 from winch_friction.importing.log import Log, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
@@ -63,6 +64,7 @@ def propose(
     settle_units(draft, found, pooled)
     draft.apply(settings)
     settle_orientation(draft, _said_signs(settings))
+    ask_layers(draft)
     _settle_missing(draft, pooled)
     if crane is not None:
         _settle_contradictions(draft)

@@ -22,6 +22,7 @@ _COMBINATIONS = 300  # of units tried against the torque balance
 _ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")
 _TORQUES = ("pressures", "displacements", "hook_load", "rope_force", "motor_torque")  # what closes the balance
 _AS_WELL = 0.3  # evidence of another unit over the chosen one's from which the log does not tell them apart
+_SLIPS = {"oil_temperature": ("degF",)}  # that a wrong unit may stand for, though none that is said by nothing
 _RARER = 0.6  # prior of each next unit in the order of usual ones
 
 
@@ -93,7 +94,7 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
     column = pooled.column(match.column.name)
     options = plausible_units(column, match.unit, match.slot.channel, draft.crane)
     if match.unit and not options:  # what the log says gives no usual size: which unit would?
-        others = [u for u in usual_units(match.slot.channel) if u != match.unit]
+        others = [u for u in (*usual_units(match.slot.channel), *_SLIPS.get(name, ())) if u != match.unit]
         likely = [u for u in others if plausible_units(column, u, match.slot.channel, draft.crane)]
         likely.sort(key=lambda u: -_closing(draft, {name: u}))  # as usual ones as they close the balance alike
         size = float(np.nanpercentile(np.abs(column.values), 95.0))

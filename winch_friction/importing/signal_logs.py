@@ -17,6 +17,7 @@ from winch_friction.importing.log import Log, LogColumn, listed, number_column, 
 from winch_friction.importing.optional import library
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
+from winch_friction.records.parquet_units import said_units
 
 TIME = "time"  # the name given to the times that a file keeps beside its signals
 _SILENT, _SHORT = 5.0, 1.0  # usual steps and s that a signal may say nothing without a word
@@ -133,7 +134,9 @@ def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
 
 def _parquet(path: Path) -> Found:
     table = library("pyarrow.parquet", "Parquet logs").ParquetFile(path).read()
-    return Found([Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names])
+    units = said_units(table.schema)
+    values = {name: table.column(name).to_numpy(zero_copy_only=False) for name in table.column_names}
+    return Found([Signal(name, each, units.get(name, "")) for name, each in values.items()])
 
 
 def _mat(path: Path) -> Found:

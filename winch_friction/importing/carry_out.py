@@ -9,7 +9,7 @@ import numpy as np
 
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.mapping import Entry, LogMap
-from winch_friction.importing.reading import read_log
+from winch_friction.importing.reading import WORKBOOK, read_log
 from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.units import CHANNEL_UNITS, conversion
 from winch_friction.physics.channels import limits_of
@@ -84,7 +84,7 @@ def open_with_map(path: Path, log_map: LogMap) -> Log:
 
 
 def _is_kind(path: Path, kind: str) -> bool:
-    return (path.suffix.lower() in (".xlsx", ".xlsm")) == (kind == "workbook")
+    return (path.suffix.lower() in WORKBOOK) == (kind == "workbook")
 
 
 def convert(log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True) -> Converted:

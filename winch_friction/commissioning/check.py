@@ -25,6 +25,7 @@ from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypoth
 from winch_friction.commissioning.kinematics import agreements
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.readings import COUNTED, reading_findings
+from winch_friction.commissioning.simulated import simulated_findings
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected
@@ -150,6 +151,7 @@ def diagnosed(
         *_named_crane(runs, crane, others),
         *(each for each in readings if each.cause == COUNTED),
         *slow,
+        *simulated_findings(runs, crane.drive.hydraulic),
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
         *(group_findings(usable, crane, diagnosis.contradicting) if crane.drive.hydraulic else ()),

@@ -63,3 +63,24 @@ def test_a_time_of_too_few_digits_does_not_go_back_by_nothing(tmp_path):
     columns = {**SYMBOLS, "t [s]": 1.7e9 + RUN.time}
     _, found = proposed(tmp_path, columns, digits=6)
     assert found.problems[0].startswith("time: 't [s]' stands still in 100 % of the rows: written with too few digits?")
+
+
+def test_a_unit_that_nobody_knows_is_asked_and_not_guessed_without_a_word(tmp_path):
+    columns = {("Load [fass]" if name == "m_t" else name): each for name, each in SYMBOLS.items()}
+    _, found = proposed(tmp_path, columns)
+    assert found.problems == (
+        "hook_load: 'Load [fass]' says 'fass', which is no unit that is known here; t is guessed from its size: set "
+        "hook_load.unit",
+    )
+    assert not proposed(tmp_path, columns, "hook_load.unit=t")[1].problems
+
+
+NAMES = [("Load [PT101]", 1.0), ("Load (port side)", 1.0), ("Load [sh tn]", 0.90718474)]
+
+
+@pytest.mark.parametrize(("name", "factor"), NAMES)
+def test_a_tag_and_a_remark_are_no_unit_and_short_tons_are_one(tmp_path, name, factor):
+    columns = {key: each for key, each in SYMBOLS.items() if key != "m_t"} | {name: SYMBOLS["m_t"] / factor}
+    path, found = proposed(tmp_path, columns)
+    assert not found.problems
+    assert import_log(path, found.log_map, CRANE)["hook_load"] == pytest.approx(RUN["hook_load"], rel=1e-6)

@@ -8,6 +8,7 @@ import pytest
 from winch_friction.discrepancy.candidates import families as module
 from winch_friction.discrepancy.candidates.candidate import Shape
 from winch_friction.discrepancy.candidates.families import CURVES, FLOW, LEFT, LOAD, SPEED, free_members
+from winch_friction.physics.friction import symbols, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.records.model_file import load_model
 
@@ -87,5 +88,17 @@ def test_of_a_laws_shapes_those_are_tried_that_these_runs_could_show():
 
 def test_a_loss_of_the_flow_through_each_motor_is_a_lines_and_a_ports():
     """By whatever exponent and whichever way: the equations are one, and no run tells the two apart."""
-    causes = {each.name for each in families.literature() if each.law_name == "line_each_motor"}
+    causes = {each.name for each in module.literature() if each.law_name == "line_each_motor"}
     assert causes == {"line_pressure_drop", "port_turbulence"}
+
+
+@pytest.mark.parametrize(("name", "values"), [
+    ("low_displacement_each_way", (3.0, 1.0, 1.0, 2.0)), ("viscosity_each_way", (0.03, 0.01, 40.0)),
+])  # fmt: skip
+def test_a_loss_of_another_amount_each_way_is_three_times_as_much_hoisting(name, values):
+    term = term_named(name)
+    at = {symbols.w: 50.0, symbols.p: 1e7, symbols.D: 1e-5, symbols.X: 3e-5, symbols.oil_temperature: 10.0}
+    at |= dict(zip((p.symbol for p in term.parameters), values, strict=True))
+    up, down = (float(term.equation.subs({**at, symbols.s: way})) for way in (1.0, -1.0))
+    assert up == pytest.approx(3.0 * down)
+    assert down > 0.0

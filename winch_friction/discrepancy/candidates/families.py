@@ -25,7 +25,7 @@ from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.friction.table import FACTORS, Table, outlined, tabulated
 
 TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
-STRIBECK_SPEEDS = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
+STRIBECK = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
@@ -43,10 +43,10 @@ def literature() -> list[Candidate]:
         _of("viscosity_temperature", "viscosity_vogel", {"T_vv": TEMPERATURES, "B_vv": (550.0, 1100.0)}, needs=OIL),
         _of("viscosity_temperature", "viscosity_exponential", {"T_ve": TEMPERATURES, "b_ve": (0.022, 0.045)},
             needs=OIL),
-        _of("viscosity_temperature", "viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK_SPEEDS[1:]},
-            needs=OIL),
-        _of("stribeck", "stribeck_gauss", {"v_g": STRIBECK_SPEEDS}),
-        _of("stribeck", "stribeck_lorentz", {"v_l": STRIBECK_SPEEDS}),
+        _of("viscosity_temperature", "viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK[1:]}, needs=OIL),
+        _of("viscosity_temperature", "viscosity_each_way", {"T_vu": TEMPERATURES}, needs=OIL, continuous=("T_vu",)),
+        _of("stribeck", "stribeck_gauss", {"v_g": STRIBECK}),
+        _of("stribeck", "stribeck_lorentz", {"v_l": STRIBECK}),
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
@@ -54,6 +54,7 @@ def literature() -> list[Candidate]:
         wear("wear_sudden", shapes=friction.between_runs),
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
+        _of("low_displacement_loss", "low_displacement_each_way", {"a_lu": (0.5, 1.0), "b_lu": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
         _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": (-1.0, -0.5, 0.5, 1.0)},
             continuous=("n_po", "m_po")),
@@ -273,9 +274,8 @@ def _resolved(signal: str, runs: Sequence[PreparedRun]) -> float:
 
 
 def _unit(times: tuple[str, ...]) -> str:
-    if times in ((SWASH,), (LEFT,)):
-        return "Pa"  # what a displacement makes a torque of
-    return quotient_unit("N*m", *((FACTORS[name][1], 1.0) for name in times))
+    of_stroke = times in ((SWASH,), (LEFT,))  # which makes a torque of a pressure
+    return "Pa" if of_stroke else quotient_unit("N*m", *((FACTORS[name][1], 1.0) for name in times))
 
 
 def _covered(signal: str, runs: Sequence[PreparedRun]) -> FloatArray:
@@ -288,8 +288,8 @@ def _values(signal: str, run: PreparedRun) -> FloatArray:
     if signal in (PRESSURE, SWASH, LEFT, FLOW, "pressure_sum"):
         own = [np.abs(_of_group(signal, g, run)) for g in run.groups]
         return np.mean(own, axis=0) if own else np.zeros(len(run.time))
-    index = [each.name for each in WINCH_SIGNALS].index(signal)
-    return np.broadcast_to(np.asarray(run.point[index], float), run.time.shape)
+    own = run.point[[each.name for each in WINCH_SIGNALS].index(signal)]
+    return np.broadcast_to(np.asarray(own, float), run.time.shape)
 
 
 def _of_group(signal: str, group: GroupSignals, run: PreparedRun) -> FloatArray:

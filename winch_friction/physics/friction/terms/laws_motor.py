@@ -46,6 +46,7 @@ K_vh, T_vh = _amount("K_vh"), _reference("T_vh")
 C1_h = Parameter(
     "C1_h", "1", 1.5e-5, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque whose speed follows the oil"
 )
+K_vu, K_vd, T_vu = _amount("K_vu"), _amount("K_vd"), _reference("T_vu")
 C4_h = Parameter("C4_h", "rad/s", 20.0, lower=1.0, upper=200.0, shape=True, doc="its speed at the reference")
 
 
@@ -76,6 +77,12 @@ viscosity_hersey = _declare(
     "Vogel 1921; Hersey 1914: the curve is one of viscosity times speed over load, so its speed falls in thick oil",
 )  # fmt: skip
 
+viscosity_each_way = _declare(
+    "viscosity_each_way",
+    (K_vu.symbol * (1 + s) / 2 + K_vd.symbol * (1 - s) / 2) * (_vogel(VOGEL_46, T_vu.symbol) - 1) * w,
+    (K_vu, K_vd, T_vu), "Vogel 1921, of motors that pump one way and drive the other",
+)  # fmt: skip
+
 
 # -- motors and lines
 FULL_SPEED, FULL_PRESSURE = 2000.0 * RPM, 200.0 * BAR  # normalise powers: a factor keeps one unit for every exponent
@@ -86,6 +93,10 @@ _NU_40 = float(walther(40.0))
 c_lp = Parameter("c_lp", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement")
 a_lp = Parameter("a_lp", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="exponent of the pressure")
 b_lp = Parameter("b_lp", "1", 1.0, lower=1.0, upper=5.0, shape=True, doc="exponent of 1 - D/X")
+c_lu = Parameter("c_lu", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement, hoisting")
+c_lo = Parameter("c_lo", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement, lowering")
+a_lu = Parameter("a_lu", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="exponent of the pressure")
+b_lu = Parameter("b_lu", "1", 1.0, lower=1.0, upper=5.0, shape=True, doc="exponent of 1 - D/X")
 K_pp = Parameter("K_pp", "N*m", 10.0, upper=1e3, doc="port loss at 2000 rpm and full displacement")
 n_pp = Parameter("n_pp", "1", 2.0, lower=1.0, upper=4.0, shape=True, doc="exponent of the speed")
 m_pp = Parameter("m_pp", "1", 2.0, lower=1.0, upper=5.0, shape=True, doc="exponent of the displacement")
@@ -137,6 +148,12 @@ _p, _w, _x = p / FULL_PRESSURE + _TINY, w / FULL_SPEED + _TINY, D / X
 low_displacement_power = _motor(
     "low_displacement_power", c_lp.symbol * _p**a_lp.symbol * (sp.Abs(1 - _x) + _TINY) ** b_lp.symbol,
     (c_lp, a_lp, b_lp), "paper 2 section 5, with the exponents left open",
+)  # fmt: skip
+low_displacement_each_way = _motor(
+    "low_displacement_each_way",
+    (c_lu.symbol * (1 + s) / 2 + c_lo.symbol * (1 - s) / 2)
+    * _p**a_lu.symbol * (sp.Abs(1 - _x) + _TINY) ** b_lu.symbol,
+    (c_lu, c_lo, a_lu, b_lu), "paper 2 section 5, of motors that pump one way and drive the other",
 )  # fmt: skip
 port_power = _motor(
     "port_power", K_pp.symbol * _w**n_pp.symbol * _x**m_pp.symbol, (K_pp, n_pp, m_pp),

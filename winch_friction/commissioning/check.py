@@ -31,10 +31,9 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.parts import apart
-from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.strict_yaml import config_directory, read_yaml
+from winch_friction.records.unmeasured import apart
 
 # -- runs against each other
 FEWEST = 3  # runs of a motor group, for most of them to say what is usual
@@ -132,16 +131,17 @@ def quick_check(
 
 
 def diagnosed(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None
-) -> tuple[list[Finding], Diagnosis]:
-    """The findings of `quick_check` and the diagnosis behind them."""
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None,
+    ranked: bool = False,
+) -> tuple[list[Finding], Diagnosis]:  # fmt: skip
+    """The findings of `quick_check` and the diagnosis behind them, with its mistakes `ranked` whatever they tell."""
     others = shipped_cranes() if others is None else others
     known = {name: each for name, each in others.items() if each != crane}
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
     views = views_of([corrected(run, crane, model) if model is not None else (run, crane) for run in usable])
-    diagnosis = diagnose(views, crane, model, known)
+    diagnosis = diagnose(views, crane, model, known, ranked)
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
     findings = [

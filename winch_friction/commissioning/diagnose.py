@@ -110,27 +110,33 @@ def _kinematics(view: RunView) -> tuple[int, int, int, float]:
 
 
 def diagnose(
-    views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane]
-) -> Diagnosis:
-    """Score the runs as they stand; when they contradict the crane, under every mistake, else under the sure ones."""
+    views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane],
+    ranked: bool = False,
+) -> Diagnosis:  # fmt: skip
+    """Score the runs as they stand; when they contradict the crane, under every mistake, else under the sure ones.
+
+    Where no mistake could take enough away to be named none is tried, unless they are to be `ranked` all the same.
+    """
     closures = tuple(closure(view, model) for view in views)
     balance = [each.score for each in closures]
     scores = np.array([b + _beside_balance(view) for b, view in zip(balance, views, strict=True)])
-    bench = _Bench(views, scores, model)
+    total, names = float(scores.sum()), tuple(view.name for view in views)
     contradict = bool((scores > CONTRADICTS).any())
+    if not (ranked or contradict or total >= SURE):
+        return Diagnosis(total, tuple(scores.tolist()), (), closures, names)
+    bench = _Bench(views, scores, model)
     mistakes = [each for each in fixed_mistakes(views, crane, others) if contradict or _is_sure(each)]
     mistakes += [delayed(sign * d, crane.drive.hydraulic) for d in DELAYS for sign in (1.0, -1.0)]
     if contradict:
         mistakes += _free([v for v, s in zip(views, scores, strict=True) if s > CONTRADICTS])
-    mistakes += _companions(views) if contradict or scores.sum() > SURE else []
+    mistakes += _companions(views) if contradict or total > SURE else []
     hypotheses = bench.ranked(mistakes)
     if contradict and (not hypotheses or max(hypotheses[0].scores) > CONTRADICTS):
         firsts = [each.mistake for each in hypotheses[:FIRSTS]]
         pairs = [*common_pairs(mistakes), *_beside(firsts, mistakes, views)]
         found = [each for each in bench.ranked(pairs, PAIR_RUNS) if max(each.scores) < CONTRADICTS]
         hypotheses = sorted([*found, *hypotheses], key=lambda each: each.score)
-    names = tuple(view.name for view in views)
-    return Diagnosis(float(scores.sum()), tuple(scores.tolist()), tuple(hypotheses), closures, names)
+    return Diagnosis(total, tuple(scores.tolist()), tuple(hypotheses), closures, names)
 
 
 def _beside(firsts: Sequence[Mistake], mistakes: Sequence[Mistake], views: Sequence[RunView]) -> list[Mistake]:

@@ -35,8 +35,7 @@ from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLI
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.broken_samples import without_broken
-from winch_friction.records.parts import apart
+from winch_friction.records.unmeasured import apart, without_broken
 
 # -- names that one law outdoes
 
@@ -217,7 +216,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     refuse(runs, options.holdout, options.seed)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
-    parts, broken = without_broken(parts)
+    parts, found = without_broken(parts)
+    broken = [f"{each.sentence}; left out" for each in found]
     every = against_simulations([thinned(run) for run in parts], model, crane)
     runs, notes = adequacy.long_enough(every)
     notes = [*holes, *broken, *notes]

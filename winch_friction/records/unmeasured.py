@@ -1,4 +1,5 @@
-"""Samples that no sensor measured: a channel that stands still while the others live, and single ones that jump.
+"""What of a log nobody measured: the silence between records that were merged into one file, and samples of a channel
+that stands still while the others live, or jumps. For `gap` and `check` alike.
 
 A transmitter that hangs repeats its last value to the last digit; a lost telegram is one sample of 0 or of full scale.
 They are made missing, which every reader knows how to leave out, and said.
@@ -6,13 +7,46 @@ They are made missing, which every reader knows how to leave out, and said.
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run
 
+# -- holes
+NO_PAUSE = 1e9  # s, thirty years: a clock that is wrong, which `check` says
+SLOW = 10.0  # usual steps; a time in ms under [s] has steps of 20 s, and no hole where one is lost
+NO_RECORD = 1.0  # s; less is no record of a winch at work
+LONGEST_HOLE = 30.0  # s without a sample, after which a record is another run: half the time a swing takes
+
+
+def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
+    """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
+    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
+    found, notes = list[Run](), list[str]()
+    for run in runs:
+        steps = np.diff(run.time)
+        ends = np.flatnonzero(steps > max(LONGEST_HOLE, SLOW * float(np.median(steps)) if len(steps) else 0.0)) + 1
+        bounds = itertools.pairwise([0, *ends.tolist(), len(run)])
+        whole = [(a, b) for a, b in bounds if run.time[b - 1] - run.time[a] >= NO_RECORD]
+        # a log of a sample a minute is a slow one, and not full of holes
+        if not len(ends) or not whole or steps.max() > NO_PAUSE:
+            found.append(run)
+            continue
+        found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
+        longest = float(steps.max())
+        notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
+    return found, notes
+
+
+def _part(run: Run, name: str, start: int, end: int) -> Run:
+    columns = {each: values[start:end] for each, values in run.columns.items()}
+    aside = {each: values[start:end] if len(values) == len(run) else values for each, values in run.aside.items()}
+    return replace(run, name=name, columns=columns, aside=aside)
+
+
+# -- samples that no sensor measured
 # what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds
 LIVING = (
     "pressure_a", "pressure_b", "motor_torque", "mechanical_power", "motor_current", "rope_force", "load_torque",
@@ -25,27 +59,42 @@ JUMPS = 20.0  # usual steps between samples, from the median of three
 MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
 
 
-def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
+@dataclass(frozen=True)
+class Broken:
+    """Samples of one channel of a run that no sensor measured, and what they do."""
+
+    run: str
+    channel: str
+    what: str
+
+    @property
+    def sentence(self) -> str:
+        """In words, with run and channel."""
+        return f"{self.run}: {self.channel} {self.what}"
+
+
+def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
     """The runs with what nobody measured as NaN, and what is said of these."""
-    found, notes = list[Run](), list[str]()
+    found, told = list[Run](), list[Broken]()
     for run in runs:
         own = {name: run[name] for name in run.columns if name.rpartition(".")[2] in MEASURED}
         changes = {name: np.abs(np.diff(values)) > 0.0 for name, values in own.items()}
         mended = dict(run.columns)
         for name, values in own.items():
             others = [each for other, each in changes.items() if other != name]
-            lives = name.rpartition(".")[2] in LIVING
-            still = _standing(run.time, values, changes[name], others if lives else [])
-            jumping = _jumping(values)
-            if still.any():
-                notes.append(f"{run.name}: {name} stands still for {_length(run.time, still):.3g} s; left out")
+            broken = jumping = _jumping(values)
+            if name.rpartition(".")[2] in LIVING:
+                still = _standing(run.time, values, changes[name], others)
+                broken = still | jumping
+                if still.any():
+                    told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
             if jumping.any():
                 samples = counted(int(jumping.sum()), "single sample", "single samples")
-                notes.append(f"{run.name}: {name} jumps in {samples}; left out")
-            if (still | jumping).any():
-                mended[name] = np.where(still | jumping, np.nan, values)
+                told.append(Broken(run.name, name, f"jumps in {samples}"))
+            if broken.any():
+                mended[name] = np.where(broken, np.nan, values)
         found.append(replace(run, columns=mended))
-    return found, notes
+    return found, told
 
 
 def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:

@@ -80,8 +80,8 @@ def motor(
     from winch_friction.identification.supplier_file import read_supplier_table
     from winch_friction.identification.supplier_table import FitRange
     from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
-    from winch_friction.records.atomic import shipped
     from winch_friction.records.model_file import save_model
+    from winch_friction.records.strict_yaml import shipped
 
     path = shipped("suppliers", table, ".csv")
     refuse_other_kind(out, MODEL, "a model")
@@ -269,7 +269,7 @@ def practice(
 
 
 def _example(path: Path) -> Path:
-    from winch_friction.records.atomic import config_directory
+    from winch_friction.records.strict_yaml import config_directory
 
     shipped = config_directory() / "examples" / path
     return shipped if not path.exists() and shipped.is_dir() else path

@@ -6,20 +6,22 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates import signals as module
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
-from winch_friction.discrepancy.candidates.catalogue import of_one_group
-from winch_friction.discrepancy.candidates.groups import (
+from winch_friction.discrepancy.candidates.candidate import (
     ALL,
     ALONE,
     BALANCING,
     BESIDE,
     OTHER,
+    ParameterEstimate,
+    Shape,
+    Sides,
     driving_alone,
     group_columns,
     group_shapes,
     groups_of,
     own_group_shapes,
 )
+from winch_friction.discrepancy.candidates.catalogue import of_one_group
 from winch_friction.discrepancy.candidates.signals import (
     DELAYS,
     PRESSURES,

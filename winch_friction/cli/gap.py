@@ -203,7 +203,7 @@ def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[
 def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
     """For a user's own simulation: what it has to add, as a table."""
     from winch_friction.discrepancy.addition import write_addition
-    from winch_friction.discrepancy.preparation.prepared_run import simulated_column
+    from winch_friction.discrepancy.preparation.own_simulation import simulated_column
 
     if runs and simulated_column(runs[0]):
         sides = [*result.train.runs, *result.holdout.runs]

@@ -140,7 +140,8 @@ def diagnosed(
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
-    views = views_of([corrected(run, crane, model) if model is not None else (run, crane) for run in usable])
+    own = model if model is not None and model.corrections else None
+    views = views_of([(run, crane) if own is None else corrected(run, crane, own) for run in usable])
     diagnosis = diagnose(views, crane, model, known, ranked)
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
@@ -160,8 +161,7 @@ def diagnosed(
 
 def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
     """What the balance says: of a hydraulic winch it is known what friction is ordinary; of another drive, whose
-    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing.
-    """
+    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing."""
     if crane.drive.hydraulic:
         return findings
     return [replace(each, severity="warning") if each.contradicts else each for each in findings]

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 
 NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of

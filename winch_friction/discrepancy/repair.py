@@ -8,8 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import CUT, Candidate, Estimates, ParameterEstimate, Sides
-from winch_friction.discrepancy.candidates.groups import driving_alone
+from winch_friction.discrepancy.candidates.candidate import (
+    CUT,
+    Candidate,
+    Estimates,
+    ParameterEstimate,
+    Sides,
+    driving_alone,
+)
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -250,8 +256,7 @@ def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple
     scale = base.scale[keep]
     excess = max(fitted.train_loss / max(float(cross.problem.grams.count.sum()), 1.0), 1.0)
     covariance = cross.covariance(fitted)[np.ix_(keep, keep)] * excess
-    # no parameter is less certain after the fit than before it
-    shrink = np.minimum(1.0, 1.0 / np.sqrt(np.diag(covariance)))
+    shrink = np.minimum(1.0, 1.0 / np.sqrt(np.diag(covariance)))  # none is less certain after the fit than before it
     covariance = covariance * np.outer(shrink, shrink) * np.outer(scale, scale)
     return fitted.beta[keep] * scale, covariance[:count, :count], np.sqrt(np.diag(covariance)[count:])
 

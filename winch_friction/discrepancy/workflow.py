@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy import adequacy
+from winch_friction.discrepancy.adequacy import Split, lock_holdout, refuse
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -22,9 +23,8 @@ from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
-from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
 from winch_friction.discrepancy.preparation.grid import thinned
-from winch_friction.discrepancy.preparation.prepared_run import against_simulations
+from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
@@ -218,7 +218,9 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
     parts, found = without_broken(parts)
     broken = [f"{each.sentence}; left out" for each in found]
-    every = against_simulations([thinned(run) for run in parts], model, crane)
+    every = [thinned(run) for run in parts]
+    if any(name.endswith(SIMULATED) for run in every for name in run.columns):
+        every = against_simulations(every, model, crane)
     runs, notes = adequacy.long_enough(every)
     notes = [*holes, *broken, *notes]
     checks = adequacy.of_records(every, runs)

@@ -19,7 +19,7 @@ from winch_friction.discrepancy.detectors.angle_spectrum import (
     strongest_line,
 )
 from winch_friction.discrepancy.preparation.grid import samples_of, smooth
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane

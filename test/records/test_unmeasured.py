@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.signals import Run
-from winch_friction.records.unmeasured import without_broken
+from winch_friction.records.runs import without_broken
 
 TIME = 0.02 * np.arange(3000)
 

@@ -141,8 +141,8 @@ def system(
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
     from winch_friction.physics.errors import Problems
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import save_model
-    from winch_friction.records.runs import bag_options_of
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     refuse_other_kind(out, MODEL, "a model")

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.unmeasured import NO_RECORD
+from winch_friction.records.runs import NO_RECORD
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"

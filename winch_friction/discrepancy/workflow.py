@@ -35,7 +35,7 @@ from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLI
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.unmeasured import apart, without_broken
+from winch_friction.records.runs import apart, without_broken
 
 # -- names that one law outdoes
 

@@ -16,7 +16,8 @@ from winch_friction.discrepancy.candidates.candidate import (
     Sides,
     driving_alone,
 )
-from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.detectors.ripple import TERM, Ripple
+from winch_friction.discrepancy.detectors.ripple_waves import in_phase
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -125,23 +126,19 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         found = estimates_of(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
         _add(own, finding.slot, found, sides, seed)
-    if (
-        search.ripple
-        and angle.TERM not in seed.term_names
-        and (wave := _common_wave(search, search.ripple)) is not None
-    ):
-        own.add_term(None, term_named(angle.TERM), wave)
+    if search.ripple and TERM not in seed.term_names and (wave := _common_wave(search, search.ripple)) is not None:
+        own.add_term(None, term_named(TERM), wave)
     for lost in search.flow:
         for each in lost.corrections:
             own.add_correction(each)
     return replace(_model_of(own, seed, search.given.crane, parameters, provenance), said=said)
 
 
-def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:
+def _common_wave(search: Search, ripple: Ripple) -> dict[str, ParameterEstimate] | None:
     pairs = list(zip(search.given.runs, search.expansion.runs, strict=True))
     # what has been found so far is not in the expansion's prediction; it is slow against a ripple
     training = [(run, p) for run, p in pairs if p.name in search.train]
-    return angle.in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
+    return in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
 
 
 def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: FrictionModel) -> None:

@@ -21,8 +21,8 @@ from winch_friction.commissioning.channels import (
     runs_say,
     told_slow_clock,
 )
-from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
-from winch_friction.commissioning.kinematics import agreements
+from winch_friction.commissioning.diagnose import Diagnosis, Hypothesis, diagnose
+from winch_friction.commissioning.kinematics import CONTRADICTS, Fit, agreements, fit_of
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
@@ -32,8 +32,8 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
+from winch_friction.records.runs import apart
 from winch_friction.records.strict_yaml import config_directory, read_yaml
-from winch_friction.records.unmeasured import apart
 
 # -- runs against each other
 FEWEST = 3  # runs of a motor group, for most of them to say what is usual
@@ -125,24 +125,24 @@ def quick_check(
     """What speaks against these runs being this crane's, the likeliest mistake first; below a second for a dozen runs.
 
     `others` are cranes that the runs might be of instead, by name (default: the shipped ones). An empty list, or one
-    without an `error`, means that ordinary friction and ordinary sensor errors explain the runs.
-    """
+    without an `error`, means that ordinary friction and ordinary sensor errors explain the runs."""
     return diagnosed(apart(runs)[0], crane, model, others)[0]
 
 
 def diagnosed(
     runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None,
     ranked: bool = False,
-) -> tuple[list[Finding], Diagnosis]:  # fmt: skip
-    """The findings of `quick_check` and the diagnosis behind them, with its mistakes `ranked` whatever they tell."""
+) -> tuple[list[Finding], Fit]:  # fmt: skip
+    """The findings of `quick_check` and how the runs fit: diagnosed where they are doubted or `ranked`."""
     others = shipped_cranes() if others is None else others
     known = {name: each for name, each in others.items() if each != crane}
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
     own = model if model is not None and model.corrections else None
-    views = views_of([(run, crane) if own is None else corrected(run, crane, own) for run in usable])
-    diagnosis = diagnose(views, crane, model, known, ranked)
+    views = views_of([corrected(run, crane, own) if own else (run, crane) for run in usable])
+    fit = fit_of(views, model)
+    diagnosis = diagnose(fit, views, crane, model, known) if ranked or fit.doubted else None
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
     findings = [
@@ -150,13 +150,13 @@ def diagnosed(
         *slow,
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
-        *(group_findings(usable, crane, diagnosis.contradicting) if crane.drive.hydraulic else ()),
-        *(() if slow else _trusted(_mistake(diagnosis, crane), crane)),
+        *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
+        *(() if slow or diagnosis is None else _trusted(_mistake(diagnosis, crane), crane)),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
-    return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis
+    return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis or fit
 
 
 def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:

@@ -14,15 +14,15 @@ from winch_friction.commissioning.channels import (
     summaries,
 )
 from winch_friction.commissioning.check import diagnosed
-from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
+from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
-from winch_friction.commissioning.kinematics import Agreement, agreements
+from winch_friction.commissioning.kinematics import CONTRADICTS, Agreement, agreements
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.unmeasured import apart, without_broken
+from winch_friction.records.runs import apart, without_broken
 
 SCHEMA = "winch_friction.check/1"
 
@@ -108,6 +108,7 @@ def check(
     """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
     runs, holes = apart(runs)  # block means over days would each be one of minutes, in which nothing moves
     findings, diagnosis = diagnosed(runs, crane, model, others, ranked=True)
+    assert isinstance(diagnosis, Diagnosis)
     broken = [
         Finding("warning", "broken", f"{each.sentence}: nobody measured that", each.channel, (each.run,))
         for each in without_broken(runs)[1]

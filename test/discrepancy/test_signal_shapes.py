@@ -92,12 +92,12 @@ def test_the_driving_group_of_hoisting_and_that_of_heave_compensation_may_be_off
 def test_a_group_that_drives_in_either_mode_has_one_pair_of_transducers():
     both = [run((group(3, True, name="active"),)), run()]
     assert own_group_shapes(both) == own_group_shapes(both[:1]) == []
-    assert of_one_group(both, None) == []
+    assert of_one_group(both) == []
     hoist = run((group(11, True),))
-    assert [each.name for each in of_one_group([hoist, *both[1:]], None)] == [
+    assert [each.name for each in of_one_group([hoist, *both[1:]])] == [
         "pressure_offset", "pressure_scale", "swivel_offset",
     ]  # fmt: skip
-    assert len(of_one_group([hoist, *both[1:]], None)[1].shapes([])) == 4
+    assert len(of_one_group([hoist, *both[1:]])[1].shapes([])) == 4
 
 
 def test_a_gain_of_port_a_takes_the_pressure_of_port_a_alone():

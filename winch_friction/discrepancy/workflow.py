@@ -66,7 +66,7 @@ def by_groups(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng
     """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
     the locked runs to their floor, and the others near theirs."""
     given = trial.search.given
-    own = of_one_group(given.prepared, given.model)
+    own = of_one_group(given.prepared)
     search = search_runs(split, given, replace(options, candidates=tuple(own)), rng) if own else None
     if search is None or not search.selection.found:
         return trial

@@ -120,7 +120,7 @@ def candidates_for(
     return [*all_candidates(effects_file), *own]
 
 
-def of_one_group(runs: Sequence[PreparedRun], _: FrictionModel) -> list[Candidate]:
+def of_one_group(runs: Sequence[PreparedRun]) -> list[Candidate]:
     """Zero and gain errors of one driving group alone, where there are two: whatever hoisting and heave compensation
     differ by looks a little like one, so they are for what nothing else explains."""
     own = own_group_shapes(runs)

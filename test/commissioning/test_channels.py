@@ -150,5 +150,5 @@ def test_an_angle_that_stands_with_the_winch_is_not_stuck(during, stuck, crane_1
     rest = (time > 15.0) & (time < 20.0)
     speed = np.where(rest, during, 30.0 + np.sin(time))
     angle = np.cumsum(np.where(rest, 0.0, speed)) * 0.02
-    found = channel_findings(Run("r", {"time": time, "motor_speed": speed, "shaft_angle": angle}), crane_150t)
+    found = channel_findings(Run("r", {"time": time, "motor_speed": speed, "shaft_angle": angle}))
     assert [each.channel for each in found if each.cause == "stuck" and each.channel == "shaft_angle"] == stuck

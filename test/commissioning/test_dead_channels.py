@@ -79,7 +79,7 @@ def test_a_speed_that_stands_at_zero_is_a_rest_and_at_another_value_is_stuck(run
     speed = run["motor_speed"] + 1e-3 * np.random.default_rng(0).standard_normal(len(run))
     rests = np.where((run.time > 20.0) & (run.time < 26.0), stands_at, speed)
     columns = {name: rests if name == "motor_speed" else run[name] for name in run.columns}
-    found = [each for each in channel_findings(replace(run, columns=columns), CRANE) if each.cause == "stuck"]
+    found = [each for each in channel_findings(replace(run, columns=columns)) if each.cause == "stuck"]
     assert len(found) == said
 
 

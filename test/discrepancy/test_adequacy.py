@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import Check, long_enough, of_prepared, of_records
+from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
@@ -39,6 +39,28 @@ def test_each_direction_is_counted_by_itself_and_of_the_training_runs_alone():
     assert found["moving time"].value == pytest.approx(21.0)
     assert found["moving time of the locked runs"].value == pytest.approx(36.0)
     assert found["reversals"].value == 1.0
+
+
+@pytest.mark.parametrize(("felt", "heave", "sides", "silent"), [
+    (0.0, False, 2, True),  # the motors feel none of what a load would take that moves with the wire
+    (1.0, False, 2, False),  # the crane stands still, as the format says
+    (0.0, True, 2, False),
+    (0.0, False, 1, False),  # hoisting, where an inertia may be wrong
+])  # fmt: skip
+def test_heave_compensation_that_does_not_say_how_the_crane_moved_cannot_answer(felt, heave, sides, silent):
+    """A gap that is the load's inertia, which the balance takes off, is no friction."""
+    run = prepared("a", 20.0, 20.0)
+    swell = np.sin(0.7 * run.time)
+    run.groups, run.radius, run.gear_ratio = (
+        (SimpleNamespace(balances=True, displacement=np.ones(1)),) * sides,
+        0.8,
+        100,
+    )
+    run.load_acceleration, run.channels = swell, {"heave_velocity": swell} if heave else {}
+    run.gap = (felt - 1.0) * run.load * 0.8 / 100 * swell + 40.0 * run.direction
+    found = checked(run, prepared("b", 6.0, 30.0))
+    assert (HEAVE in found) == silent
+    assert not silent or (found[HEAVE].value, found[HEAVE].needed, found[HEAVE].met) == (0.0, 1.0, False)
 
 
 def test_speeds_and_temperatures_are_judged_by_how_far_they_reach():

@@ -108,8 +108,11 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     runs = [SimpleNamespace(name=f"run_{k}", start=1e9 - 600.0 * k, time=np.array([0.0, 60.0])) for k in range(8)]
     brake = next(each for each in run_states.shipped_friction() if each.name == "brake_drag" and not each.law_name)
     model = SimpleNamespace(term_names=tuple(brake.presumes))
-    (found,) = run_states.another_in_each_run({"run_0", "run_3"}, runs, model)
+    found, worn = run_states.another_in_each_run({"run_0", "run_3"}, runs, model)
     assert asked == [[name in ("run_0", "run_3") for name in (run.name for run in runs)]]
+    # every run has a date of its own, so that what wears by any law of it, as to a new seal, is one with a brake
+    assert (found.name, worn.name) == ("brake_drag", "wear_drift")
+    assert worn.term.table.weights == found.term.table.weights
     # by date, which here runs backwards, and none that drives
     assert found.term.table.weights == (0.25, 0.5, 0.75, 0.25, 0.5, 1.0, 0.0, 0.125)
     windows = found.term.table.knots[0][1]

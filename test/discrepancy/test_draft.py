@@ -134,6 +134,15 @@ def test_laws_that_close_much_less_than_the_best_are_not_proposed(monkeypatch):
     assert [each.after for each in found] == [0.8, 0.7]
 
 
+def test_a_law_that_closes_little_of_the_locked_gap_is_not_proposed(monkeypatch):
+    """Of 2 bar with a noise of 0.5 bar: 30 % of the square above the noise is what 1.7 bar leaves."""
+    assert [proposal(left).worthwhile for left in (1.75, 1.65, 0.5)] == [False, True, True]
+    monkeypatch.setattr(proposals, "_laws", lambda *_: [(None, 0.0)])
+    monkeypatch.setattr(proposals, "_proven", lambda *_: proposal(1.9))
+    search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
+    assert proposals.propose(SimpleNamespace(search=search), (), None, None, np.random.default_rng(0)) == ()
+
+
 @pytest.mark.parametrize(
     ("signals", "loss", "weight", "own"),
     [

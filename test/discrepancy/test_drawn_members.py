@@ -87,5 +87,5 @@ def test_of_a_laws_shapes_those_are_tried_that_these_runs_could_show():
 
 def test_a_loss_of_the_flow_through_each_motor_is_a_lines_and_a_ports():
     """By whatever exponent and whichever way: the equations are one, and no run tells the two apart."""
-    causes = {each.name for each in families.literature() if each.law_name == "line_each_motor"}
+    causes = {each.name for each in module.literature() if each.law_name == "line_each_motor"}
     assert causes == {"line_pressure_drop", "port_turbulence"}

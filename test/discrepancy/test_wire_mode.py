@@ -319,7 +319,8 @@ def test_what_all_runs_leave_tells_a_ratio_from_dampers_that_are_alike_by_chance
     seas = [(1.0 + 0.2 * k, 2e4 / (2.0 * (1.0 + 0.2 * k) * 3e4), 3e4) for k in range(5)]
     left = [left_by_ringing(0.05, 0.005)] * 5 + [FOLLOWED_BY_ANY] * 5
     found = shared_damping(calm + seas, left)
-    assert found(3.0, 1e4) == pytest.approx(0.05) and found(1.0, 3e4) == pytest.approx(0.05)
+    assert found(3.0, 1e4) == pytest.approx(0.05)
+    assert found(1.0, 3e4) == pytest.approx(0.05)
 
 
 def test_runs_that_ring_down_to_nothing_say_more_than_seas_that_any_damping_follows():

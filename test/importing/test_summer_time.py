@@ -70,3 +70,24 @@ def test_a_timestamp_that_is_missing_is_no_time():
     found = to_seconds([column], TimeBase("datetime", order="ymd"), "log", str)
     assert np.isnan(found[1])
     assert found[2] - found[0] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("start", "zone", "asked"),
+    [
+        (SPRING, "Europe/Oslo", True),
+        (dt.datetime(2026, 3, 8, 6, 59, 50, tzinfo=dt.UTC), "America/New_York", True),
+        (SPRING, "UTC", False),
+        (SPRING - dt.timedelta(hours=12), "Asia/Dubai", False),
+    ],
+)
+def test_an_hour_that_lacks_in_the_night_of_the_change_is_asked_for_its_zone(start, zone, asked):
+    guess = guess_time([local(start, np.arange(0.0, 20.0, 0.5), zone)], "")
+    assert ("leaps by an hour at row 21, in the small hours of a Sunday" in guess.question) == asked
+
+
+@pytest.mark.parametrize(("day", "hour", "asked"), [(29, 1, True), (28, 1, False), (29, 9, False)])
+def test_a_logger_that_rested_for_an_hour_at_another_time_is_not(day, hour, asked):
+    begin = dt.datetime(2026, 3, day, hour, 59, 50, tzinfo=dt.UTC)
+    given = np.concatenate([np.arange(0.0, 10.0, 0.5), np.arange(3610.0, 3620.0, 0.5)])
+    assert bool(guess_time([local(begin, given, "UTC")], "").question) == asked

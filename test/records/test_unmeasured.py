@@ -33,7 +33,7 @@ def mended(run):
 def test_what_lives_is_left_alone():
     """Steps of friction, a constant setting, a load of one number, a speed that rests on its digits."""
     assert mended(log()) == ({}, [])
-    assert mended(log(motor_speed=(slice(500, 700), 40.0))) == ({}, [])
+    assert mended(log(motor_speed=(slice(500, 560), 45.0))) == ({}, [])
 
 
 def test_a_pressure_that_stands_still_beside_one_that_lives_was_not_measured():
@@ -67,3 +67,18 @@ def test_single_samples_that_jump_are_lost_telegrams(value):
 
 def test_what_jumps_in_more_than_one_of_a_hundred_is_how_the_sensor_is():
     assert mended(log(main__pressure_a=(slice(10, None, 50), 0.0)))[0] == {}
+
+
+def test_a_speed_that_hangs_leaps_when_it_wakes_and_one_that_rests_does_not():
+    speed = np.round(50.0 * np.sin(0.1 * TIME), 2)
+    hung = log(motor_speed=(slice(0, None), speed))
+    hung.columns["motor_speed"][500:700] = speed[500]  # 4 s, in which the winch goes on by 7 rad/s
+    assert mended(hung) == ({"motor_speed": 199}, ["r.csv: motor_speed stands still for 3.98 s"])
+    gone = log(motor_speed=(slice(0, None), speed))
+    gone.columns["motor_speed"][500:700] = 0.0  # read as nothing at full speed
+    assert mended(gone)[0] == {"motor_speed": 199}
+    held = log(motor_speed=(slice(0, None), np.round(np.clip(speed, -20.0, 20.0), 2)))  # the joystick at its end stop
+    assert mended(held) == ({}, [])
+    begun = np.where(TIME < 10.0, 0.0, np.round(20.0 - 20.0 * np.cos(TIME - 10.0), 1))
+    started = log(motor_speed=(slice(0, None), begun))
+    assert mended(started) == ({}, [])

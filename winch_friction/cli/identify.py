@@ -79,6 +79,7 @@ def motor(
     from winch_friction.identification.motor_models import MOTOR_MODELS
     from winch_friction.identification.supplier_file import read_supplier_table
     from winch_friction.identification.supplier_table import FitRange
+    from winch_friction.identification.table_remarks import remarks_on
     from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
     from winch_friction.records.model_file import save_model
     from winch_friction.records.strict_yaml import shipped
@@ -108,7 +109,7 @@ def motor(
     )
     fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
     save_model(fitted, out)
-    show_warnings(filter(None, [inside.left_out(data)]))
+    show_warnings(filter(None, [inside.left_out(data), *remarks_on(found)]))
     show_motor(found, fitted, out, json)
 
 
@@ -239,6 +240,7 @@ def practice(
     from winch_friction.cli.inputs import provenance_of, refuse_copies, refuse_implausible
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.identification.supplier_table import FitRange
+    from winch_friction.identification.table_remarks import remarks_on
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
@@ -254,7 +256,7 @@ def practice(
         progress=progress,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
     )
-    show_warnings(filter(None, [FitRange.usual(folder.table).left_out(folder.table)]))
+    show_warnings(filter(None, [FitRange.usual(folder.table).left_out(folder.table), *remarks_on(done.motor)]))
     files = sorted(each for each in _example(example).iterdir() if each.is_file())
     write_practice_report(done, out / "report.html", provenance_of(files, folder.crane.name, seed=seed) | forced)
     save_model(done.motor_seed, out / "motor.yaml")

@@ -15,8 +15,8 @@ HELP = """Bring logs of any origin into run files.
 
 First propose a map: what each column is, in which unit, sign and zone, with reason and confidence. Read it (change it
 in an editor, or with --set), then import.
-Logs may be .csv .txt .tsv .asc .log .prn .lvm (also .gz, .zip), .xlsx .xlsm, .parquet, .mat, .tdms, .mf4 .mdf, .mcap,
-    .db3 or a rosbag2 folder.
+Logs may be .csv .txt .tsv .dat .asc .log .prn .lvm (also .gz, .zip), .xlsx .xlsm .xls .xlsb .ods, .parquet, .mat,
+    .h5, .tdms, .mf4 .mdf, .mcap, .db3 or a rosbag2 folder.
 
 Examples:
 

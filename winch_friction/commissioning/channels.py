@@ -83,7 +83,6 @@ UNEVEN = 0.3  # of the usual step: scatter of the steps beyond which the clock i
 COARSE = 200.0  # steps over a channel's range; fewer are coarse
 SATURATED = 0.02  # of the samples at one extreme value of a moving channel
 STUCK = 3.0  # s without any change in a channel that otherwise changes at every sample
-HOT = (-20.0, 95.0)  # degC, oil outside is unusual
 MAY_SATURATE = ("pressure_a", "pressure_b", "motor_speed", "motor_torque", "motor_current")
 MAY_STAND = ("hook_load", "wire_layer", "oil_temperature", "displacement", "wire_out", "speed_reference")
 
@@ -215,20 +214,11 @@ def frozen_findings(run: Run) -> Iterator[Finding]:
             yield Finding("error", "stuck", said, held, (run.name,))
 
 
-def channel_findings(run: Run, crane: Crane) -> Iterator[Finding]:
+def channel_findings(run: Run) -> Iterator[Finding]:
     """What deserves a look in the channels of one run; nothing of it contradicts the crane."""
     for each in summaries(run):
         kind = each.channel.rpartition(".")[2]
         yield from _span_findings(run, each, kind)
-        if kind == "wire_layer" and not (crane.drum.has(each.smallest) and crane.drum.has(each.largest)):
-            layers = len(crane.drum.layer_radii)
-            said = (
-                f"{run.name}: wire_layer is {each.smallest:g} ... {each.largest:g}, the drum has layers 1 ... {layers}"
-            )
-            yield Finding("error", "range", said, each.channel, (run.name,))
-        if kind == "oil_temperature" and not (HOT[0] <= each.smallest and each.largest <= HOT[1]):
-            said = f"{run.name}: oil of {each.smallest:.3g} ... {each.largest:.3g} degC; is it degF or kelvin?"
-            yield Finding("warning", "range", said, each.channel, (run.name,))
         if each.missing > 0.0:
             said = f"{run.name}: {each.channel} has no value in {100 * each.missing:.2g} % of the samples"
             yield Finding("note", "missing", said, each.channel, (run.name,), {"share": each.missing})

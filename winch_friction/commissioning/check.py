@@ -24,6 +24,8 @@ from winch_friction.commissioning.channels import (
 from winch_friction.commissioning.diagnose import Diagnosis, Hypothesis, diagnose
 from winch_friction.commissioning.kinematics import CONTRADICTS, Fit, agreements, fit_of
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
+from winch_friction.commissioning.readings import COUNTED, reading_findings
+from winch_friction.commissioning.simulated import simulated_findings
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected
@@ -145,13 +147,17 @@ def diagnosed(
     diagnosis = diagnose(fit, views, crane, model, known) if ranked or fit.doubted else None
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
+    readings = [*reading_findings(runs, crane)]
     findings = [
         *_named_crane(runs, crane, others),
+        *(each for each in readings if each.cause == COUNTED),
         *slow,
+        *simulated_findings(runs, crane.drive.hydraulic),
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
         *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
         *(() if slow or diagnosis is None else _trusted(_mistake(diagnosis, crane), crane)),
+        *(each for each in readings if each.cause != COUNTED),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
@@ -181,16 +187,8 @@ def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
     words = f"{best.mistake.words}; {_proof(diagnosis, best)}"
     if rivals:
         words += f"; hardly to be told from: {'; '.join(each.mistake.words for each in rivals[:3])}"
-    return [
-        Finding(
-            "warning" if harmless else "error",
-            best.mistake.cause,
-            words,
-            best.mistake.channel,
-            best.runs,
-            _evidence(diagnosis, best, rivals),
-        )
-    ]
+    severity, found = "warning" if harmless else "error", best.mistake
+    return [Finding(severity, found.cause, words, found.channel, best.runs, _evidence(diagnosis, best, rivals))]
 
 
 def _proof(diagnosis: Diagnosis, best: Hypothesis) -> str:

@@ -119,7 +119,7 @@ def check(
         *(
             finding
             for run in runs
-            for finding in channel_findings(run, crane)
+            for finding in channel_findings(run)
             if finding.cause != "stuck" or (finding.runs, finding.channel) not in told
         ),
     ]

@@ -1,6 +1,4 @@
-"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks;
-and which of them are locked.
-"""
+"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +18,8 @@ from winch_friction.records.runs import NO_RECORD
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"
+HEAVE = "runs of heave compensation that log heave_velocity, without which the crane is taken to stand still"
+MOVED = 0.5  # of a gap's variance, left where the load is taken to hang still: then the crane has moved
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
@@ -107,6 +107,7 @@ def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> l
     total = sum(float(run.time[-1]) for run in own)
     moving = _seconds(own)
     return [
+        *_of_heave(given.prepared),
         _at_least("moving time", moving, LIMITS.least_moving, "s"),
         _at_least("hoisting", _seconds(own, 1.0), LIMITS.least_each_way, "s"),
         _at_least("lowering", _seconds(own, -1.0), LIMITS.least_each_way, "s"),
@@ -118,6 +119,32 @@ def of_prepared(given: Given, train: Sequence[str], holdout: Sequence[str]) -> l
         _at_least("displacements", _distinct([_driving(run) for run in own]), 1.0),
         _at_least("oil temperatures, span", _span(own, "oil_temperature"), 0.0, "K"),
     ]
+
+
+def _of_heave(runs: Sequence[PreparedRun]) -> list[Check]:
+    """Whether the runs of heave compensation say how the crane moved, where the gap of some that do not is mostly what
+    a load would take that moves with the wire: their motors feel none of it. Nothing where all is well."""
+    compensating = [run for run in runs if len(run.groups) > 1]
+    silent = [run for run in compensating if "heave_velocity" not in run.channels and _hangs_still(run)]
+    known = len(compensating) - len(silent)
+    return [_at_least(HEAVE, known, len(compensating))] if silent else []
+
+
+def _hangs_still(run: PreparedRun) -> bool:
+    """Whether a run's gap is mostly the torque that its load would take if it moved with the wire."""
+    way = run.direction[run.used]
+    taken = (run.load * run.radius / run.gear_ratio * run.load_acceleration)[run.used]
+    gap, still = ((own - _by_way(own, way)) for own in (run.gap[run.used], run.gap[run.used] + taken))
+    return bool(len(gap) > 0 and np.sum(still**2) < MOVED * np.sum(gap**2))
+
+
+def _by_way(values: FloatArray, way: FloatArray) -> FloatArray:
+    """Their mean of each direction, for each sample: what friction that is off adds."""
+    found = np.zeros(len(values))
+    for sign in (-1.0, 0.0, 1.0):
+        own = way == sign
+        found[own] = np.mean(values[own]) if own.any() else 0.0
+    return found
 
 
 def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Check:
@@ -185,111 +212,7 @@ def _span(runs: Sequence[PreparedRun], channel: str) -> float:
 def supplying(checks: Sequence[Check]) -> str:
     """The shipped scenario that supplies what is lacking: both directions, nine speeds, three minutes at 50 Hz."""
     lacking = {check.what for check in checks if not check.met}
-    if SWING in lacking:
+    if SWING in lacking or HEAVE in lacking:
         return "ahc_55t_215"
     many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
     return "experiment_loads" if many else "test_02"
-
-
-# -- which runs are locked: never learned from, and what every name and file is proven on
-NOWHERE = np.zeros(0)  # layers of a log that does not tell them
-
-
-@dataclass(frozen=True)
-class Split:
-    """Names of the runs to learn from and of the locked ones, and all runs (divided ones renamed)."""
-
-    runs: tuple[Run, ...]
-    train: tuple[str, ...]
-    holdout: tuple[str, ...]
-
-
-def refuse(runs: Sequence[Run], fraction: float, seed: int) -> None:
-    """Raise `InputError` for what cannot be divided: no run, two of one name, a share or a seed that is none."""
-    if not runs:
-        raise InputError("no run given; name at least one run file")
-    names = [run.name for run in runs]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InputError(f"two runs are called '{twice[0]}'; a run's identity is its file name")
-    if not 0.05 <= fraction <= 0.6:
-        raise InputError(f"--holdout {fraction:g} is outside 0.05 ... 0.6")
-    if seed < 0:
-        raise InputError(f"seed {seed}: give a whole number, 0 or more")
-
-
-def lock_holdout(runs: Sequence[Run], fraction: float, rng: np.random.Generator) -> Split:
-    """Choose the locked runs by kind (their motor groups), so that each kind is on both sides where there are two of
-    it.
-
-    Of a number of draws the one whose locked runs reach least beyond what the others cover: a law that the data draw
-    says nothing of loads, pressures, layers or dates that it has not seen, and a proof there would be one of luck. Of
-    those that reach as little the one whose locked runs cover most: what is small in all of them proves nothing.
-    """
-    if len(runs) < LIMITS.fewest_to_lock_whole:
-        return _divided(runs, fraction)
-    kinds: dict[tuple[str, ...], list[int]] = {}
-    for k, run in enumerate(runs):
-        kinds.setdefault(run.groups, []).append(k)
-    covered = {name: _covered(name, runs) for name in dict.fromkeys(c for run in runs for c in run.columns)}
-    draws = [_drawn(list(kinds.values()), fraction, rng) for _ in range(LIMITS.lock_draws)]
-    layers = [frozenset(np.rint(v[np.isfinite(v)])) for v in (run.columns.get("wire_layer", NOWHERE) for run in runs)]
-    locked = min(draws, key=lambda each: _beyond(each, list(covered.values())) + _unseen(each, layers))
-    names = tuple(run.name for k, run in enumerate(runs) if k in locked)
-    return Split(tuple(runs), tuple(run.name for run in runs if run.name not in names), names)
-
-
-def _drawn(kinds: Sequence[Sequence[int]], fraction: float, rng: np.random.Generator) -> frozenset[int]:
-    """Runs to lock, of every kind its share."""
-    locked: list[int] = []
-    for own in kinds:
-        count = min(max(round(fraction * len(own)), 1 if len(own) > 1 else 0), len(own) - 1)
-        locked += [own[k] for k in rng.permutation(len(own))[:count]]
-    return frozenset(locked)
-
-
-def _covered(name: str, runs: Sequence[Run]) -> FloatArray:
-    """The range of a column in each run without its rarest values, shape (runs, 2); nan where a run has none of it."""
-    found = np.full((len(runs), 2), np.nan)
-    for k, run in enumerate(runs):
-        values = run.columns[name][np.isfinite(run.columns[name])] if name in run.columns else np.zeros(0)
-        if len(values):
-            found[k] = np.quantile(values, LIMITS.lock_range)
-    return found
-
-
-def _beyond(locked: frozenset[int], covered: Sequence[FloatArray]) -> float:
-    """How far the locked runs reach beyond the others, in ranges of all runs, summed over the columns; a small part of
-    what they cover themselves is taken off."""
-    far = 0.0
-    own = np.zeros(len(covered[0]) if covered else 0, bool)
-    own[list(locked)] = True
-    for ranges in covered:
-        known = np.isfinite(ranges[:, 0])
-        here, there = ranges[own & known], ranges[~own & known]
-        if not len(here) or not len(there):
-            continue
-        whole = max(float(np.nanmax(ranges) - np.nanmin(ranges)), 1e-12)
-        low, high = there[:, 0].min() - here[:, 0].min(), here[:, 1].max() - there[:, 1].max()
-        covers = float(here[:, 1].max() - here[:, 0].min())
-        far += (max(float(low), 0.0) + max(float(high), 0.0) - LIMITS.lock_cover * covers) / whole
-    return far
-
-
-def _unseen(locked: frozenset[int], layers: Sequence[frozenset[float]]) -> int:
-    """How many of the drum's layers only the locked runs are on: a radius is learned where it is met."""
-    here, there = (set().union(*(layers[k] for k in some)) for some in (locked, set(range(len(layers))) - locked))
-    return len(here - there)
-
-
-def _divided(runs: Sequence[Run], fraction: float) -> Split:
-    parts, train, locked = [], [], []
-    for run in runs:
-        time = run.time - run.time[0]
-        border = time[-1] * (1.0 - fraction)
-        for label, keep in (("first part", time < border - LIMITS.guard_time), ("last part", time >= border)):
-            columns = {name: values[keep] for name, values in run.columns.items()}
-            parts.append(Run(f"{run.name} ({label})", columns, {}, run.warnings, run.metadata))
-        train.append(parts[-2].name)
-        locked.append(parts[-1].name)
-    return Split(tuple(parts), tuple(train), tuple(locked))

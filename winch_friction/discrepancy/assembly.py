@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Check, Split, supplying
+from winch_friction.discrepancy.adequacy import Check, supplying
 from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     INSUFFICIENT,
@@ -29,6 +29,7 @@ from winch_friction.discrepancy.engine.blocks import Slot, find_regions
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.expansion import Given, meet
+from winch_friction.discrepancy.locking import Split
 from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
 from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import compare, drift_note, nothing_compared, read_back

@@ -59,6 +59,13 @@ class Proposal:
         return (self.before - self.after) / max(self.before - self.noise_floor, 1e-9)
 
     @property
+    def worthwhile(self) -> bool:
+        """Whether it closes of the locked gap what a law must close of the others' to be proposed: of its square above
+        the noise."""
+        removed, above = self.before**2 - self.after**2, self.before**2 - self.noise_floor**2
+        return removed >= LIMITS.proposal_gain * above
+
+    @property
     def sentence(self) -> str:
         """In plain words; never a cause."""
         k = next(iter(self.parameters.values()))
@@ -99,7 +106,7 @@ def propose(
     found: list[Proposal] = []
     for scored, p_value in _laws(search, runs, rng):
         proposal = _proven(refit, train, scored, p_value, expand, evaluate, rng)
-        if proposal is not None:
+        if proposal is not None and proposal.worthwhile:
             found.append(proposal)
         if len(found) == LIMITS.most_proposals:
             break

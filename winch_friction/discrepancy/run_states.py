@@ -27,7 +27,13 @@ from winch_friction.physics.friction import FrictionModel, Scope
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.table import Table, tabulated
 
-BRAKE, SOME_RUNS, SINCE, EACH_RUN = "brake_drag", "in some runs", "since a date", "by another amount in each run"
+BRAKE, WEAR, SOME_RUNS, SINCE, EACH_RUN = (
+    "brake_drag",
+    "wear_drift",
+    "in some runs",
+    "since a date",
+    "by another amount in each run",
+)
 SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
 THEN = "_then"  # behind the name of a parameter that is there for a time
 FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
@@ -77,7 +83,9 @@ def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candid
 def _candidates(slot: Slot, state: State) -> list[Candidate]:
     candidate, shape = slot.origin
     if candidate.name == BRAKE:
-        return [_brake(state.windows, SOME_RUNS)] if state.law == SOME_RUNS else []  # since a date it is a sudden wear
+        return (
+            [_drag(BRAKE, state.windows, SOME_RUNS)] if state.law == SOME_RUNS else []
+        )  # since a date it is a sudden wear
     own = replace(shape, label=f"{shape.label}, {state.label}")
     linear = candidate.linear + tuple(replace(p, name=p.name + THEN) for p in candidate.linear if state.both)
     return [
@@ -88,21 +96,22 @@ def _candidates(slot: Slot, state: State) -> list[Candidate]:
     ]  # fmt: skip
 
 
-def _brake(windows: Windows, law: str, weights: tuple[float, ...] = ()) -> Candidate:
+def _drag(cause: str, windows: Windows, law: str, weights: tuple[float, ...] = ()) -> Candidate:
     knots = tuple(itertools.chain.from_iterable(windows))
     table = Table(
-        f"{BRAKE}_{law.replace(' ', '_')}", (("time", knots),), scope=Scope.SYSTEM, shape="windows", typical=3.0,
-        source=f"a brake that hangs {law}", weights=weights,
+        f"{cause}_{law.replace(' ', '_')}", (("time", knots),), scope=Scope.SYSTEM, shape="windows", typical=3.0,
+        source=f"a brake that hangs, or what wears, {law}", weights=weights,
     )  # fmt: skip
     term = tabulated(table)
     return Candidate(
-        BRAKE, "", term.parameters, partial(term_columns, term), term=term, presumes=COULOMB, law_name=law,
+        cause, "", term.parameters, partial(term_columns, term), term=term, presumes=COULOMB, law_name=law,
     )  # fmt: skip
 
 
 def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
     """A brake that drags by another amount in every run, that of a locked one told by its first half; none where a
-    logged signal tells the amounts. Twelve amounts imitate much: it is for what nothing else explains.
+    logged signal tells the amounts. Twelve amounts imitate much: it is for what nothing else explains. Every run has a
+    date of its own, so that a wear by whatever law of the date, a seal that was renewed, is the same.
     """
     brake = next(each for each in shipped_friction() if each.name == BRAKE and not each.law_name)
     if len(runs) < LIMITS.fewest_levels or not set(brake.presumes) & set(model.term_names):
@@ -114,7 +123,7 @@ def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], mod
     order, begins, ends = _by_date(runs)
     windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
     weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
-    return [_brake(windows, EACH_RUN, weights)]
+    return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]
 
 
 def _within(candidate: Candidate, state: State, run: PreparedRun, values: Values) -> FloatArray:

@@ -11,7 +11,6 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Split
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Shape, Untestable, Values
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
@@ -29,6 +28,7 @@ from winch_friction.discrepancy.engine.chance import Dependence, dependences, ne
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet, met_in_turn
+from winch_friction.discrepancy.locking import Split
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.run_states import run_states

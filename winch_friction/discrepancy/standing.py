@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Split
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, as_given, tried
 from winch_friction.discrepancy.candidates.signals import DELAY
@@ -15,6 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.chance import dependences, least_part
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
+from winch_friction.discrepancy.locking import Split
 from winch_friction.discrepancy.proof import (
     adds,
     at_the_floor,

@@ -62,7 +62,7 @@ class Thresholds:
     plain_first: float = 1e-3  # of what is saved: of laws that do the same, the one that every machine has
     grammar_heads: int = 6  # single factors that are tried together with every other
     grammar_judged: int = 12  # laws of one and of two factors whose held-out loss is looked at
-    proposal_gain: float = 0.3  # of the gap above the noise that the best law must close to be worth proposing
+    proposal_gain: float = 0.3  # of the gap's square above the noise that a law must close, on locked runs too
     proposal_share: float = 0.8  # of what the best law closes: simpler ones that do nearly as well come first
     word_price: float = 0.05  # of the logarithm of the loss, per word and constant: a simpler law may leave 5 % more
     as_good: float = 0.25  # of the same logarithm, within which another law is worth showing beside the best

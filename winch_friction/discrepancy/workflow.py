@@ -11,7 +11,6 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy import adequacy
-from winch_friction.discrepancy.adequacy import Split, lock_holdout, refuse
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -23,6 +22,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
+from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys

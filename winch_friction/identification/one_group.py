@@ -1,9 +1,12 @@
-"""A crane whose only motor group has a name of its own: for the practice it is the main one."""
+"""Crane and runs as the practice looks at them: a crane whose only motor group has a name of its own has a main one,
+and slower columns have values in every row.
+"""
 
 from dataclasses import replace
 
 from winch_friction.physics.signals import GROUP_CHANNELS, Run
 from winch_friction.physics.winch import Crane
+from winch_friction.records.slow_columns import filled
 
 MAIN = "main"
 
@@ -16,7 +19,11 @@ def as_main(crane: Crane) -> Crane:
 
 
 def run_as_main(run: Run, crane: Crane) -> Run:
-    """A run of `crane`, which still has the group's own name, with the columns of that group under main."""
+    """A run of `crane`, which still has the group's own name, with the columns of that group under main.
+
+    Columns that are written in every n-th row only have values in every one.
+    """
+    run, _ = filled(run)  # the reader has said which columns are slow
     if len(crane.groups) != 1:
         return run
     (own,) = crane.groups

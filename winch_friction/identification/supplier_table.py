@@ -13,6 +13,7 @@ from winch_friction.physics.winch import operating_point
 
 # of the smallest motor of paper 2 (50 of 170 cm^3/rev) and of its speeds (400 of 2500 rpm): what is left out there
 LOW_STROKE, LOW_SPEED = 50.0 / 170.0, 400.0 / 2500.0
+ROUNDED = 3e-4  # relative; 50 and 350 bar may have been written in whole psi
 _UNITS = {"speed": ("rpm", RPM), "pressure": ("bar", BAR), "displacement": ("cm^3/rev", CM3_PER_REV)}
 WEIGHTINGS = ("equal", "nominal", "column")
 
@@ -88,7 +89,7 @@ class FitRange:
 
     def _inside(self, table: SupplierTable, column: str) -> Any:
         (lower, upper), values = getattr(self, column), getattr(table, column)
-        return np.asarray((values >= lower * (1 - 1e-9)) & (values <= upper * (1 + 1e-9)))
+        return np.asarray((values >= lower * (1 - ROUNDED)) & (values <= upper * (1 + ROUNDED)))
 
     def left_out(self, table: SupplierTable) -> str:
         """How many rows the range leaves out, and by which column, in one line; '' for none."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.mapping import Entry, LogMap
-from winch_friction.importing.reading import read_log
+from winch_friction.importing.reading import WORKBOOK, read_log
 from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.units import CHANNEL_UNITS, conversion
 from winch_friction.physics.channels import limits_of
@@ -18,9 +18,9 @@ from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.headers import conversion_to_si
 from winch_friction.records.run_checks import GAP, checked_run
+from winch_friction.records.slow_columns import held, rows_between
 
 STRAY = 0.01  # share of cells that are no numbers, or that no sensor can give, up to which they are strays
-_SPARSE, _LONGEST_HELD, _FEWEST_HELD = 0.67, 5.0, 10  # share of rows; usual steps; values: a slower channel
 _ORDER = 4  # of the low-pass before a derivative
 _FEWEST_SMOOTHED = 3 * (_ORDER + 1) + 1  # rows, beyond what the filter takes at either end
 _SHOWN = 5  # cells named in one message
@@ -84,7 +84,7 @@ def open_with_map(path: Path, log_map: LogMap) -> Log:
 
 
 def _is_kind(path: Path, kind: str) -> bool:
-    return (path.suffix.lower() in (".xlsx", ".xlsm")) == (kind == "workbook")
+    return (path.suffix.lower() in WORKBOOK) == (kind == "workbook")
 
 
 def convert(log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True) -> Converted:
@@ -149,17 +149,11 @@ def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, cr
 
 def _held(name: str, column: LogColumn, said: list[str]) -> FloatArray:
     """A column's numbers; one that is written in every n-th row only is held at its latest value between them."""
-    known = np.flatnonzero(np.isfinite(column.values))
-    if len(known) < _FEWEST_HELD or len(known) > _SPARSE * len(column.values):
+    usual = rows_between(column.values)
+    if not usual:
         return column.values
-    steps = np.diff(known)
-    usual = float(np.median(steps))
-    ends = max(known[0], len(column.values) - 1 - known[-1])
-    if steps.max() > _LONGEST_HELD * usual or ends > _LONGEST_HELD * usual:
-        return column.values  # holes, not a slower channel
     said.append(f"{name}: column '{column.name}' has a value in every {usual:g} rows: held at its latest value")
-    latest = np.searchsorted(known, np.arange(len(column.values)), side="right") - 1
-    return np.asarray(column.values[known[np.maximum(latest, 0)]])
+    return held(column.values)
 
 
 def constant_in_si(name: str, channel: str, entry: Entry, crane: Crane | None) -> float:
@@ -191,7 +185,7 @@ def scale_and_offset(name: str, channel: str, entry: Entry, crane: Crane | None)
             raise InputError(f"{name}: at: drum needs the crane's gear ratio; give the crane")
         found = type(found)(found.scale * gear ** _AT[channel], found.offset)
     factor = entry.sign * entry.factor
-    return found.scale * factor, found.offset * factor
+    return found.scale * factor, (found.offset + found.scale * entry.add) * factor
 
 
 def _rate(name: str, values: FloatArray, time: FloatArray, cutoff: float) -> FloatArray:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from winch_friction.commissioning.readings import OIL
 from winch_friction.physics.channels import FASTEST_ROPE, GRAVITY, limits_of
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
@@ -23,7 +24,7 @@ def usual_size(channel: str, crane: Crane | None) -> tuple[float, float]:
         "rope_speed": (0.01, 40.0),
         "wire_out": (0.0, 1.5e4),
         "wire_layer": (1.0, 40.0),
-        "oil_temperature": (0.0, 130.0),
+        "oil_temperature": (0.0, OIL[1]),
         "motor_speed": (0.0, top),
         "speed_reference": (0.0, top),
         "rope_force": (10.0, 2.0e7),

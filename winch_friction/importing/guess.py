@@ -9,7 +9,7 @@ import numpy as np
 
 from winch_friction.importing.expectations import fits
 from winch_friction.importing.log import Log, LogColumn, own_name
-from winch_friction.importing.names import Concepts, name_concepts, name_score, tokens
+from winch_friction.importing.names import SHORT, Concepts, name_concepts, name_score, tokens
 from winch_friction.importing.units import (
     CHANNEL_UNITS,
     ambiguity,
@@ -165,6 +165,8 @@ def _reading_score(
         return 0.0, ""
     if slot.channel in _EXTRAS and _is_elsewhere(slot.channel, concepts):
         return 0.0, ""
+    if slot.channel == "oil_temperature" and not unit and _is_letter("temperature", concepts):
+        return 0.0, ""
     score = max(name_score(slot.channel, concepts), 0.9 * name_score(slot.channel, _concepts(column.note)))
     why = f"name '{bare}'"
     if unit and score < _UNIT_ALONE and _unit_tells(slot.channel, unit) and not _is_other(slot, concepts):
@@ -196,8 +198,16 @@ def _is_elsewhere(channel: str, concepts: Sequence[Concepts]) -> bool:
     """Whether a name says what is beside the winch, such as the sea's temperature, or of a reference only a speed."""
     if channel == "speed_reference" and not any("reference" in token for token in concepts):
         return True
+    if channel == "shaft_angle" and any("displacement" in token for token in concepts):
+        return True  # the angle of a swash plate
     fits = {"oil"} if channel == "oil_temperature" else set()  # the oil of the case, of the pump
     return any(token.get("other", 0.0) > _SURELY for token in concepts) and not any(fits & set(t) for t in concepts)
+
+
+def _is_letter(concept: str, concepts: Sequence[Concepts]) -> bool:
+    """Whether a name says a concept by a short form alone, as the T of a symbol that may be tonnes, beside no oil."""
+    said = max((token.get(concept, 0.0) for token in concepts), default=0.0)
+    return said <= SHORT and not any("oil" in token for token in concepts)
 
 
 @lru_cache(maxsize=512)

@@ -50,8 +50,8 @@ def _entry() -> dict[str, Any]:
     return _object(
         {
             "from": _TEXT, "unit": _TEXT, "sign": {"enum": [1, -1]}, "factor": {"type": "number", "not": {"const": 0}},
-            "of": _TEXT, "at": {"enum": list(PLACES)}, "differentiate": {"type": "number", "minimum": 0},
-            "constant": _TEXT, "confidence": _SURE, "because": _TEXT,
+            "add": {"type": "number"}, "of": _TEXT, "at": {"enum": list(PLACES)},
+            "differentiate": {"type": "number", "minimum": 0}, "constant": _TEXT, "confidence": _SURE, "because": _TEXT,
         },
     ) | {"anyOf": [{"required": ["from"]}, {"required": ["constant"]}]}  # fmt: skip
 

@@ -14,6 +14,7 @@ _HEAD = """\
 _COLUMNS = """\
 # channel of the run: {from: column of the log, unit: the log's unit}; where needed also
 #   sign: -1        the log counts the other way        factor: a further multiplier
+#   add: 1          to the log's number before, as to layers counted from 0
 #   of: 215 cm^3/rev   what a share (%) is of           at: motor | drum | rope   where a speed or torque is measured
 #   constant: 96 kg in place of from and unit, for what is known and not logged
 """
@@ -76,6 +77,8 @@ def _entry_lines(entry: Entry) -> Iterable[str]:
         yield f"sign: {entry.sign}"
     if entry.factor != 1.0:
         yield f"factor: {entry.factor:.12g}"
+    if entry.add:
+        yield f"add: {entry.add:.12g}"
     if entry.of:
         yield f"of: {_quoted(entry.of)}"
     if entry.differentiate:

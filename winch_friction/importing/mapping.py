@@ -21,7 +21,8 @@ _TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "nam
 class Entry:
     """One channel: `source` is the column's name in the log (for a bag `topic:field`), `unit` as people write it.
 
-    `sign` +1 or -1, `factor` a further multiplier, `of` what a share is of (`215 cm^3/rev`), `at` where a speed or
+    `sign` +1 or -1, `factor` a further multiplier, `add` what is added to the log's number before (1 to layers counted
+    from 0), `of` what a share is of (`215 cm^3/rev`), `at` where a speed or
     torque is measured; `differentiate` Hz: the column is a position in `unit`, its speed is taken behind a zero-phase
     low-pass of this frequency; `constant`: no column but one value with its unit (`96 kg`), known from elsewhere;
     `confidence` 0 ... 1 and `because` are the proposal's, nobody needs them.
@@ -31,6 +32,7 @@ class Entry:
     unit: str = ""
     sign: int = 1
     factor: float = 1.0
+    add: float = 0.0
     of: str = ""
     at: str = "motor"
     differentiate: float = 0.0
@@ -110,6 +112,7 @@ def _entry(section: Section) -> Entry:
         unit=section.text("unit", ""),
         sign=int(sign),
         factor=factor,
+        add=section.number("add", 0.0),
         of=section.text("of", ""),
         at=_choice(section, "at", PLACES, "motor"),
         differentiate=cutoff,

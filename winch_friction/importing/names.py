@@ -77,11 +77,19 @@ def name_concepts(name: str) -> list[Concepts]:
                 found.extend(_token_concepts(joined))
             elif len(parts) >= count and len(joined) > 4 and joined in vocabulary().words:
                 found.append(_all(vocabulary().words[joined], EXACT))
+            elif len(parts) >= count and _is_symbol(parts[:count]):
+                found.append(_all(vocabulary().short[joined], SHORT))
             else:
                 continue
             parts = parts[count:]
             break
     return found
+
+
+def _is_symbol(parts: list[str]) -> bool:
+    """Whether letters are a symbol and its index (`V_g`), of which the index alone says nothing."""
+    short = vocabulary().short
+    return max(map(len, parts)) == 1 and "".join(parts) in short and any(part not in short for part in parts)
 
 
 @lru_cache(maxsize=4096)

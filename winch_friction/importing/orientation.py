@@ -146,7 +146,7 @@ def _settle_ports(draft: Draft, crane: Crane) -> None:
     groups = [
         g
         for g in crane.groups
-        if f"{g}.pressure_a" in draft.log_map.columns and f"{g}.pressure_b" in draft.log_map.columns
+        if all(p in draft.log_map.columns and not draft.log_map.columns[p].constant for p in _ports(g))
     ]
     untold = [g for g in groups if not _ports_told(draft.log_map.columns[f"{g}.pressure_a"].source)]
     for group in untold:
@@ -163,6 +163,10 @@ def _settle_ports(draft: Draft, crane: Crane) -> None:
             for port in ("pressure_a", "pressure_b"):
                 name = f"{group}.{port}"
                 draft.change(name, draft.log_map.columns[name].confidence * (0.95 if held else 0.6), why)
+
+
+def _ports(group: str) -> tuple[str, str]:
+    return f"{group}.pressure_a", f"{group}.pressure_b"
 
 
 def _ports_told(name: str) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from winch_friction.importing.contradiction import contradictions
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import Match, group_sets, matches
+from winch_friction.importing.layers import ask_layers
 from winch_friction.importing.log import Log, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
@@ -18,7 +19,14 @@ from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.time_columns import settle_time
 from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
-from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, fitting_si_unit, is_share, usual_units
+from winch_friction.importing.units import (
+    CHANNEL_UNITS,
+    ambiguity,
+    fitting_si_unit,
+    header_readings,
+    is_share,
+    usual_units,
+)
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
@@ -63,7 +71,11 @@ def propose(
     settle_units(draft, found, pooled)
     draft.apply(settings)
     settle_orientation(draft, _said_signs(settings))
+    ask_layers(draft)
     _settle_missing(draft, pooled)
+    if not (draft.problems or draft.questions):  # else what is open may be the cause
+        draft.problems += [f"{log.path.name}: {each}" for log, done in zip(draft.logs, draft.converted(), strict=True)
+                           for each in done.problems]  # fmt: skip
     if crane is not None:
         _settle_contradictions(draft)
     used = {*draft.log_map.time_from, *(e.source for e in draft.log_map.columns.values())}
@@ -183,7 +195,7 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
         left = f"not used are {listed(free)}" if free else "none is left over"
         draft.problems.append(
             f"{', '.join(lacking)}: no column found; {left}; "
-            f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN"
+            f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN{_instead(lacking, free)}"
         )
     for name, entry in draft.log_map.columns.items():
         channel = name.rpartition(".")[2]
@@ -192,6 +204,23 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
             draft.questions.append(
                 f"{name}: '{entry.source}' is in {entry.unit}; of what? --set '{name}.of=NUMBER {own}'"
             )
+
+
+def _instead(lacking: Sequence[str], free: Sequence[str]) -> str:
+    """What to do where the log has something else in the place of what lacks: an angle, a difference of pressures."""
+    said = ""
+    for name in free if any(each.endswith("displacement") for each in lacking) else ():
+        readings = [
+            (bare, unit) for bare, unit in header_readings(name) if unit and fitting_si_unit("shaft_angle", unit)
+        ]
+        if any(name_score("displacement", name_concepts(bare)) > _NAMED for bare, _ in readings):
+            said += (
+                f"; '{name}' is an angle: add a column of the displacement that it sets, in % of the largest (bent "
+                "axis: its sine over that of the largest angle; swash plate: its tangent)"
+            )
+    if [each.rpartition(".")[2] for each in lacking] == ["pressure_b"]:
+        said += f"; where the log holds the pressure drop A - B alone: --set '{lacking[0]}.constant=0 bar'"
+    return said
 
 
 def _first_channel(lacking: str, crane: Crane | None) -> str:

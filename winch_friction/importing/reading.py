@@ -8,9 +8,20 @@ from winch_friction.importing.log import Log
 from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import BAG_SUFFIXES, is_bag
 
-TEXT = (".csv", ".txt", ".tsv", ".asc", ".log", ".gz", ".zip", ".prn", ".lvm")
-WORKBOOK = (".xlsx", ".xlsm")
-SIGNALS = (".parquet", ".pq", ".mat", ".tdms", ".mf4", ".mdf")
+TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".log", ".gz", ".zip", ".prn", ".lvm")
+WORKBOOK = (".xlsx", ".xlsm", ".xls", ".xlsb", ".ods")
+SIGNALS = (".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".tdms", ".mf4", ".mdf")
+# what can be done about kinds that no reader is for
+_INSTEAD = {
+    ".feather": "pandas.read_feather('LOG').to_parquet('log.parquet')",
+    ".arrow": "pandas.read_feather('LOG').to_parquet('log.parquet')",
+    ".json": "a table in JSON: pandas.read_json('LOG').to_parquet('log.parquet')",
+    ".jsonl": "pandas.read_json('LOG', lines=True).to_parquet('log.parquet')",
+    ".pkl": "pandas.read_pickle('LOG').to_parquet('log.parquet')",
+    ".bag": "a recording of ROS 1: rosbags-convert --src LOG --dst FOLDER",
+    ".blf": "a bus log: decode it by its .dbc into .mf4 or .csv",
+    ".pdf": "type its table into a .csv",
+}
 
 
 def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
@@ -23,6 +34,7 @@ def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
         raise InputError(f"{path}: a folder, and no rosbag2 recording; give the logs themselves, as {path}/*.csv")
     if path.is_file() and path.stat().st_size == 0:
         raise InputError(f"{path}: the file is empty")
+    suffix = _by_content(path, suffix)
     if suffix in WORKBOOK:
         from winch_friction.importing.workbook_log import read_workbook_log
 
@@ -35,7 +47,20 @@ def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
         from winch_friction.importing.text_log import read_text_log
 
         return read_text_log(path, settings)
-    old = "; save it as .xlsx" if suffix == ".xls" else ""
+    instead = f" ({_INSTEAD[suffix].replace('LOG', path.name)})" if suffix in _INSTEAD else ""
     raise InputError(
-        f"{path}: no reader for '{suffix}' files{old}; use {', '.join(TEXT + WORKBOOK + SIGNALS)} or a bag"
+        f"{path}: no reader for '{suffix}' files{instead}; use {', '.join(TEXT + WORKBOOK + SIGNALS)} or a bag"
     )
+
+
+def _by_content(path: Path, suffix: str) -> str:
+    """The ending that a file's first bytes ask for where two kinds share one: tables of text are often called .xls,
+    measurements of ASAM's format .dat.
+    """
+    if suffix not in (".xls", ".dat") or not path.is_file():
+        return suffix
+    with path.open("rb") as file:
+        first = file.read(8)
+    if suffix == ".dat":
+        return ".mdf" if first.startswith(b"MDF ") else ".dat"
+    return ".xls" if first.startswith((b"\xd0\xcf\x11\xe0", b"PK")) else ".txt"

@@ -1,4 +1,4 @@
-"""Logs of measuring programs: Parquet, MATLAB .mat (v5 and v7.3), LabVIEW .tdms, ASAM .mf4 / .mdf.
+"""Logs of measuring programs: Parquet, MATLAB .mat (v5 and v7.3), HDF5, LabVIEW .tdms, ASAM .mf4 / .mdf.
 
 Signals of rates of their own are put on the densest signal's times, each held at its latest value, as a node sees it.
 """
@@ -7,16 +7,18 @@ import gc
 import sys
 import traceback
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from winch_friction.importing.hdf5_log import matlab_arrays, plain_arrays
 from winch_friction.importing.log import Log, LogColumn, listed, number_column, unique_names
 from winch_friction.importing.optional import library
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
+from winch_friction.records.parquet_units import said_units
 
 TIME = "time"  # the name given to the times that a file keeps beside its signals
 _SILENT, _SHORT = 5.0, 1.0  # usual steps and s that a signal may say nothing without a word
@@ -133,7 +135,9 @@ def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
 
 def _parquet(path: Path) -> Found:
     table = library("pyarrow.parquet", "Parquet logs").ParquetFile(path).read()
-    return Found([Signal(name, table.column(name).to_numpy(zero_copy_only=False)) for name in table.column_names])
+    units = said_units(table.schema)
+    values = {name: table.column(name).to_numpy(zero_copy_only=False) for name in table.column_names}
+    return Found([Signal(name, each, units.get(name, "")) for name, each in values.items()])
 
 
 def _mat(path: Path) -> Found:
@@ -143,7 +147,8 @@ def _mat(path: Path) -> Found:
     try:
         content = loadmat(path, squeeze_me=True, struct_as_record=False, simplify_cells=True)
     except NotImplementedError:  # version 7.3 is HDF5
-        return Found(list(_hdf5(path)))
+        arrays = matlab_arrays(path, _MOST, _OBJECTS)
+        return Found([each for name, array in arrays for each in _arrays(name, array, 0)])
     found = [each for name, value in content.items() if not name.startswith("__") for each in _arrays(name, value, 0)]
     if not found and any(isinstance(value, MatlabOpaque) for value in content.values()):
         raise InputError(f"{path}: {_OBJECTS.format('a timetable, table or other object')}")
@@ -174,32 +179,6 @@ def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:
     tall = array if array.shape[0] >= array.shape[1] else array.T
     if tall.shape[1] <= 100:
         yield from (Signal(f"{name}.{k + 1}" if tall.shape[1] > 1 else name, tall[:, k]) for k in range(tall.shape[1]))
-
-
-def _hdf5(path: Path) -> Iterator[Signal]:
-    h5py = library("h5py", "MATLAB files of version 7.3")
-    found: list[tuple[str, Any]] = []
-
-    objects: list[str] = []
-
-    def visit(name: str, item: Any) -> None:
-        if "MATLAB_object_decode" in item.attrs:
-            kind = item.attrs.get("MATLAB_class", b"object")
-            objects.append(f"'{name}' is a {kind.decode() if isinstance(kind, bytes) else kind}")
-        elif (
-            isinstance(item, h5py.Dataset)
-            and not name.startswith("#")
-            and item.dtype.kind in "biuf"
-            and 1 < item.size <= _MOST
-        ):
-            found.append((name.replace("/", "."), np.squeeze(item[()])))
-
-    with h5py.File(path, "r") as file:
-        file.visititems(visit)
-    if objects and not found:
-        raise InputError(f"{path}: {_OBJECTS.format(', '.join(objects))}")
-    for name, array in found:
-        yield from _arrays(name, array, 0)
 
 
 def _tdms(path: Path) -> Found:
@@ -264,6 +243,11 @@ def _opened_mdf(path: Path) -> Any:
     raise InputError(f"{path}: not a readable {path.suffix.lower()} file ({said})")
 
 
+def _hdf5(path: Path) -> Found:
+    found = plain_arrays(path, _MOST)
+    return Found([replace(each, unit=unit) for name, array, unit in found for each in _arrays(name, array, 0)])
+
+
 def _bag(path: Path) -> Found:
     from winch_friction.importing.bag_log import bag_signals
 
@@ -277,6 +261,9 @@ _READERS = {
     ".parquet": _parquet,
     ".pq": _parquet,
     ".mat": _mat,
+    ".h5": _hdf5,
+    ".hdf5": _hdf5,
+    ".hdf": _hdf5,
     ".tdms": _tdms,
     ".mf4": _mdf,
     ".mdf": _mdf,

@@ -15,7 +15,7 @@ import numpy as np
 
 from winch_friction.importing.calendar_columns import CLOCK, calendar_seconds
 from winch_friction.importing.log import LogColumn, Place
-from winch_friction.importing.summer_time import from_utc, hour_back
+from winch_friction.importing.summer_time import change_asked, from_utc, hour_back
 from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
 from winch_friction.importing.time_numbers import clock_of_numbers, is_clock, seconds_of_one
 from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
@@ -78,12 +78,8 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     back = hour_back(finite) if guess.base.zone else 0
     if len(finite) < 2 or (not back and (finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02)):
         return None
-    if back and not guess.question:
-        guess = replace(
-            guess,
-            question=f"'{_first(_joined(columns))}' goes back by an hour at row {back + 1}: the end of summer time? "
-            "set time.zone to the log's, e.g. Europe/Oslo; else cut the log there",
-        )
+    if guess.base.zone and not guess.question:
+        guess = replace(guess, question=change_asked(finite, _first(_joined(columns))))
     ticks = rows_of_one_tick(finite)
     if ticks > 1.5:
         return replace(

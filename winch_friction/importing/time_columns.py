@@ -73,6 +73,12 @@ def _why_none(log: Log) -> str:
         form = guess_form([column], _time_reading(column)[1])
         if form is not None:
             seconds = to_seconds([column], form.base, "time", log.place, strict=False)
+            if np.nanmin(np.diff(seconds)) == 0.0:
+                same = float(np.mean(np.diff(seconds) == 0.0))
+                return (
+                    f"'{column.name}' stands still in {100.0 * same:.3g} % of the rows: written with too few digits? "
+                    "export it with more, or name another column by --set time.from=COLUMN"
+                )
             back = int(np.nanargmin(np.diff(seconds)))
             return (
                 f"'{column.name}' goes back by {seconds[back] - seconds[back + 1]:.6g} s at {log.place(back + 1)}: "

@@ -1,5 +1,6 @@
 """Units that a log does not say: by the size that its numbers would have, and by the torque balance."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -13,6 +14,7 @@ from winch_friction.importing.expectations import usual_size
 from winch_friction.importing.guess import Match, plausible_units
 from winch_friction.importing.kinematics import rope_over_motor
 from winch_friction.importing.log import Log
+from winch_friction.importing.names import name_concepts
 from winch_friction.importing.units import CHANNEL_UNITS, ambiguity, conversion, usual_units
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
@@ -22,6 +24,10 @@ _COMBINATIONS = 300  # of units tried against the torque balance
 _ASKED = ("motor_speed", "drum_speed", "pressures", "displacements", "hook_load", "rope_force", "mechanical_power")
 _TORQUES = ("pressures", "displacements", "hook_load", "rope_force", "motor_torque")  # what closes the balance
 _AS_WELL = 0.3  # evidence of another unit over the chosen one's from which the log does not tell them apart
+_SLIPS = {"oil_temperature": ("degF",)}  # that a wrong unit may stand for, though none that is said by nothing
+_GUESSED = "no unit is said"  # in the reason of an entry
+_BRACKET = re.compile(r"[\[({]\s*([^\[\](){}]{1,10}?)\s*[\])}]\s*$")  # what stands where a unit would
+_TAG = re.compile(r"[A-Za-z_\-]*\d+[A-Za-z]?")  # a sensor's number
 _RARER = 0.6  # prior of each next unit in the order of usual ones
 
 
@@ -56,6 +62,20 @@ def settle_units(draft: Draft, found: Mapping[str, Match], pooled: Log) -> None:
         for name in members[kind]:
             _set_unit(draft, name, options, chosen.get(kind))
     _ask_odd_pair(draft, members)
+    _ask_strange_units(draft)
+
+
+def _ask_strange_units(draft: Draft) -> None:
+    """A unit that was guessed where the header says one that nobody here knows, such as `[sh tn]`: asked."""
+    for name, entry in draft.log_map.columns.items():
+        said = _BRACKET.search(entry.source)
+        if said is None or _GUESSED not in entry.because or _TAG.fullmatch(said[1]):
+            continue
+        if any(not concepts for concepts in name_concepts(said[1])):
+            draft.questions.append(
+                f"{name}: '{entry.source}' says '{said[1]}', which is no unit that is known here; {entry.unit or '-'} "
+                f"is guessed from its size: set {name}.unit"
+            )
 
 
 def _ask_odd_pair(draft: Draft, members: Mapping[str, list[str]]) -> None:
@@ -66,7 +86,7 @@ def _ask_odd_pair(draft: Draft, members: Mapping[str, list[str]]) -> None:
     for kind, names in members.items():
         entry = draft.log_map.columns[names[0]]
         usual = usual_units(names[0].rpartition(".")[2])
-        if kind in _TORQUES and entry.unit and "no unit is said" in entry.because and usual and entry.unit != usual[0]:
+        if kind in _TORQUES and entry.unit and _GUESSED in entry.because and usual and entry.unit != usual[0]:
             odd.append((names[0], entry))
     if len(odd) < 2:
         return
@@ -93,7 +113,7 @@ def _options(draft: Draft, name: str, match: Match, pooled: Log) -> list[str]:
     column = pooled.column(match.column.name)
     options = plausible_units(column, match.unit, match.slot.channel, draft.crane)
     if match.unit and not options:  # what the log says gives no usual size: which unit would?
-        others = [u for u in usual_units(match.slot.channel) if u != match.unit]
+        others = [u for u in (*usual_units(match.slot.channel), *_SLIPS.get(name, ())) if u != match.unit]
         likely = [u for u in others if plausible_units(column, u, match.slot.channel, draft.crane)]
         likely.sort(key=lambda u: -_closing(draft, {name: u}))  # as usual ones as they close the balance alike
         size = float(np.nanpercentile(np.abs(column.values), 95.0))
@@ -185,7 +205,7 @@ def _set_unit(draft: Draft, name: str, options: Sequence[str], chosen: str | Non
         draft.change(
             name,
             entry.confidence * 0.95,
-            f"no unit is said: of the usual ones only {unit} gives a usual size",
+            f"{_GUESSED}: of the usual ones only {unit} gives a usual size",
             unit=unit,
         )
     else:
@@ -193,6 +213,6 @@ def _set_unit(draft: Draft, name: str, options: Sequence[str], chosen: str | Non
         draft.change(
             name,
             entry.confidence * 0.8,
-            f"no unit is said: {unit} closes the balance best or is the most usual ({others} possible)",
+            f"{_GUESSED}: {unit} closes the balance best or is the most usual ({others} possible)",
             unit=unit,
         )

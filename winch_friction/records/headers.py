@@ -59,7 +59,7 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         ),
         "l/rev": ("l/u", "l/r", "liter/u", "dm3/rev", "dm^3/rev", "l/omdr"),
         "in^3/rev": ("in3/rev", "cu in/rev", "cuin/rev", "cir", "in^3/r"),
-        "m^3/rad": ("m3/rad",),
+        "m^3/rad": ("m3/rad",), "cm^3/rad": ("cm3/rad", "ccm/rad", "cc/rad"),
         "m^3/rev": ("m3/rev", "m3/u", "m^3/u"),
     },
     "kg": {
@@ -69,7 +69,8 @@ SPELLINGS: dict[str, dict[str, tuple[str, ...]]] = {
         ),
         "pound": ("lb", "lbs"),
         "gram": ("g",), "kg": ("kgs", "kilo", "kilogramm", "kilogram"),
-        "short_ton": ("short ton", "short tons", "us ton", "us tons", "short_ton", "short_tons", "ston"),
+        "short_ton": ("short ton", "short tons", "us ton", "us tons", "short_ton", "short_tons", "ston",
+                      "sh tn", "sh.tn", "shtn", "sh ton", "sht"),
         "long_ton": ("long ton", "long tons", "long_ton", "long_tons", "imperial ton", "uk ton"),
     },
     "N": {

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.errors import InputError, Problems
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.csv_file import read_headers
 from winch_friction.records.headers import Header, header_text, said_of_nameless
+from winch_friction.records.parquet_units import said_units
 from winch_friction.records.run_checks import Place, checked_run, own_metadata
 
 _METADATA = b"winch_friction"
@@ -22,7 +23,7 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
     """A run from a Parquet file; raises `InputError` with row (from 1) and column."""
     table = _table(path)
     problems = Problems()
-    headers = read_headers(path, table.column_names, problems)
+    headers = read_headers(path, _with_units(table), problems)
     place: Place = lambda row: f"row {row + 1}"
     columns, aside = {}, {}
     bare = [header.name for header in headers if header.known and not header.unit]
@@ -44,6 +45,12 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
         )  # fmt: skip
     problems.say()
     return run
+
+
+def _with_units(table: Any) -> list[str]:
+    """The names of a table's columns, a channel's without a bracket with the unit that the file says beside it."""
+    units = {name: unit for name, unit in said_units(table.schema).items() if column_unit(name) is not None}
+    return [f"{name} [{units[name]}]" if name in units else name for name in table.column_names]
 
 
 def write_parquet_run(run: Run, path: Path) -> Path:

@@ -17,6 +17,7 @@ from winch_friction.physics.channels import plausible
 from winch_friction.physics.errors import InputError, Problems, counted, meant
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import ELECTRIC, HYDRAULIC, Crane, Drive
+from winch_friction.records.slow_columns import rows_between
 
 # -- columns without a unit
 
@@ -185,11 +186,15 @@ def _with_finite_values(name: str, columns: Columns, place: Place, said: list[st
         if bad.size == len(values):
             said.append(f"{name}: column '{column}' has no value at all and is left out")
             continue
-        if bad.size:
+        usual = rows_between(values)
+        if usual:
+            said.append(f"{name}: column '{column}' has a value in every {usual:g} rows only")
+        elif bad.size:
             share = counted(
                 bad.size, f"of {len(values)} values is not a number", f"of {len(values)} values are not numbers"
             )
             said.append(f"{name}: column '{column}': {share}, {_places(bad, place)}")
+        if bad.size:
             values = np.where(np.isfinite(values), values, np.nan)
         kept[column] = values
     return kept

@@ -2,7 +2,8 @@
 them nobody measured: the silence between records that were merged into one file, and samples of a channel that stands
 still while the others live, or jumps; for `gap` and `check` alike.
 
-A transmitter that hangs repeats its last value to the last digit; a lost telegram is one sample of 0 or of full scale.
+A transmitter that hangs repeats its last value to the last digit, and where what it measures moved on meanwhile it
+leaps when it wakes; a lost telegram is one sample of 0 or of full scale.
 They are made missing, which every reader knows how to leave out, and said.
 """
 
@@ -17,6 +18,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.slow_columns import filled
 
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
@@ -104,7 +106,8 @@ LONGEST_HOLE = 30.0  # s without a sample, after which a record is another run: 
 
 def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
-    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
+    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows. So with what is said of
+    columns that are written in every n-th row only."""
     found, notes = list[Run](), list[str]()
     for run in runs:
         steps = np.diff(run.time)
@@ -118,7 +121,8 @@ def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
         found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
         longest = float(steps.max())
         notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
-    return found, notes
+    whole_rows = [filled(run) for run in found]
+    return [run for run, _ in whole_rows], notes + [note for _, said in whole_rows for note in said]
 
 
 def _part(run: Run, name: str, start: int, end: int) -> Run:
@@ -128,7 +132,7 @@ def _part(run: Run, name: str, start: int, end: int) -> Run:
 
 
 # -- samples that no sensor measured
-# what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds
+# what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds, and hangs if it leaps
 LIVING = (
     "pressure_a", "pressure_b", "motor_torque", "mechanical_power", "motor_current", "rope_force", "load_torque",
 )  # fmt: skip
@@ -137,6 +141,7 @@ STILL, FEWEST = 1.0, 20  # s and samples that a channel must repeat; slow logger
 LIVES = 0.5  # of the steps between samples, in which a channel changes that has noise, and so does not stand by chance
 LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse digit stands still for most of it
 JUMPS = 20.0  # usual steps between samples, from the median of three
+LEAPS, QUICK = 3.0, 99.0  # times a step of this percentile: those of the hardest ramps, hangs themselves are rarer
 MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
 
 
@@ -163,17 +168,15 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
         mended = dict(run.columns)
         for name, values in own.items():
             others = [each for other, each in changes.items() if other != name]
-            broken = jumping = _jumping(values)
-            if name.rpartition(".")[2] in LIVING:
-                still = _standing(run.time, values, changes[name], others)
-                broken = still | jumping
-                if still.any():
-                    told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
+            find = _standing if name.rpartition(".")[2] in LIVING else _hanging
+            still, jumping = find(run.time, values, changes[name], others), _jumping(values)
+            if still.any():
+                told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
             if jumping.any():
                 samples = counted(int(jumping.sum()), "single sample", "single samples")
                 told.append(Broken(run.name, name, f"jumps in {samples}"))
-            if broken.any():
-                mended[name] = np.where(broken, np.nan, values)
+            if (still | jumping).any():
+                mended[name] = np.where(still | jumping, np.nan, values)
         found.append(replace(run, columns=mended))
     return found, told
 
@@ -181,9 +184,7 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
 def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     """Samples (samples,) that repeat the one before for long, while another channel lives; none of a winch at rest."""
     still = np.zeros(len(values), bool)
-    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
-    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST and values[a] != 0.0]
-    long = [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
+    long = [(a, b) for a, b in _long_spells(time, values, changes) if values[a] != 0.0]
     rest = np.ones(len(changes), bool)
     for a, b in long:
         rest[a : b - 1] = False
@@ -193,6 +194,26 @@ def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others:
         if any(each[a : b - 1].mean() >= LIVES for each in others):
             still[a + 1 : b] = True
     return still
+
+
+def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
+    leaps: a coarse one rests on its digits, and goes on from there by steps.
+    """
+    still, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    moved = steps[np.isfinite(steps) & (steps > 0.0)]
+    for a, b in _long_spells(time, values, changes) if len(moved) else ():
+        leaps = b < len(values) and steps[b - 1] > LEAPS * float(np.percentile(moved, QUICK))
+        if leaps and any(each[a : b - 1].mean() >= LIVES for each in others):
+            still[a + 1 : b] = True
+    return still
+
+
+def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
+    """First sample and end of what is repeated to the last digit for long."""
+    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
+    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST]
+    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
 
 
 def _jumping(values: FloatArray) -> np.ndarray:

@@ -76,8 +76,9 @@ _CONSTANTS = {
 _ENTRY = _object(
     {},
     {
-        "from": TEXT, "constant": TEXT, "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "of": TEXT,
-        "at": {"enum": ["motor", "drum", "rope"]}, "differentiate": NUMBER, "confidence": NUMBER, "because": TEXT,
+        "from": TEXT, "constant": TEXT, "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "add": NUMBER,
+        "of": TEXT, "at": {"enum": ["motor", "drum", "rope"]}, "differentiate": NUMBER,
+        "confidence": NUMBER, "because": TEXT,
     },
     anyOf=[{"required": ["from"]}, {"required": ["constant"]}],
 )  # fmt: skip

@@ -202,9 +202,10 @@ def _regions(result: GapResult) -> str:
 
 
 def _proposals(result: GapResult) -> str:
-    rows = [(p["equation"], p["holdout"]["before"], p["holdout"]["after"], p["terms_file"], p["model_file"])
+    rows = [(p["equation"], p["holdout"]["before"], p["holdout"]["after"],
+             100.0 * min(p["holdout"]["closed"], 1.0), p["terms_file"], p["model_file"])
             for p in result.content()["proposals"]]  # fmt: skip
-    columns = ("equation, SI", "gap before", "gap after", "terms", "model")
+    columns = ("equation, SI", "gap before", "gap after", "closed [%]", "terms", "model")
     return table_html(columns, rows, "Laws proposed for what has no name; locked runs", 3) if rows else ""
 
 

@@ -1,0 +1,42 @@
+"""What is to be said of a supplier's table once a model was fitted to it: slips in rows, units that no motor has."""
+
+import numpy as np
+
+from winch_friction.identification.fit_data import modelled
+from winch_friction.identification.motor_identification import MotorIdentification
+from winch_friction.identification.supplier_table import SupplierTable
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+
+# of D dp, from the fit: models miss low displacements by less, and a tenth of what a digit in the wrong place makes
+SLIP = 0.05
+STANDS_OUT = 20.0  # times the usual error of the table
+SHOWN = 3
+
+
+def remarks_on(found: MotorIdentification) -> list[str]:
+    """Rows that stand out from the fit, and parameters that end at the largest value that a motor may have."""
+    fitted, table = found.chosen.fitted, found.table
+    values = zip(fitted.model.parameters, fitted.model.values, strict=True)
+    largest = [each.name for each, value in values if each.name in fitted.at_bound and value > max(each.lower, 0.0)]
+    said = []
+    if largest:
+        said.append(
+            f"{table.name}: {', '.join(largest)} of '{found.chosen.name}' end at the largest value that any motor has: "
+            "is the unit of the speed, the pressure or the displacement another than its header says?"
+        )
+    return said + _slips(found, table)
+
+
+def _slips(found: MotorIdentification, table: SupplierTable) -> list[str]:
+    share = table.torque_loss / table.nominal_torque
+    fitted = modelled(found.chosen.fitted.model, table.fit_data(found.weighting)) / table.nominal_torque
+    off = np.abs(share - fitted)
+    rows = np.flatnonzero(off > max(SLIP, STANDS_OUT * float(np.median(off))))
+    rows = rows[np.argsort(-off[rows])]
+    more = f" (and {len(rows) - SHOWN} more such rows)" if len(rows) > SHOWN else ""
+    return [
+        f"{table.name}: at {table.speed[k] / RPM:.4g} rpm, {table.pressure[k] / BAR:.4g} bar and "
+        f"{table.displacement[k] / CM3_PER_REV:.4g} cm^3/rev {100.0 * share[k]:.3g} % of D dp are lost, where the fit "
+        f"to all rows says {100.0 * fitted[k]:.3g} %: a slip in the table?" + (more if n == SHOWN - 1 else "")
+        for n, k in enumerate(rows[:SHOWN])
+    ]

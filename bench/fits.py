@@ -10,7 +10,7 @@ from winch_friction.identification.fit import fit, search_box
 from winch_friction.identification.fit_data import CountedModel
 from winch_friction.identification.motor_models import initial_model, motor_model_named
 from winch_friction.identification.supplier_file import read_supplier_table
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 MODEL, TABLE = "MJ4", "a6vm215_generated.csv"
 

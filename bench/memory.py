@@ -13,8 +13,8 @@ import numpy as np
 
 from bench.measuring import Row, sea
 from winch_friction.physics.signals import Run
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.strict_yaml import config_directory
 
 HOUR, SHORT = 3600.0, 10.0  # s
 # a verb may find something and say so by its status; the peak is /proc's, which is this program's alone: getrusage's

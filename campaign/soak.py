@@ -114,8 +114,8 @@ def damaged_files(count: int, seed: int) -> tuple[Counter[str], float, list[str]
     import io
 
     from winch_friction.cli.main import run
-    from winch_friction.records.atomic import config_directory
     from winch_friction.records.runs import write_run
+    from winch_friction.records.strict_yaml import config_directory
     from winch_friction.simulation.scenario import load_scenario
     from winch_friction.simulation.simulator import simulate
 

@@ -26,8 +26,8 @@ from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.runs import write_run
 
 ROOT = str(Path(winch_friction.__file__).parent) + "/"
-MOST_OF_A_GAP = 76 + 2
-MOST_OF_A_MESSAGE = 15
+MOST_OF_A_GAP = 66
+MOST_OF_A_MESSAGE = 14
 
 
 class Visited:
@@ -48,9 +48,9 @@ class Visited:
             self._codes[code] = code.co_name != "<module>" and not self._imports(frame)
 
     def _imports(self, frame):
-        """Whether a module of the package is being executed further up."""
+        """Whether a module is being imported further up."""
         while (frame := frame.f_back) is not None:
-            if frame.f_code.co_name == "<module>" and frame.f_code.co_filename.startswith(ROOT):
+            if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
                 return True
         return False
 

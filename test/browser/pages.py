@@ -20,7 +20,7 @@ from winch_friction.fleet.drift import find_steps, month_text, monthly
 from winch_friction.fleet.fingerprint import TRAITS
 from winch_friction.fleet.ledger import Outcome
 from winch_friction.fleet.store import write_store
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.report.base import write_report
 from winch_friction.report.fleet import write_fleet_report
 

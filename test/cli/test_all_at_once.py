@@ -8,9 +8,9 @@ import yaml
 
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError, Problems
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run
+from winch_friction.records.strict_yaml import config_directory
 
 HEAD = ["time [s]", "motor_speed [rpm]", "motor_torque [N*m]", "hook_load [kg]"]
 ROWS = [[f"{0.02 * k:.2f}", "60", "12", "1000"] for k in range(200)]

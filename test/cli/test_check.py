@@ -7,8 +7,8 @@ import pytest
 
 from winch_friction.cli.main import run
 from winch_friction.physics.channels import RPM
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.strict_yaml import config_directory
 
 TEST = config_directory() / "examples" / "practice_150t" / "test_02.parquet"
 OTHER = TEST.with_name("test_01.parquet")

@@ -8,10 +8,10 @@ import pytest
 from winch_friction.cli.main import run
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.model_curve import model_curve
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.strict_yaml import config_directory
 
 
 @pytest.mark.parametrize(("loads", "warned"), [("15,55,100", False), ("55,5000", True)])

@@ -11,7 +11,7 @@ import pytest
 from winch_friction.cli.console import refuse_foreign
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 RUN = str(config_directory() / "examples" / "practice_150t" / "test_02.parquet")
 MACHINE = ["--crane", "crane_150t", "--model", "a6vm215_crane2"]

@@ -129,11 +129,35 @@ def test_the_mcap_holds_schemas_and_is_read_by_the_formats_own_reader(bag, tmp_p
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         schemas = {c.topic: reader.get_summary().schemas[c.schema_id] for c in reader.get_summary().channels.values()}
         torques = [m.effort[0] for _, _, _, m in reader.iter_decoded_messages(["/compensator/friction_torque"])]
+        times = [m.log_time for _, _, m in reader.iter_messages(["/compensator/friction_torque"])]
         says = [json.loads(m.data) for _, _, m in reader.iter_messages(["/winch_friction/estimates"])]
     assert torques == [300.0 + k for k in range(100)]
+    assert times == [round((1000.0 + 0.02 * k) * 1e9) for k in range(100)]  # when they came, not when they were copied
     assert (schemas["/simulator/truth"].encoding, schemas["/simulator/truth"].name) == ("ros2msg", JOINT_STATE)
     assert schemas["/winch_friction/estimates"].encoding == "jsonschema"
     assert says[0]["parameters"][0]["value"] == 14.5
+
+
+def test_what_is_computed_carries_the_stamp_of_its_measurement_and_the_time_it_came(tmp_path):
+    from mcap.reader import make_reader
+
+    late = 0.5  # s on the way
+    with BagWriter(tmp_path / "bag") as writer:
+        for k in range(50):
+            time = 1000.0 + 0.02 * k
+            header = stamp_header(time, MESSAGES)
+            torque = joint_state(MESSAGES, header, "winch_motor", effort=300.0 + k)
+            truth = joint_state(MESSAGES, header, "load", position=0.004, effort=0.0)
+            writer.write("/simulator/truth", truth, time + late)
+            writer.write("/compensator/friction_torque", torque, time + late)
+        writer.write("/diagnostics", diagnostics(header), time + late)
+    assert run(["foxglove", "--bag", str(tmp_path / "bag"), "--out", str(tmp_path / "out.mcap")]) == 0
+    with (tmp_path / "out.mcap").open("rb") as file:
+        own = [(c.topic, m.log_time, json.loads(m.data)) for _, c, m in make_reader(file).iter_messages([*OWN])]
+    assert {topic for topic, *_ in own} >= {"/winch_friction/error", "/winch_friction/estimates"}
+    for topic, came, said in own:
+        stamp = said["header"]["stamp"]
+        assert came * 1e-9 - (stamp["sec"] + 1e-9 * stamp["nsec"]) == pytest.approx(late, abs=1e-6), topic
 
 
 def test_what_cannot_be_written_is_said_and_nothing_is_lost(bag, tmp_path, capsys):

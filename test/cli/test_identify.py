@@ -11,9 +11,9 @@ from winch_friction.cli.console import refuse_foreign
 from winch_friction.cli.identify import PRACTICE
 from winch_friction.cli.main import run
 from winch_friction.identification.practice import read_practice
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.strict_yaml import config_directory
 
 EXAMPLE = config_directory() / "examples" / "practice_150t"
 QUICK = ["--restarts", "1", "--evaluations", "300"]

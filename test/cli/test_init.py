@@ -10,10 +10,10 @@ from winch_friction.cli.main import run
 from winch_friction.importing.mapping import load_map
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import refuse_other_crane
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.schemas import problems
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.simulation.file_schemas import all_schemas
 from winch_friction.simulation.plant_file import load_plant
 from winch_friction.simulation.scenario import load_scenario

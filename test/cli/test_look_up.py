@@ -8,7 +8,7 @@ import pytest
 import winch_friction as wf
 from winch_friction.cli import names
 from winch_friction.cli.main import run
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 
 def test_a_crane_that_only_a_models_file_knows_is_asked_for(tmp_path, capsys):

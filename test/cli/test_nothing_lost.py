@@ -8,8 +8,8 @@ import pytest
 import winch_friction as wf
 from winch_friction.cli.main import run
 from winch_friction.physics.signals import Run
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.runs import write_run
+from winch_friction.records.strict_yaml import config_directory
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import yaml
 from own_term_files import forgotten, own_model, own_terms
 
 from winch_friction.cli import main
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 
 @pytest.fixture

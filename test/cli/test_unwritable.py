@@ -5,7 +5,7 @@ import importlib
 import pytest
 
 from winch_friction.cli.main import run
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 # the work that must not have begun; replaced by a defect
 WORK = {

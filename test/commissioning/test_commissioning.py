@@ -12,8 +12,9 @@ from campaign import rig
 from campaign.second_rig import SETS, write_set
 from winch_friction.commissioning.balance import closure
 from winch_friction.commissioning.channels import first_contradiction
-from winch_friction.commissioning.check import quick_check, shipped_cranes
+from winch_friction.commissioning.check import diagnosed, quick_check, shipped_cranes
 from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.view import view_of
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Drum
@@ -283,3 +284,39 @@ def times_drop(columns, factor):
             a, b = columns[name], columns[name[:-1] + "b"]
             found[name] = b + factor * (a - b)
     return found
+
+
+def test_mistakes_are_ranked_only_where_one_could_be_named_or_the_page_shows_them(tmp):
+    crane, model = world(0, rig.DRAWN, tmp)
+    runs = runs_of(columns_of(0, rig.DRAWN))[::4]
+    assert not isinstance(diagnosed(runs, crane, model, {})[1], Diagnosis)
+    whole = check(runs, crane, model, {}).diagnosis
+    assert whole.hypotheses
+    assert whole.best is None
+
+
+def test_a_mistake_is_named_where_each_run_by_itself_would_pass(tmp):
+    crane, model = world(0, rig.DRAWN, tmp)
+    columns = [{**each, "speed_reference": 2.0 * each["speed_reference"]} for each in columns_of(0, rig.DRAWN)[-4:]]
+    findings, diagnosis = diagnosed(runs_of(columns), crane, model, {})
+    assert not diagnosis.contradicting
+    assert [(each.cause, each.channel) for each in findings] == [("companion", "speed_reference")]
+
+
+def test_a_transmitter_that_hangs_and_lost_telegrams_are_told(tmp):
+    """`gap` leaves them out; who checks a log before is told, once for each channel, and the log stays plausible."""
+    crane, model = world(0, rig.DRAWN, tmp)
+    columns = dict(columns_of(0, rig.DRAWN)[8])
+    rng = np.random.default_rng(1)
+    for port in "ab":  # finer than this crane's transducers
+        columns[f"active.pressure_{port}"] = columns[f"active.pressure_{port}"] + 1e4 * rng.standard_normal(
+            len(columns["time"])
+        )
+    columns["active.pressure_a"][300:400] = columns["active.pressure_a"][300]
+    columns["active.pressure_b"][700] = 0.0
+    result = check([Run("run", columns)], crane, model, {})
+    assert result.plausible
+    assert [(each.severity, each.sentence) for each in result.findings if each.channel.startswith("active.p")] == [
+        ("warning", "run: active.pressure_a stands still for 3.96 s: nobody measured that"),
+        ("warning", "run: active.pressure_b jumps in 1 single sample: nobody measured that"),
+    ]

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.diagnose import _Bench, score_of
-from winch_friction.commissioning.kinematics import LATE, MOST, _top, agreements
+from winch_friction.commissioning.diagnose import _Bench
+from winch_friction.commissioning.kinematics import LATE, MOST, _top, agreements, score_of
 from winch_friction.commissioning.mistakes import delayed
 from winch_friction.commissioning.view import view_of
 from winch_friction.simulation import load_scenario, simulate

@@ -4,14 +4,10 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning import kinematics, mistakes
-from winch_friction.commissioning.kinematics import (
-    FASTEST,
-    LATE,
-    LOWEST_SUM,
-    agreements,
+from winch_friction.commissioning.kinematics import FASTEST, LATE, LOWEST_SUM, agreements, excesses
+from winch_friction.commissioning.repairs import (
     displacement_times,
     drop_times,
-    excesses,
     load_times,
     motor_torque_times,
     port_times,

@@ -8,10 +8,10 @@ from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.kinematics import tells_speed
 from winch_friction.commissioning.view import views_of
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run
+from winch_friction.records.strict_yaml import config_directory
 
 
 def example_of_the_worm_drive(name):

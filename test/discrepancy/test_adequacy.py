@@ -11,7 +11,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
-from winch_friction.records.parts import apart
+from winch_friction.records.runs import apart
 
 STEP = 0.1  # s
 

@@ -137,7 +137,7 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
         asked.append(options.candidates)
         return other.search
 
-    monkeypatch.setattr(workflow, "of_one_group", lambda runs, model: ["one"] if two else [])
+    monkeypatch.setattr(workflow, "of_one_group", lambda runs: ["one"] if two else [])
     monkeypatch.setattr(workflow, "search_runs", search)
     monkeypatch.setattr(workflow, "standing", lambda *_: other)
     monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)

@@ -63,7 +63,7 @@ def test_what_a_bare_model_lacks_has_room_to_move_beyond_its_usual_bound():
 
 def test_a_shared_ripple_is_fitted_to_the_training_runs_alone(monkeypatch):
     asked = []
-    monkeypatch.setattr(repair.angle, "in_phase", lambda runs, *_: asked.extend(runs))
+    monkeypatch.setattr(repair, "in_phase", lambda runs, *_: asked.extend(runs))
     search = SimpleNamespace(
         given=SimpleNamespace(runs=["of train", "of locked"], crane=None), train=("train",),
         expansion=SimpleNamespace(runs=[SimpleNamespace(name=name) for name in ("train", "locked")]),

@@ -17,7 +17,7 @@ from winch_friction.discrepancy.candidates.catalogue import (
     candidates_for,
     drum_ripples,
 )
-from winch_friction.discrepancy.detectors.angle_spectrum import LOWEST_ORDER
+from winch_friction.discrepancy.detectors.ripple import LOWEST_ORDER
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import GRAVITY

@@ -85,6 +85,19 @@ def test_a_coarse_encoder_is_smoothed_longer_but_not_for_ever():
     assert windows[2] == pytest.approx(MAX_WIDENING * SMOOTHING_TIME, abs=2 * DT)
 
 
+def test_a_window_is_as_long_as_the_noise_of_its_samples_asks():
+    """Steps rarer than every other sample leave no median; four times the samples average as much out in half the
+    widening; a winch that stands has nothing to smooth."""
+    at = DT * np.arange(4000.0)
+    rarely = np.round(2.0 * np.sin(0.1 * at))  # steps of 1 rad/s, one in some hundred samples
+    assert speed_window(rarely, DT) * DT > 1.3 * SMOOTHING_TIME
+    noisy = 100.0 * np.sin(at) + 0.8 * np.random.default_rng(1).standard_normal(4000)
+    assert speed_window(noisy, DT) * DT == pytest.approx(2.52 * SMOOTHING_TIME, rel=0.05)
+    assert speed_window(noisy, DT / 4.0) * DT / 4.0 == pytest.approx(1.587 * SMOOTHING_TIME, rel=0.05)
+    assert speed_window(np.zeros(4000), DT) * DT == pytest.approx(SMOOTHING_TIME, abs=DT)
+    assert speed_window(np.array([1.0, 2.0]), DT) * DT == pytest.approx(SMOOTHING_TIME, abs=DT)
+
+
 # -- spikes
 def spiky(*places, rest=0):
     gap = np.random.default_rng(0).standard_normal(2000)

@@ -8,9 +8,8 @@ import pytest
 from gap_rig import gap_of, names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
+from winch_friction.discrepancy.candidates.candidate import BALANCING, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
-from winch_friction.discrepancy.candidates.groups import BALANCING
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together

@@ -11,7 +11,7 @@ from campaign.own_fmu import MAP, build
 from campaign.own_simulation import named
 from winch_friction.cli import main
 from winch_friction.discrepancy.answer import GapOptions
-from winch_friction.discrepancy.preparation.prepared_run import simulated_column, simulated_error
+from winch_friction.discrepancy.preparation.own_simulation import simulated_column, simulated_error
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run

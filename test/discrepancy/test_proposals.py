@@ -21,7 +21,7 @@ from winch_friction.discrepancy.vocabulary import (
 )
 from winch_friction.physics.channels import dimension_of, product
 from winch_friction.physics.friction import FrictionModel, symbols
-from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.compiled import layout
 from winch_friction.physics.friction.term import known_for_now, load_file
 
 

@@ -11,9 +11,17 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.adequacy import long_enough, of_records
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.detectors import flow_balance
-from winch_friction.discrepancy.detectors.angle_spectrum import COMB_LINES, COMB_SHARE, SAME_ORDER, one_of_a_comb
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
-from winch_friction.discrepancy.detectors.ripple import TERM, Ripple, _known, angle_ripple
+from winch_friction.discrepancy.detectors.ripple import (
+    COMB_LINES,
+    COMB_SHARE,
+    SAME_ORDER,
+    TERM,
+    Ripple,
+    _known,
+    angle_ripple,
+    one_of_a_comb,
+)
 from winch_friction.discrepancy.detectors.soft_oil import free_air
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.fluid import LEAKAGE_LAWS, leakage_per_coefficient

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.detectors import flow_balance, ripple
+from winch_friction.discrepancy.detectors import flow_balance, ripple, ripple_waves
 from winch_friction.discrepancy.detectors import reversals as turning
 from winch_friction.discrepancy.detectors.flow_balance import FEWEST_RUNS, ORDINARY, Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
@@ -47,9 +47,9 @@ def test_one_ripple_is_written_where_the_runs_share_its_phase(monkeypatch, turne
         10.0 * np.sin(3.0 * angle + phase) + noise * own for phase, own in zip((0.0, turned), scatter, strict=True)
     ]
     tables = iter([(angle, wave, static) for wave in waves])
-    monkeypatch.setattr(ripple, "_unsmoothed", lambda *_: next(tables))
+    monkeypatch.setattr(ripple_waves, "_unsmoothed", lambda *_: next(tables))
     runs = [SimpleNamespace(used=np.ones(1, bool), drum_torque=np.ones(1), present={"shaft_angle"})] * 2
-    found = ripple.in_phase([None, None], runs, None, Ripple(3.01, 0.01, 1e-4, 1e-30, 100.0))
+    found = ripple_waves.in_phase([None, None], runs, None, Ripple(3.01, 0.01, 1e-4, 1e-30, 100.0))
     assert (found is not None) is shared
     if not turned:
         assert found["k_r"].value == pytest.approx(3.0, abs=0.01)

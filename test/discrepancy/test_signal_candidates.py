@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.candidate import machine_sizes
+from winch_friction.discrepancy.candidates.candidate import ALL
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.feedback import (
     _swivel,
@@ -16,7 +16,6 @@ from winch_friction.discrepancy.candidates.feedback import (
     feedback_candidates,
     s_shaped_columns,
 )
-from winch_friction.discrepancy.candidates.groups import ALL
 from winch_friction.discrepancy.candidates.signals import (
     _offset,
     bent_columns,
@@ -27,6 +26,7 @@ from winch_friction.discrepancy.candidates.signals import (
     warm_columns,
 )
 from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.corrections import straight, unbent, unswung
 from winch_friction.physics.friction.correction import Correction

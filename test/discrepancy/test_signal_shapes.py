@@ -6,20 +6,22 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates import signals as module
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
-from winch_friction.discrepancy.candidates.catalogue import of_one_group
-from winch_friction.discrepancy.candidates.groups import (
+from winch_friction.discrepancy.candidates.candidate import (
     ALL,
     ALONE,
     BALANCING,
     BESIDE,
     OTHER,
+    ParameterEstimate,
+    Shape,
+    Sides,
     driving_alone,
     group_columns,
     group_shapes,
     groups_of,
     own_group_shapes,
 )
+from winch_friction.discrepancy.candidates.catalogue import of_one_group
 from winch_friction.discrepancy.candidates.signals import (
     DELAYS,
     PRESSURES,
@@ -90,12 +92,12 @@ def test_the_driving_group_of_hoisting_and_that_of_heave_compensation_may_be_off
 def test_a_group_that_drives_in_either_mode_has_one_pair_of_transducers():
     both = [run((group(3, True, name="active"),)), run()]
     assert own_group_shapes(both) == own_group_shapes(both[:1]) == []
-    assert of_one_group(both, None) == []
+    assert of_one_group(both) == []
     hoist = run((group(11, True),))
-    assert [each.name for each in of_one_group([hoist, *both[1:]], None)] == [
+    assert [each.name for each in of_one_group([hoist, *both[1:]])] == [
         "pressure_offset", "pressure_scale", "swivel_offset",
     ]  # fmt: skip
-    assert len(of_one_group([hoist, *both[1:]], None)[1].shapes([])) == 4
+    assert len(of_one_group([hoist, *both[1:]])[1].shapes([])) == 4
 
 
 def test_a_gain_of_port_a_takes_the_pressure_of_port_a_alone():

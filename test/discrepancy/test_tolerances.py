@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.tolerances import takes_little, within_a_sample, within_a_step
+from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 
 WARMTH = np.linspace(-1.0, 1.0, 201)
 

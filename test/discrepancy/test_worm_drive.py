@@ -8,9 +8,9 @@ from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.importing.carry_out import import_log
 from winch_friction.importing.mapping import load_map
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.strict_yaml import config_directory
 
 EXAMPLE = config_directory() / "examples" / "worm_drive"
 STEP = 0.105  # rad/s, of the encoder

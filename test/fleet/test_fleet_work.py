@@ -11,8 +11,8 @@ from winch_friction.cli import main
 from winch_friction.cli.fleet_work import plan
 from winch_friction.fleet.recordings import find_recordings
 from winch_friction.fleet.store import read_store, write_store
-from winch_friction.records.atomic import shipped
 from winch_friction.records.runs import write_run
+from winch_friction.records.strict_yaml import shipped
 from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.simulator import simulate
 

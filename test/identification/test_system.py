@@ -10,7 +10,7 @@ from winch_friction.identification.bootstrap import bootstrap
 from winch_friction.identification.collinearity import identifiable, ties, unseen_directions
 from winch_friction.identification.fit_data import modelled
 from winch_friction.identification.friction_curve import curve_data, friction_curve
-from winch_friction.identification.joint_fit import joint_fit, observations, winch_prior
+from winch_friction.identification.joint_fit import SENSOR_ERRORS, _Problem, joint_fit, observations, winch_prior
 from winch_friction.identification.plateaus import find_plateaus
 from winch_friction.identification.prior import supplier_prior
 from winch_friction.identification.system_fit import EQUATION_8, combined, fit_system, second_loop
@@ -258,3 +258,23 @@ def test_what_goes_with_the_load_is_found_on_a_winch_of_few_turns(gear, truth, c
     for fitted in (found.first_loop, found.joint.model):
         for name in ("C1", "C6"):
             assert fitted.value(name) == pytest.approx(own.value(name), rel=0.15), name
+
+
+def test_sensor_and_load_errors_are_taken_out_as_they_are_stated(plateaus, crane, motor, data, spread):
+    """A gain of the feedback, gain and zero of the pressures, a heavier load, each with the sign that is reported."""
+    prior = winch_prior(supplier_prior(motor, spread), fit_system(data, motor).model, "joint")
+    right = observations(plateaus, crane)
+    d_scale, p_scale, p_offset, heavier = 0.02, -0.01, 2.0 * BAR, 0.03
+    logged = replace(
+        right, displacement=right.displacement * (1.0 + d_scale), drop=right.drop * (1.0 + p_scale) + p_offset
+    )
+    u = np.zeros(len(prior.values) + 3 + right.tests)
+    u[: len(prior.values)] = prior.values / np.maximum(spread.std(prior), 1e-30)
+    left = _Problem(right, prior, spread).torque_error(u)
+    u[len(prior.values) : len(prior.values) + 3] = np.array([d_scale, p_scale, p_offset]) / [
+        getattr(spread, name) for name in SENSOR_ERRORS
+    ]
+    assert _Problem(logged, prior, spread).torque_error(u) == pytest.approx(left, abs=1e-6)
+    u[len(prior.values) + 3] = heavier / spread.load_scale
+    more = np.where(right.test == 0, heavier * right.drum_torque / (right.gear_ratio * right.motors), 0.0)
+    assert _Problem(logged, prior, spread).torque_error(u) == pytest.approx(left - more, abs=1e-6)

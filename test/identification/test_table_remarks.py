@@ -10,7 +10,7 @@ from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import FitRange
 from winch_friction.identification.table_remarks import remarks_on
 from winch_friction.physics.channels import BAR
-from winch_friction.records.atomic import shipped
+from winch_friction.records.strict_yaml import shipped
 
 TABLES = {
     name: read_supplier_table(shipped("suppliers", f"{name}_generated", ".csv")) for name in ("a6vm170", "a6vm215")

@@ -14,7 +14,7 @@ from winch_friction.importing.map_text import map_text
 from winch_friction.importing.mapping import Entry, LogMap, load_map, map_from_content, with_settings
 from winch_friction.importing.time_base import TimeBase
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 MAP = LogMap(
     columns={

@@ -9,9 +9,9 @@ from winch_friction.importing.carry_out import import_log
 from winch_friction.importing.mapping import load_map, with_settings
 from winch_friction.importing.propose import propose
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.emps import read_emps
+from winch_friction.records.strict_yaml import config_directory
 
 EXAMPLES = config_directory() / "examples"
 # folder, crane, what a person must say

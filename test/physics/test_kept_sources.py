@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.friction import sources
-from winch_friction.physics.friction.compiled import CompiledTerms
-from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.compiled import CompiledTerms, layout
 from winch_friction.physics.friction.term import registered_terms
 from winch_friction.records.model_file import load_model
 

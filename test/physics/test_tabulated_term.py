@@ -7,8 +7,7 @@ import pytest
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
-from winch_friction.physics.friction.compiled import compiled
-from winch_friction.physics.friction.symbols import layout
+from winch_friction.physics.friction.compiled import compiled, layout
 from winch_friction.physics.friction.table import Table, at_knots, outlined, tabulated
 from winch_friction.records.model_file import model_from_text, model_to_text
 

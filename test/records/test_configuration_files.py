@@ -6,10 +6,9 @@ import yaml
 
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
-from winch_friction.records.strict_yaml import parse_yaml, read_yaml
+from winch_friction.records.strict_yaml import config_directory, parse_yaml, read_yaml
 
 MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
 

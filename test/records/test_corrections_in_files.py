@@ -8,8 +8,8 @@ import yaml
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.corrections import DECLARED, Correction
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.strict_yaml import config_directory
 
 
 def every_correction():

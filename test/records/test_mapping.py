@@ -13,7 +13,8 @@ from winch_friction.physics.errors import InputError, from_mapping
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_write import write_bag
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.runs import InputMapping, bag_options_of, read_run
+from winch_friction.records.input_mapping import InputMapping, bag_options_of
+from winch_friction.records.runs import read_run
 from winch_friction.replay.recording import replay_recording
 from winch_friction.replay.settings import settings_from_file
 from winch_friction.simulation.scenario import load_scenario

@@ -180,12 +180,33 @@ HEADER_LACKS = "time,motor_speed,main.pressure_a,main.pressure_b\n0,1,,2e6\n1,1,
             "emps",
             ["log.csv: column 'motor_torque' is there but holds no number; it is required: fill it in"],
         ),
+        (
+            "time,motor_speed,main.pressure_a\n0,1,\n1,1,\n",
+            "",
+            ["log.csv: column 'main.pressure_a' is there but holds no number; it is required: fill it in"],
+        ),
     ],
 )
 def test_a_column_without_numbers_is_empty_and_not_missing(tmp_path, text, crane, said):
     with pytest.raises(InputError) as caught:
-        read_run(table(tmp_path, text), load_crane(crane))
+        read_run(table(tmp_path, text), load_crane(crane) if crane else None)
     assert list(caught.value.problems) == said
+
+
+@pytest.mark.parametrize(
+    ("text", "crane"),
+    [
+        ("time,motor_speed,motor_torque,main.pressure_a\n0,1,2,\n1,1,2,\n", "emps"),
+        (
+            "time,motor_speed,main.pressure_a,main.pressure_b,main.displacement,aft.pressure_a\n"
+            "0,1,2e7,2e6,3e-5,\n1,1,2e7,2e6,3e-5,\n",
+            "",
+        ),
+    ],
+)
+def test_an_empty_pressure_of_what_does_not_drive_is_no_obstacle(tmp_path, text, crane):
+    run = read_run(table(tmp_path, text), load_crane(crane) if crane else None)
+    assert len(run) == 2
 
 
 @pytest.mark.parametrize(

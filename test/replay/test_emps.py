@@ -6,11 +6,11 @@ from scipy.integrate import trapezoid
 
 from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.emps import FORCE_GAIN, read_emps
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run, write_run
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.replay.compensator import replay_compensator
 from winch_friction.replay.recording import replay_recording
 from winch_friction.replay.settings import settings_from_file

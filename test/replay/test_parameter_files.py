@@ -3,7 +3,7 @@
 import pytest
 
 from winch_friction.physics.errors import InputError
-from winch_friction.records.runs import bag_options_of
+from winch_friction.records.input_mapping import bag_options_of
 from winch_friction.replay.settings import settings_from_file
 
 

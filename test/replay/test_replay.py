@@ -12,11 +12,11 @@ from winch_friction.compensation import CompensatorConfig, FeedforwardCompensato
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.model_file import load_model, model_to_text
 from winch_friction.records.runs import read_run, write_run
 from winch_friction.records.sample_stream import InputHold
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.records.topics import crane_topics, joint_state, stamp_header
 from winch_friction.replay.compensator import replay_compensator
 from winch_friction.replay.estimator import replay_estimator

@@ -10,10 +10,10 @@ from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.estimation import FrictionEstimator
 from winch_friction.nodes.inputs import ROS
 from winch_friction.nodes.qos import OUTPUT
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.emps import read_emps
 from winch_friction.records.model_file import load_model
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.records.topics import crane_topics, whole_nanoseconds
 from winch_friction.replay.settings import settings_from_file
 

@@ -117,6 +117,12 @@ def test_sensor_errors_leave_the_plant_alone(warm, crane, model):
         assert np.allclose(wrong.run[channel] - plain.run[channel], 2.0 * expected)
 
 
+def test_the_feedback_that_is_off_is_the_driving_groups_in_normal_mode_too(steady, crane, model):
+    plain, off = (simulate(steady, crane, model, hidden=h).run for h in ([], [("swivel_offset", 2.0)]))
+    assert plain.groups == ("main",)
+    assert np.allclose(off["main.displacement"] - plain["main.displacement"], 2.0 * CM3_PER_REV)
+
+
 def test_air_softens_the_loop_at_low_pressure():
     from winch_friction.simulation.plant.equations import compressibility
     from winch_friction.simulation.plant.parameters import PLANT, record

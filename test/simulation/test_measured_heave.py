@@ -5,9 +5,9 @@ import pytest
 
 from winch_friction.cli.demo.legs import voyage_legs
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.simulation import load_scenario, simulate
 from winch_friction.simulation.motion.measured import load_heave
 

@@ -5,7 +5,7 @@ import pytest
 
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 from winch_friction.simulation import load_scenario, simulate
 from winch_friction.simulation.campaigns import PAPER_TESTS, gap_campaign, paper_tests
 from winch_friction.simulation.plant_file import load_plant

@@ -94,7 +94,7 @@ def fit(data: str | Path | Runs, crane: Crane | None = None, *, motor: FrictionM
 def _fit_table(path: Path, name: str, seed: int) -> Fit:
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.supplier_file import read_supplier_table
-    from winch_friction.records.atomic import shipped
+    from winch_friction.records.strict_yaml import shipped
 
     table = read_supplier_table(shipped("suppliers", path, ".csv"))
     found = identify_motor(table, [name], chosen=name, with_complex=False, seed=seed)

@@ -28,7 +28,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from winch_friction.cli.modes import Modes
+from winch_friction.cli import Modes
 from winch_friction.physics.errors import InputError
 from winch_friction.records.plain import finite as finite
 

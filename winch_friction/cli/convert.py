@@ -32,7 +32,8 @@ def run(
       winch-friction convert run log.csv log.parquet log.mcap
     """
     from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.runs import bag_options_of, read_run, refuse_unknown_kind
+    from winch_friction.records.input_mapping import bag_options_of
+    from winch_friction.records.runs import read_run, refuse_unknown_kind
 
     for each in out:
         refuse_input_as_output(refuse_unknown_kind(each), [source])

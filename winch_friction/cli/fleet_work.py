@@ -13,7 +13,7 @@ from typing import Any
 from winch_friction.fleet.ledger import Outcome, work_key
 from winch_friction.fleet.recordings import Recording, at_hand
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import config_directory
+from winch_friction.records.strict_yaml import config_directory
 
 UNIX = 1e8  # s; a time below it counts from some origin of its own and has no date
 

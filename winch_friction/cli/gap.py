@@ -98,8 +98,8 @@ def run_gap(
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.model import unstated
     from winch_friction.physics.friction.term import load_file
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import load_model
-    from winch_friction.records.runs import bag_options_of
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
@@ -113,7 +113,8 @@ def run_gap(
     assumed = not (model or crane)
     model = model or _usual_model(crane, paths)
     crane = load_model(MODEL).crane if assumed else crane
-    read, loaded_crane, seed_model = read_inputs(paths, crane, model, bag_options_of(params_file), unstated)
+    conventions = bag_options_of(params_file) if params_file is not None else {}
+    read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
     for run in read:
         show_warnings(run.warnings)
     refuse_copies(read)
@@ -203,7 +204,7 @@ def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[
 def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
     """For a user's own simulation: what it has to add, as a table."""
     from winch_friction.discrepancy.addition import write_addition
-    from winch_friction.discrepancy.preparation.prepared_run import simulated_column
+    from winch_friction.discrepancy.preparation.own_simulation import simulated_column
 
     if runs and simulated_column(runs[0]):
         sides = [*result.train.runs, *result.holdout.runs]

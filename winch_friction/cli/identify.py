@@ -81,8 +81,8 @@ def motor(
     from winch_friction.identification.supplier_table import FitRange
     from winch_friction.identification.table_remarks import remarks_on
     from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
-    from winch_friction.records.atomic import shipped
     from winch_friction.records.model_file import save_model
+    from winch_friction.records.strict_yaml import shipped
 
     path = shipped("suppliers", table, ".csv")
     refuse_other_kind(out, MODEL, "a model")
@@ -142,8 +142,8 @@ def system(
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
     from winch_friction.physics.errors import Problems
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import save_model
-    from winch_friction.records.runs import bag_options_of
 
     runs, held_out = run_paths(runs), run_paths(held_out or [])
     refuse_other_kind(out, MODEL, "a model")
@@ -271,7 +271,7 @@ def practice(
 
 
 def _example(path: Path) -> Path:
-    from winch_friction.records.atomic import config_directory
+    from winch_friction.records.strict_yaml import config_directory
 
     shipped = config_directory() / "examples" / path
     return shipped if not path.exists() and shipped.is_dir() else path

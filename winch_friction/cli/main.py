@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from winch_friction import __version__
-from winch_friction.cli.modes import without_modes
+from winch_friction.cli import Modes
 from winch_friction.physics.errors import InputError
 
 
@@ -92,6 +92,7 @@ class VerbGroup(TyperGroup):
 
 
 # -- the program
+QUIET, PLAIN = ("--quiet", "-q"), ("--plain",)
 DONE, DEFECT, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 # matrices here are small: threads of BLAS would only wait for each other, on every core of the machine
 SERIAL = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -126,6 +127,15 @@ def _common(
     plain: bool = typer.Option(False, "--plain", help="Tables between tabs, no frames, no colour, no progress."),
 ) -> None:
     """Options before the verb."""
+
+
+def without_modes(arguments: Sequence[str]) -> list[str]:
+    """The words without --quiet and --plain, which are taken wherever they stand (not behind `--`)."""
+    words = list(arguments)
+    end = words.index("--") if "--" in words else len(words)
+    Modes.quiet = any(word in QUIET for word in words[:end])
+    Modes.plain = any(word in PLAIN for word in words[:end])
+    return [word for k, word in enumerate(words) if k >= end or word not in (*QUIET, *PLAIN)]
 
 
 def run(arguments: Sequence[str]) -> int:

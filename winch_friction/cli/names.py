@@ -19,7 +19,7 @@ class Kind:
 
 
 def _files(folder: str, suffix: str = ".yaml") -> dict[str, Path]:
-    from winch_friction.records.atomic import config_directory
+    from winch_friction.records.strict_yaml import config_directory
 
     return {path.stem: path for path in sorted((config_directory() / folder).glob(f"*{suffix}"))}
 

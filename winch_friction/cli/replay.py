@@ -52,7 +52,8 @@ def command(
     from winch_friction.cli.inputs import load_terms, machine_of, provenance_of, refuse_implausible
     from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.model import ASSUMED_STD, unstated
-    from winch_friction.records.runs import bag_options_of, refuse_unknown_kind
+    from winch_friction.records.input_mapping import bag_options_of
+    from winch_friction.records.runs import refuse_unknown_kind
     from winch_friction.replay.recording import replay_recording
     from winch_friction.replay.settings import settings_from_file
     from winch_friction.replay.summary import summary

@@ -227,8 +227,7 @@ def _write_page(text: Any, term: Any, out: Path) -> None:
 
 
 def _content(name: str, what: str, as_json: bool) -> None:
-    from winch_friction.records.atomic import shipped
-    from winch_friction.records.strict_yaml import read_yaml
+    from winch_friction.records.strict_yaml import read_yaml, shipped
 
     path = shipped({"crane": "cranes", "scenario": "scenarios"}[what], name)
     if what == "crane":

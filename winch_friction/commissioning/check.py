@@ -21,8 +21,8 @@ from winch_friction.commissioning.channels import (
     runs_say,
     told_slow_clock,
 )
-from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis, Hypothesis, diagnose
-from winch_friction.commissioning.kinematics import agreements
+from winch_friction.commissioning.diagnose import Diagnosis, Hypothesis, diagnose
+from winch_friction.commissioning.kinematics import CONTRADICTS, Fit, agreements, fit_of
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.readings import COUNTED, reading_findings
 from winch_friction.commissioning.simulated import simulated_findings
@@ -33,10 +33,9 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.atomic import config_directory
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.parts import apart
-from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.runs import apart
+from winch_friction.records.strict_yaml import config_directory, read_yaml
 
 # -- runs against each other
 FEWEST = 3  # runs of a motor group, for most of them to say what is usual
@@ -128,22 +127,24 @@ def quick_check(
     """What speaks against these runs being this crane's, the likeliest mistake first; below a second for a dozen runs.
 
     `others` are cranes that the runs might be of instead, by name (default: the shipped ones). An empty list, or one
-    without an `error`, means that ordinary friction and ordinary sensor errors explain the runs.
-    """
+    without an `error`, means that ordinary friction and ordinary sensor errors explain the runs."""
     return diagnosed(apart(runs)[0], crane, model, others)[0]
 
 
 def diagnosed(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None
-) -> tuple[list[Finding], Diagnosis]:
-    """The findings of `quick_check` and the diagnosis behind them."""
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None,
+    ranked: bool = False,
+) -> tuple[list[Finding], Fit]:  # fmt: skip
+    """The findings of `quick_check` and how the runs fit: diagnosed where they are doubted or `ranked`."""
     others = shipped_cranes() if others is None else others
     known = {name: each for name, each in others.items() if each != crane}
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
-    views = views_of([corrected(run, crane, model) if model is not None else (run, crane) for run in usable])
-    diagnosis = diagnose(views, crane, model, known)
+    own = model if model is not None and model.corrections else None
+    views = views_of([corrected(run, crane, own) if own else (run, crane) for run in usable])
+    fit = fit_of(views, model)
+    diagnosis = diagnose(fit, views, crane, model, known) if ranked or fit.doubted else None
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
     readings = [*reading_findings(runs, crane)]
@@ -154,20 +155,19 @@ def diagnosed(
         *simulated_findings(runs, crane.drive.hydraulic),
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
-        *(group_findings(usable, crane, diagnosis.contradicting) if crane.drive.hydraulic else ()),
-        *(() if slow else _trusted(_mistake(diagnosis, crane), crane)),
+        *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
+        *(() if slow or diagnosis is None else _trusted(_mistake(diagnosis, crane), crane)),
         *(each for each in readings if each.cause != COUNTED),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
-    return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis
+    return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis or fit
 
 
 def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
     """What the balance says: of a hydraulic winch it is known what friction is ordinary; of another drive, whose
-    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing.
-    """
+    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing."""
     if crane.drive.hydraulic:
         return findings
     return [replace(each, severity="warning") if each.contradicts else each for each in findings]

@@ -14,15 +14,15 @@ from winch_friction.commissioning.channels import (
     summaries,
 )
 from winch_friction.commissioning.check import diagnosed
-from winch_friction.commissioning.diagnose import CONTRADICTS, Diagnosis
+from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
-from winch_friction.commissioning.kinematics import Agreement, agreements
+from winch_friction.commissioning.kinematics import CONTRADICTS, Agreement, agreements
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.parts import apart
+from winch_friction.records.runs import apart, without_broken
 
 SCHEMA = "winch_friction.check/1"
 
@@ -107,8 +107,22 @@ def check(
 ) -> CheckResult:
     """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
     runs, holes = apart(runs)  # block means over days would each be one of minutes, in which nothing moves
-    findings, diagnosis = diagnosed(runs, crane, model, others)
-    per_channel = [finding for run in runs for finding in channel_findings(run)]
+    findings, diagnosis = diagnosed(runs, crane, model, others, ranked=True)
+    assert isinstance(diagnosis, Diagnosis)
+    broken = [
+        Finding("warning", "broken", f"{each.sentence}: nobody measured that", each.channel, (each.run,))
+        for each in without_broken(runs)[1]
+    ]
+    told = {(each.runs, each.channel) for each in broken}
+    per_channel = [
+        *broken,
+        *(
+            finding
+            for run in runs
+            for finding in channel_findings(run)
+            if finding.cause != "stuck" or (finding.runs, finding.channel) not in told
+        ),
+    ]
     per_channel += [Finding("note", "gaps", said, "time") for said in holes]
     # a stable sort: the diagnosis stays first among what is equally grave
     findings = sorted([*findings, *per_channel], key=lambda finding: SEVERITIES.index(finding.severity))

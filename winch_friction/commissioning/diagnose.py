@@ -9,8 +9,16 @@ from itertools import combinations
 
 import numpy as np
 
-from winch_friction.commissioning.balance import EFFECTIVE, Closure, closure, static_torque, typical_friction
-from winch_friction.commissioning.kinematics import Agreement, agreements, excesses, range_score
+from winch_friction.commissioning.balance import EFFECTIVE, closure, static_torque, typical_friction
+from winch_friction.commissioning.kinematics import (
+    CONTRADICTS,
+    SURE,
+    Agreement,
+    Fit,
+    agreements,
+    excesses,
+    range_score,
+)
 from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.channels import GRAVITY
@@ -47,10 +55,7 @@ def _is_usual_unit(mistake: Mistake) -> bool:
 
 # -- one mistake
 
-# score of a run above which it cannot be the crane's: ordinary friction and twice a catalogue effect stay below 75
-CONTRADICTS = 100.0
 COMPANION = 20.0  # prior cost of a wrong channel that only tells the speed again: above that of a mixed set of runs
-SURE = 60.0  # a mistake that lowers the score of all runs by this much is named even where each alone would pass
 NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes at least half away
 MIXED = 10.0  # for a mistake that only some of the runs hold
 HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
@@ -71,19 +76,10 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
-    """`score` and `scores` as it stands, the hypotheses from the likeliest on, and how each run closes as it stands."""
+class Diagnosis(Fit):
+    """How the runs fit, and the hypotheses from the likeliest on."""
 
-    score: float
-    scores: tuple[float, ...]
     hypotheses: tuple[Hypothesis, ...]
-    closures: tuple[Closure, ...]
-    names: tuple[str, ...]
-
-    @property
-    def contradicting(self) -> tuple[str, ...]:
-        """Runs that cannot be the crane's."""
-        return tuple(n for n, s in zip(self.names, self.scores, strict=True) if s > CONTRADICTS)
 
     @property
     def best(self) -> Hypothesis | None:
@@ -95,42 +91,30 @@ class Diagnosis:
         return first if self.contradicting or sure else None
 
 
-def score_of(view: RunView, model: FrictionModel | None) -> float:
-    """How badly a run fits the crane: balance, agreement of its channels, range."""
-    return closure(view, model).score + _beside_balance(view)
-
-
-def _beside_balance(view: RunView) -> float:
-    return sum(each.score for each in agreements(view)) + range_score(view)
-
-
 def _kinematics(view: RunView) -> tuple[int, int, int, float]:
     """What the agreement of a view rests on, by identity: a mistake put right makes new arrays of what it changes."""
     return id(view.speed), id(view.rates), id(view.radius), view.gear_ratio
 
 
 def diagnose(
-    views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane]
+    fit: Fit, views: Sequence[RunView], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane]
 ) -> Diagnosis:
-    """Score the runs as they stand; when they contradict the crane, under every mistake, else under the sure ones."""
-    closures = tuple(closure(view, model) for view in views)
-    balance = [each.score for each in closures]
-    scores = np.array([b + _beside_balance(view) for b, view in zip(balance, views, strict=True)])
+    """Score the runs, which `fit` as they stand, under every mistake where they contradict the crane, else under the
+    sure ones."""
+    scores, contradict = np.array(fit.scores), bool(fit.contradicting)
     bench = _Bench(views, scores, model)
-    contradict = bool((scores > CONTRADICTS).any())
     mistakes = [each for each in fixed_mistakes(views, crane, others) if contradict or _is_sure(each)]
     mistakes += [delayed(sign * d, crane.drive.hydraulic) for d in DELAYS for sign in (1.0, -1.0)]
     if contradict:
         mistakes += _free([v for v, s in zip(views, scores, strict=True) if s > CONTRADICTS])
-    mistakes += _companions(views) if contradict or scores.sum() > SURE else []
+    mistakes += _companions(views) if contradict or fit.score > SURE else []
     hypotheses = bench.ranked(mistakes)
     if contradict and (not hypotheses or max(hypotheses[0].scores) > CONTRADICTS):
         firsts = [each.mistake for each in hypotheses[:FIRSTS]]
         pairs = [*common_pairs(mistakes), *_beside(firsts, mistakes, views)]
         found = [each for each in bench.ranked(pairs, PAIR_RUNS) if max(each.scores) < CONTRADICTS]
         hypotheses = sorted([*found, *hypotheses], key=lambda each: each.score)
-    names = tuple(view.name for view in views)
-    return Diagnosis(float(scores.sum()), tuple(scores.tolist()), tuple(hypotheses), closures, names)
+    return Diagnosis(**vars(fit), hypotheses=tuple(hypotheses))
 
 
 def _beside(firsts: Sequence[Mistake], mistakes: Sequence[Mistake], views: Sequence[RunView]) -> list[Mistake]:

@@ -1,16 +1,15 @@
-"""Do the other channels agree with the speed? Angle, reference, wire length and heave tell it again.
-
-Can the values be this crane's at all, how far does each quantity lie beyond what its machine can do. And how a mistake
-is put right in a run's view: the same few changes, times a factor, for every kind of mistake.
+"""How well do runs fit a crane as they stand? Their balance closes, the other channels agree with the speed (angle,
+reference, wire length and heave tell it again), and no quantity lies beyond what its machine can do.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.commissioning.balance import static_torque
-from winch_friction.commissioning.view import GroupView, RunView
+from winch_friction.commissioning.balance import Closure, closure, static_torque
+from winch_friction.commissioning.view import RunView
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
 
@@ -148,71 +147,44 @@ def _top(values: FloatArray) -> float:
     return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
 
 
-# -- a mistake put right
-Repair = Callable[[RunView], RunView]
+# -- all of it
+# score of a run above which it cannot be the crane's: ordinary friction and twice a catalogue effect stay below 75
+CONTRADICTS = 100.0
+SURE = 60.0  # a mistake that lowers the score of all runs by this much is named even where each alone would pass
 
 
-def speed_times(factor: float) -> Repair:
-    """The speed and what follows from it, times a factor."""
-    return lambda view: replace(view, speed=view.speed * factor, acceleration=view.acceleration * factor)
+@dataclass(frozen=True)
+class Fit:
+    """How runs fit as they stand: `score` of all of them, by run, and how the balance of each closes."""
+
+    score: float
+    scores: tuple[float, ...]
+    closures: tuple[Closure, ...]
+    names: tuple[str, ...]
+
+    @property
+    def contradicting(self) -> tuple[str, ...]:
+        """Runs that cannot be the crane's."""
+        return tuple(n for n, s in zip(self.names, self.scores, strict=True) if s > CONTRADICTS)
+
+    @property
+    def doubted(self) -> bool:
+        """Whether a mistake could be named: one contradicts the crane, or all together leave so much to take away."""
+        return bool(self.contradicting) or self.score >= SURE
 
 
-def speeds_times(factor: float, *also: str) -> Repair:
-    """The speed and other channels that tell it, times a factor: what one logger writes in one unit."""
-
-    def undo(view: RunView) -> RunView:
-        rates = {name: rate * factor if name in also else rate for name, rate in view.rates.items()}
-        return replace(speed_times(factor)(view), rates=rates)
-
-    return undo
+def fit_of(views: Sequence[RunView], model: FrictionModel | None) -> Fit:
+    """Score the runs as they stand."""
+    closures = tuple(closure(view, model) for view in views)
+    balance = [each.score for each in closures]
+    scores = np.array([b + _beside_balance(view) for b, view in zip(balance, views, strict=True)])
+    return Fit(float(scores.sum()), tuple(scores.tolist()), closures, tuple(view.name for view in views))
 
 
-def load_times(factor: float) -> Repair:
-    """The load times a factor."""
-
-    def undo(view: RunView) -> RunView:
-        torque = None if view.load_torque is None else view.load_torque * factor
-        return replace(view, load=view.load * factor, load_torque=torque)
-
-    return undo
+def score_of(view: RunView, model: FrictionModel | None) -> float:
+    """How badly a run fits the crane: balance, agreement of its channels, range."""
+    return closure(view, model).score + _beside_balance(view)
 
 
-def groups_changed(change: Callable[[str, GroupView], GroupView]) -> Repair:
-    """Every motor group changed by its name."""
-    return lambda view: replace(view, groups={name: change(name, group) for name, group in view.groups.items()})
-
-
-def drop_times(factor: float, only: str = "") -> Repair:
-    """Pressures times a factor, of one group or of all."""
-
-    def change(name: str, group: GroupView) -> GroupView:
-        if only and name != only:
-            return group
-        return replace(group, drop=group.drop * factor, pressure_sum=group.pressure_sum * abs(factor))
-
-    return groups_changed(change)
-
-
-def port_times(factor: float, port: str) -> Repair:
-    """The pressures of one port of all groups, times a factor."""
-
-    def change(_: str, group: GroupView) -> GroupView:
-        a, b = 0.5 * (group.pressure_sum + group.drop), 0.5 * (group.pressure_sum - group.drop)
-        a, b = (a * factor, b) if port == "a" else (a, b * factor)
-        return replace(group, drop=a - b, pressure_sum=a + b)
-
-    return groups_changed(change)
-
-
-def displacement_times(factor: float, only: str = "") -> Repair:
-    """Displacements times a factor, of one group or of all."""
-
-    def change(name: str, group: GroupView) -> GroupView:
-        return group if only and name != only else replace(group, displacement=group.displacement * factor)
-
-    return groups_changed(change)
-
-
-def motor_torque_times(factor: float) -> Repair:
-    """The motor torque times a factor."""
-    return lambda v: v if v.motor_torque is None else replace(v, motor_torque=v.motor_torque * factor)
+def _beside_balance(view: RunView) -> float:
+    return sum(each.score for each in agreements(view)) + range_score(view)

@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from winch_friction.commissioning.kinematics import (
+from winch_friction.commissioning.kinematics import tells_speed
+from winch_friction.commissioning.other_cranes import claim
+from winch_friction.commissioning.repairs import (
     Repair,
     displacement_times,
     drop_times,
@@ -19,9 +21,7 @@ from winch_friction.commissioning.kinematics import (
     port_times,
     speed_times,
     speeds_times,
-    tells_speed,
 )
-from winch_friction.commissioning.other_cranes import claim
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.channels import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.signals import FloatArray

@@ -177,10 +177,10 @@ class FeedforwardCompensator:
         if dt == 0.0:
             self._predictor.reset()
         self._since = sample.time
-        sample = self._correct(sample)
+        if not self._correct.idle:
+            sample = self._correct(sample)
+            distrusted += tuple(f"{name} cannot be taken out" for name in self._correct.standing(sample.time))
         self._lost = self._needs.missing(sample) + distrusted
-        if standing := self._correct.standing(sample.time):
-            self._lost += tuple(f"{name} cannot be taken out" for name in standing)
         usable = not self._lost and self._aim(sample, dt, asked)
         if not usable:
             self._predictor.reset()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray

@@ -7,15 +7,14 @@ import numpy as np
 
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.grid import HOLE
-from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING, PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.preparation.wire_mode import settling_time
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.parts import NO_RECORD
+from winch_friction.records.runs import NO_RECORD
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"

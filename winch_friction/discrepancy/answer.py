@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine.blocks import Blocks, Region
 from winch_friction.discrepancy.engine.chance import Dependence, Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Considered, Selection
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 

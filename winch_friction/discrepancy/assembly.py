@@ -41,7 +41,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.table import in_windows
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.atomic import shipped
+from winch_friction.records.strict_yaml import shipped
 
 CATALOGUES = "catalogue's"  # of two laws, the one without a name of its own
 LEFT_AS_GIVEN = "the model is left as it was given: fitted to what nothing explains, it does worse on the locked runs"

@@ -10,8 +10,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
-from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
 from winch_friction.discrepancy.preparation.suspended_load import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
@@ -120,6 +119,8 @@ def as_rigid(given: Given) -> Given:
 
 
 def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple[tuple[Run, ...], Crane]:
+    if not model.corrections:
+        return tuple(runs), crane
     pairs = [corrected(run, crane, model) for run in runs]
     return tuple(run for run, _ in pairs), pairs[0][1]
 

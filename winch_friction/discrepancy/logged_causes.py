@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 
 NO_SIGNAL = ("time", "shaft_angle", "acceleration")  # channels that every run has all of
@@ -33,7 +33,7 @@ def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
     laws = [np.column_stack([np.sin(hour), np.cos(hour)])] if np.ptp(starts) > DAY else []
     for name, values in {"": starts, **medians}.items():
         x = _spread(values)
-        if not np.isfinite(values).all() or x is None:
+        if x is None:
             continue
         laws += [np.column_stack([x, x**2]), *(x[:, None] > at for at in np.unique(x)[:-1])]
         laws += [np.column_stack([x, load, x * load])] if load is not None else []
@@ -43,7 +43,7 @@ def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
 
 
 def _spread(values: FloatArray) -> FloatArray | None:
-    """The same about their mean, over their range; None where they are all alike."""
+    """The same about their mean, over their range; None where they are all alike or one is not known."""
     wide = float(np.ptp(values))
     return (values - values.mean()) / wide if wide > 1e-9 * float(np.abs(values).max()) else None
 
@@ -77,6 +77,6 @@ def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
         yes, no = medians[there], medians[~there]
         if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):
             return True
-        if name in NUMBERED and not set(yes) & set(no) and (len(set(yes)) == 1 or len(set(yes)) < len(yes)):
+        if name in NUMBERED and not set(yes) & set(no) and len(set(yes)) < len(yes):  # of two runs or more
             return True
     return False

@@ -21,7 +21,7 @@ from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch import Crane
-from winch_friction.records.atomic import shipped
+from winch_friction.records.strict_yaml import shipped
 
 EXPERIMENTS = (
     "experiment_zero_check", "experiment_loads", "experiment_displacement_sweep", "experiment_boost_step",

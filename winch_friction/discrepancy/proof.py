@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks,
 from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.problem import noise_of_run
 from winch_friction.discrepancy.expansion import Given
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import block_size, least_noise_of, timing_column
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel

@@ -19,7 +19,7 @@ from winch_friction.discrepancy.engine.crossfit import flip_p_values
 from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Expansion
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import prove
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search

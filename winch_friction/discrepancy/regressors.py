@@ -4,7 +4,14 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, machine_sizes
+from winch_friction.discrepancy.candidates.candidate import (
+    OF_WINCH,
+    REFERENCE_INERTIA,
+    REFERENCE_LIFT,
+    REFERENCE_MOTOR,
+    REFERENCE_MOTORS,
+    Candidate,
+)
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
@@ -12,11 +19,12 @@ from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
@@ -31,6 +39,30 @@ TOLERANCES = (
     # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar
     *((name, STEP / 3.0, -STEP, STEP) for name in ("zero", "passive zero")),
 )
+LINE, CHURNING = "line_pressure_drop", "churning"
+CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
+SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
+
+
+def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
+    """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
+    motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
+    winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
+    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Empty
+    where no run shows motors.
+    """
+    run = runs[0]
+    swept = dict(run.constants).get("max_displacement", 0.0)
+    motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
+    if not swept or not motors:
+        return {}
+    one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
+    lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
+    torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
+    top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
+    churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
+    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole)}
+    return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 
 def base_of(

@@ -8,9 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import CUT, Candidate, Estimates, ParameterEstimate, Sides
-from winch_friction.discrepancy.candidates.groups import driving_alone
-from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.candidates.candidate import (
+    CUT,
+    Candidate,
+    Estimates,
+    ParameterEstimate,
+    Sides,
+    driving_alone,
+)
+from winch_friction.discrepancy.detectors.ripple import TERM, Ripple
+from winch_friction.discrepancy.detectors.ripple_waves import in_phase
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -119,23 +126,19 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         found = estimates_of(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
         _add(own, finding.slot, found, sides, seed)
-    if (
-        search.ripple
-        and angle.TERM not in seed.term_names
-        and (wave := _common_wave(search, search.ripple)) is not None
-    ):
-        own.add_term(None, term_named(angle.TERM), wave)
+    if search.ripple and TERM not in seed.term_names and (wave := _common_wave(search, search.ripple)) is not None:
+        own.add_term(None, term_named(TERM), wave)
     for lost in search.flow:
         for each in lost.corrections:
             own.add_correction(each)
     return replace(_model_of(own, seed, search.given.crane, parameters, provenance), said=said)
 
 
-def _common_wave(search: Search, ripple: angle.Ripple) -> dict[str, ParameterEstimate] | None:
+def _common_wave(search: Search, ripple: Ripple) -> dict[str, ParameterEstimate] | None:
     pairs = list(zip(search.given.runs, search.expansion.runs, strict=True))
     # what has been found so far is not in the expansion's prediction; it is slow against a ripple
     training = [(run, p) for run, p in pairs if p.name in search.train]
-    return angle.in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
+    return in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
 
 
 def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: FrictionModel) -> None:
@@ -250,8 +253,7 @@ def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple
     scale = base.scale[keep]
     excess = max(fitted.train_loss / max(float(cross.problem.grams.count.sum()), 1.0), 1.0)
     covariance = cross.covariance(fitted)[np.ix_(keep, keep)] * excess
-    # no parameter is less certain after the fit than before it
-    shrink = np.minimum(1.0, 1.0 / np.sqrt(np.diag(covariance)))
+    shrink = np.minimum(1.0, 1.0 / np.sqrt(np.diag(covariance)))  # none is less certain after the fit than before it
     covariance = covariance * np.outer(shrink, shrink) * np.outer(scale, scale)
     return fitted.beta[keep] * scale, covariance[:count, :count], np.sqrt(np.diag(covariance)[count:])
 

@@ -20,6 +20,7 @@ from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
 from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import Ripple
+from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
 from winch_friction.discrepancy.detectors.soft_oil import FreeAir
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -28,7 +29,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet, met_in_turn
 from winch_friction.discrepancy.locking import Split
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, layout_of
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -223,11 +224,11 @@ def _refined(candidates: Sequence[Candidate], slots: Sequence[Slot]) -> list[Can
 
 def _waves(expansion: Expansion, ripple: Ripple | None) -> Mapping[str, FloatArray]:
     """What each run has of the ripple."""
-    return angle.waves_of(expansion.runs, ripple) if ripple else {}
+    return waves_of(expansion.runs, ripple) if ripple else {}
 
 
 def _cleaned(expansion: Expansion, ripple: Ripple | None, waves: Mapping[str, FloatArray]) -> Expansion:
     """The runs without these waves of the ripple."""
     if ripple is None:
         return expansion
-    return replace(expansion, runs=tuple(angle.without_ripple(run, ripple, waves[run.name]) for run in expansion.runs))
+    return replace(expansion, runs=tuple(without_ripple(run, ripple, waves[run.name]) for run in expansion.runs))

@@ -13,6 +13,7 @@ from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.chance import dependences, least_part
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
+from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.locking import Split
 from winch_friction.discrepancy.proof import (
     adds,
@@ -27,7 +28,6 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.tolerances import takes_little, within_a_sample, within_a_step
 from winch_friction.physics.winch import Crane
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read

@@ -18,19 +18,20 @@ from winch_friction.discrepancy.candidates.candidate import (
     ParameterEstimate,
     Shape,
     Values,
+    group_shapes,
     single_shape,
+    spoken_of,
 )
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.candidates.geometry import hanging
-from winch_friction.discrepancy.candidates.groups import group_shapes, spoken_of
 from winch_friction.discrepancy.candidates.signals import scale_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.chance import does_as_well
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.balance import model_states
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -235,8 +236,7 @@ def _partner(tie: Tie, cross: CrossFit, found: Explanation, own: Explanation) ->
     scale = [float(cross.problem.layout.scales[each.slots[-1].columns[-1]]) for each in (found, own)]
     before, after = (float(each.beta[-1]) * s for each, s in zip((found, own), scale, strict=True))
     std, parameter = float(np.sqrt(cross.covariance(own)[-1, -1])) * scale[1], own.slots[-1].origin[0].linear[0]
-    factor = before / after if after else 1.0
-    return Partner(tie, ParameterEstimate(after, std, parameter.unit), factor, parameter.name)
+    return Partner(tie, ParameterEstimate(after, std, parameter.unit), before / after if after else 1.0, parameter.name)
 
 
 def _fixed(candidate: Candidate, shape: Shape) -> Candidate:

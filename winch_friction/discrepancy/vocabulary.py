@@ -17,7 +17,7 @@ import sympy as sp
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.grammar import Factor, Law
 from winch_friction.discrepancy.preparation.grid import lagged
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM, quotient_unit
 from winch_friction.physics.friction import Parameter, Scope, State, Term, symbols

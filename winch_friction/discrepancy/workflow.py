@@ -24,7 +24,7 @@ from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
 from winch_friction.discrepancy.preparation.grid import thinned
-from winch_friction.discrepancy.preparation.prepared_run import against_simulations
+from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
@@ -35,8 +35,7 @@ from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLI
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.broken_samples import without_broken
-from winch_friction.records.parts import apart
+from winch_friction.records.runs import apart, without_broken
 
 # -- names that one law outdoes
 
@@ -67,7 +66,7 @@ def by_groups(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng
     """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
     the locked runs to their floor, and the others near theirs."""
     given = trial.search.given
-    own = of_one_group(given.prepared, given.model)
+    own = of_one_group(given.prepared)
     search = search_runs(split, given, replace(options, candidates=tuple(own)), rng) if own else None
     if search is None or not search.selection.found:
         return trial
@@ -217,8 +216,11 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     refuse(runs, options.holdout, options.seed)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
-    parts, broken = without_broken(parts)
-    every = against_simulations([thinned(run) for run in parts], model, crane)
+    parts, found = without_broken(parts)
+    broken = [f"{each.sentence}; left out" for each in found]
+    every = [thinned(run) for run in parts]
+    if any(name.endswith(SIMULATED) for run in every for name in run.columns):
+        every = against_simulations(every, model, crane)
     runs, notes = adequacy.long_enough(every)
     notes = [*holes, *broken, *notes]
     checks = adequacy.of_records(every, runs)

@@ -16,7 +16,7 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 # minus what it changes by, whichever way drive and shaft went from one to the other: of that change squared
 WITHIN = 1.0 / 3.0
 
-Point = tuple[float, ...]  # an operating point in the order of `symbols.layout`
+Point = tuple[float, ...]  # an operating point in the order of `compiled.layout`
 
 
 class FrictionFunctions:

@@ -9,8 +9,7 @@ import numpy as np
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
-from winch_friction.records.atomic import shipped
-from winch_friction.records.strict_yaml import Section, read_yaml
+from winch_friction.records.strict_yaml import Section, read_yaml, shipped
 
 SCHEMA = "winch_friction.unit_spread/1"
 

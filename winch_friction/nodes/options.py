@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from winch_friction.physics.errors import check, option
-from winch_friction.records.runs import InputMapping
+from winch_friction.records.input_mapping import InputMapping
 
 
 @dataclass(frozen=True)

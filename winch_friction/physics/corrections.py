@@ -49,8 +49,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     """A run and a crane without the errors that the model knows of.
 
     What a signal had for a time is taken out of the runs that began then. A delay shortens the run by what it shifts.
-    Raises `InputError`, one line for all of it, where the run lacks a
-    channel that a correction needs or the crane a group or layer that one names.
+    Raises `InputError`, one line for all of it, where a channel, group or layer that a correction needs is missing.
     """
     if not model.corrections:
         return run, crane
@@ -251,9 +250,10 @@ class SampleCorrector:
                 "mend it at its source and take it out of the model's corrections, or end its windows ('during')"
             )
         self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
-        live = [c for c in model.corrections if c.declared.live]
-        self._signals = [c for action in SIGNAL_ORDER for c in _in_turn(live) if c.declared.action is action]
+        live = [c for c in _in_turn(model.corrections) if c.declared.live]
+        self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
         self._lacking: tuple[str, ...] = ()
+        self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
 
     @property
     def uncorrected(self) -> tuple[str, ...]:
@@ -262,7 +262,7 @@ class SampleCorrector:
 
     def standing(self, time: float) -> tuple[str, ...]:
         """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
-        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time))) if self._over else ()
+        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
 
     def __call__(self, sample: Sample) -> Sample:
         """The sample without its errors; the given one is left as it is."""

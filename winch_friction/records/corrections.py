@@ -18,14 +18,10 @@ from winch_friction.physics.friction.term import Scope, Term
 from winch_friction.records.headers import conversion_to_si
 from winch_friction.records.strict_yaml import Section, as_quantity, finite
 
-KEY = "corrections"
-
 
 def read_corrections(top: Section) -> tuple[Correction, ...]:
     """The corrections of a model file in SI; raises `InputError`, naming file and entry, for what is not one."""
-    if KEY not in top:
-        return ()
-    section = top.section(KEY)
+    section = top.section("corrections")
     found = []
     for name in section.content:
         entry = section.get(name)
@@ -125,8 +121,6 @@ def _entry(c: Correction) -> dict[str, Any]:
 # -- tabulated terms
 def read_tables(top: Section) -> dict[str, Term]:
     """The tabulated terms of a model file by name; `InputError` says what is wrong with one."""
-    if "tables" not in top:
-        return {}
     section = top.section("tables")
     found = {name: _read(section.section(name), name) for name in map(str, section.content)}
     section.close()

@@ -10,9 +10,8 @@ from typing import Any
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.winch.crane import SLOWEST_FOR_POWER, Crane, Drive, Drum
-from winch_friction.records.atomic import shipped
 from winch_friction.records.schemas import with_all_problems
-from winch_friction.records.strict_yaml import Section, as_quantity, expect_kind, read_yaml
+from winch_friction.records.strict_yaml import Section, as_quantity, expect_kind, read_yaml, shipped
 
 SCHEMA = "winch_friction.crane/1"
 RATINGS = {"rated_pressure": "Pa", "rated_speed": "rad/s", "rated_load": "kg"}  # optional

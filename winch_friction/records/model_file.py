@@ -11,12 +11,12 @@ from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.friction import FrictionModel, registered_terms, term_named
 from winch_friction.physics.friction.compiled import unique_parameters
-from winch_friction.physics.friction.symbols import CONSTANT_LIMITS, CONSTANTS
+from winch_friction.physics.friction.symbols import CONSTANTS
 from winch_friction.physics.friction.term import Parameter, Term
-from winch_friction.records.atomic import shipped, write_text
+from winch_friction.records.atomic import write_text
 from winch_friction.records.corrections import corrections_content, read_corrections, read_tables, tables_content
 from winch_friction.records.schemas import with_all_problems
-from winch_friction.records.strict_yaml import Section, expect_kind, finite, parse_yaml, read_yaml, spread
+from winch_friction.records.strict_yaml import Section, expect_kind, finite, parse_yaml, read_yaml, shipped, spread
 
 SCHEMA = "winch_friction.model/1"
 SYMMETRIC = 1e-6  # what a correlation may miss by that was written with six digits or more
@@ -52,7 +52,7 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
     """A model from parsed YAML."""
     top = Section(content, where)
     _check_schema(top)
-    tables = read_tables(top)
+    tables = read_tables(top) if "tables" in top else {}
     terms = _terms(top, tables)
     entries = _entries(top, terms)
     model = FrictionModel(
@@ -63,7 +63,7 @@ def model_from_content(content: Any, where: str) -> FrictionModel:
         bounds={entry.name: entry.bounds for entry in entries if entry.bounds},
         constants=_constants(top),
         provenance=_provenance(top),
-        corrections=read_corrections(top),
+        corrections=read_corrections(top) if "corrections" in top else (),
         crane=top.text("crane", ""),
     )
     top.get("description")
@@ -191,11 +191,12 @@ def _constants(top: Section) -> dict[str, float]:
         section.get(each.name)  # known, whether this file has it or not
     values = {each.name: section.quantity(each.name, each.unit) for each in CONSTANTS if each.name in section}
     section.close()
-    units, wrong = {each.name: each.unit for each in CONSTANTS}, []
-    for name, value in values.items():
-        low, high = CONSTANT_LIMITS[name]
+    wrong = []
+    for each in CONSTANTS:
+        low, high = each.limits
+        value = values.get(each.name, low)
         if not low <= value <= high:
-            shown = f"{name} is {value:.4g} {units[name]}".removesuffix(" 1")
+            shown = f"{each.name} is {value:.4g} {each.unit}".removesuffix(" 1")
             wrong.append(f"{section.where}: {shown}, outside {low:g} ... {high:g}; is the unit right?")
     if wrong:
         raise InputError(*wrong)
@@ -210,8 +211,8 @@ def _content(model: FrictionModel) -> dict[str, Any]:
     if model.constants:
         units = {each.name: each.unit for each in CONSTANTS}
         content["constants"] = {k: {"value": float(v), "unit": units[k]} for k, v in model.constants.items()}
-    if tables := tables_content(model.terms):
-        content["tables"] = tables
+    if any(term.table is not None for term in model.terms):
+        content["tables"] = tables_content(model.terms)
     content["parameters"] = {p.name: _entry_content(model, k, p) for k, p in enumerate(model.parameters)}
     if model.covariance is not None and np.any(model.covariance - np.diag(np.diag(model.covariance))):
         content["correlation"] = _correlation(model.covariance)

@@ -1,20 +1,25 @@
-"""Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well).
+"""Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well). And what of
+them nobody measured: the silence between records that were merged into one file, and samples of a channel that stands
+still while the others live, or jumps; for `gap` and `check` alike.
 
-How the inputs of one machine travel is said once, for nodes and for every verb that reads a bag.
+A transmitter that hangs repeats its last value to the last digit, and where what it measures moved on meanwhile it
+leaps when it wakes; a lost telegram is one sample of 0 or of full scale.
+They are made missing, which every reader knows how to leave out, and said.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+import itertools
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from winch_friction.physics.errors import InputError, Problems, check, from_mapping, option
-from winch_friction.physics.signals import Run
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.strict_yaml import read_yaml
-from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
+import numpy as np
 
-NODES = ("compensator", "estimator")  # that have inputs, by the names of their sections in a parameter file
+from winch_friction.physics.errors import InputError, Problems, counted
+from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.slow_columns import filled
+
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
 
@@ -92,90 +97,138 @@ def refuse_unknown_kind(path: Path) -> Path:
     return path
 
 
-# -- how inputs travel
+# -- records that were merged into one file
+NO_PAUSE = 1e9  # s, thirty years: a clock that is wrong, which `check` says
+SLOW = 10.0  # usual steps; a time in ms under [s] has steps of 20 s, and no hole where one is lost
+NO_RECORD = 1.0  # s; less is no record of a winch at work
+LONGEST_HOLE = 30.0  # s without a sample, after which a record is another run: half the time a swing takes
+
+
+def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
+    """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
+    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows. So with what is said of
+    columns that are written in every n-th row only."""
+    found, notes = list[Run](), list[str]()
+    for run in runs:
+        steps = np.diff(run.time)
+        ends = np.flatnonzero(steps > max(LONGEST_HOLE, SLOW * float(np.median(steps)) if len(steps) else 0.0)) + 1
+        bounds = itertools.pairwise([0, *ends.tolist(), len(run)])
+        whole = [(a, b) for a, b in bounds if run.time[b - 1] - run.time[a] >= NO_RECORD]
+        # a log of a sample a minute is a slow one, and not full of holes
+        if not len(ends) or not whole or steps.max() > NO_PAUSE:
+            found.append(run)
+            continue
+        found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
+        longest = float(steps.max())
+        notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
+    whole_rows = [filled(run) for run in found]
+    return [run for run, _ in whole_rows], notes + [note for _, said in whole_rows for note in said]
+
+
+def _part(run: Run, name: str, start: int, end: int) -> Run:
+    columns = {each: values[start:end] for each, values in run.columns.items()}
+    aside = {each: values[start:end] if len(values) == len(run) else values for each, values in run.aside.items()}
+    return replace(run, name=name, columns=columns, aside=aside)
+
+
+# -- samples that no sensor measured
+# what has noise whatever the winch does; a speed in counts of an encoder is the same for seconds, and hangs if it leaps
+LIVING = (
+    "pressure_a", "pressure_b", "motor_torque", "mechanical_power", "motor_current", "rope_force", "load_torque",
+)  # fmt: skip
+MEASURED = ("motor_speed", *LIVING)
+STILL, FEWEST = 1.0, 20  # s and samples that a channel must repeat; slow loggers repeat a value for some samples
+LIVES = 0.5  # of the steps between samples, in which a channel changes that has noise, and so does not stand by chance
+LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse digit stands still for most of it
+JUMPS = 20.0  # usual steps between samples, from the median of three
+LEAPS, QUICK = 3.0, 99.0  # times a step of this percentile: those of the hardest ramps, hangs themselves are rarer
+MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
+
+
 @dataclass(frozen=True)
-class InputMapping:
-    """Groups, joints, fields and conventions of the input messages. Raises `InputError` for values out of range."""
+class Broken:
+    """Samples of one channel of a run that no sensor measured, and what they do."""
 
-    groups: tuple[str, ...] = option(("active", "passive"), doc="motor groups on the shaft, by their names in topics")
-    speed_joint: str = option(
-        "winch_motor", doc="joint whose speed winch/joint_states carries: the motor's, or drum_joint"
-    )
-    drum_joint: str = option("winch_drum", doc="name of the drum's joint; its speed is multiplied by the gear ratio")
-    swash_joint: str = option("{group}_swash", doc="joint of winch/<group>/displacement; {group} is the group's name")
-    pressure_reference: str = option("gauge", choices=PRESSURE_REFERENCES, doc="what the pressure transducers measure")
-    displacement_unit: str = option(
-        "fraction", choices=DISPLACEMENT_UNITS, doc="unit of the displacement joints: of the maximum, or m3/rad"
-    )
-    float64_inputs: tuple[str, ...] = option(
-        (), doc="channels that a plain bridge sends as std_msgs/Float64, stamped on receipt, e.g. active.pressure_a"
-    )
+    run: str
+    channel: str
+    what: str
 
-    def __post_init__(self) -> None:
-        check(self)
-
-    def topics(self, crane: Crane) -> TopicMap:
-        """The input topics of this crane under these conventions."""
-        return crane_topics(
-            crane,
-            self.groups,
-            displacement_unit=self.displacement_unit,
-            float64_channels=self.float64_inputs,
-            **self.joints(),
-        )
-
-    def joints(self) -> dict[str, Any]:
-        """What `open_bag` needs to be told: it finds groups, units and plain inputs in the bag itself."""
-        motor = {} if self.speed_joint == self.drum_joint else {"motor_joint": self.speed_joint}
-        return {
-            "speed_joint": self.speed_joint, "drum_joint": self.drum_joint, "swash_joint": self.swash_joint,
-            "pressure_reference": self.pressure_reference, **motor,
-        }  # fmt: skip
+    @property
+    def sentence(self) -> str:
+        """In words, with run and channel."""
+        return f"{self.run}: {self.channel} {self.what}"
 
 
-def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
-    """Parameters of a node in a ROS parameter file: those of every node (`/**`) and its own."""
-    if not isinstance(content, Mapping):
-        raise InputError(f"{where}: not a ROS parameter file: expected node names with ros__parameters")
-    merged: dict[str, Any] = {}
-    for name, section in content.items():
-        if str(name).rsplit("/", 1)[-1] in ("**", node):
-            if not isinstance(section, Mapping) or "ros__parameters" not in section:
-                raise InputError(f"{where}: {name} has no ros__parameters; is this a ROS parameter file?")
-            own = section["ros__parameters"] or {}
-            if not isinstance(own, Mapping):
-                raise InputError(f"{where}: {name}: ros__parameters must hold names with values, found {own!r}")
-            merged |= own
-    return merged
+def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
+    """The runs with what nobody measured as NaN, and what is said of these."""
+    found, told = list[Run](), list[Broken]()
+    for run in runs:
+        own = {name: run[name] for name in run.columns if name.rpartition(".")[2] in MEASURED}
+        changes = {name: np.abs(np.diff(values)) > 0.0 for name, values in own.items()}
+        mended = dict(run.columns)
+        for name, values in own.items():
+            others = [each for other, each in changes.items() if other != name]
+            find = _standing if name.rpartition(".")[2] in LIVING else _hanging
+            still, jumping = find(run.time, values, changes[name], others), _jumping(values)
+            if still.any():
+                told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
+            if jumping.any():
+                samples = counted(int(jumping.sum()), "single sample", "single samples")
+                told.append(Broken(run.name, name, f"jumps in {samples}"))
+            if (still | jumping).any():
+                mended[name] = np.where(still | jumping, np.nan, values)
+        found.append(replace(run, columns=mended))
+    return found, told
 
 
-def refuse_without_nodes(content: Any, where: str) -> None:
-    """Raise `InputError` for a file none of whose sections is one of `NODES`: it would set nothing."""
-    found = [str(name) for name in content] if isinstance(content, Mapping) else []
-    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *NODES}:
-        raise InputError(
-            f"{where}: no parameters of {' or '.join(NODES)}: expected one of these names (or /**) with "
-            f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"
-        )
+def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """Samples (samples,) that repeat the one before for long, while another channel lives; none of a winch at rest."""
+    still = np.zeros(len(values), bool)
+    long = [(a, b) for a, b in _long_spells(time, values, changes) if values[a] != 0.0]
+    rest = np.ones(len(changes), bool)
+    for a, b in long:
+        rest[a : b - 1] = False
+    if not long or rest.mean() < LEAST_ALIVE or changes[rest].mean() < LIVES:
+        return still
+    for a, b in long:
+        if any(each[a : b - 1].mean() >= LIVES for each in others):
+            still[a + 1 : b] = True
+    return still
 
 
-def bag_options_of(params_file: Path | None) -> dict[str, Any]:
-    """Options of `open_bag` from the nodes' ROS parameter file; none without one.
-
-    What only the estimator's section says holds, too: both nodes hear the same inputs. Raises `InputError` for what
-    is no such file.
+def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
+    leaps: a coarse one rests on its digits, and goes on from there by steps.
     """
-    if params_file is None:
-        return {}
-    content, parameters = read_yaml(params_file), dict[str, Any]()
-    refuse_without_nodes(content, str(params_file))
-    for node in reversed(NODES):
-        parameters |= parameters_of(content, node, str(params_file))
-    names = {each.name for each in fields(InputMapping)}
-    own = {key: tuple(filter(None, v)) if isinstance(v, list) else v for key, v in parameters.items() if key in names}
-    mapping = from_mapping(InputMapping, own, str(params_file))
-    options = mapping.joints()
-    if "motor_speed" in mapping.float64_inputs:
-        options["float64_channels"] = mapping.float64_inputs
-    said = "displacement_unit" in own and any(own.get("float64_inputs", ()))
-    return options | ({"displacement_unit": own["displacement_unit"]} if said else {})
+    still, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    moved = steps[np.isfinite(steps) & (steps > 0.0)]
+    for a, b in _long_spells(time, values, changes) if len(moved) else ():
+        leaps = b < len(values) and steps[b - 1] > LEAPS * float(np.percentile(moved, QUICK))
+        if leaps and any(each[a : b - 1].mean() >= LIVES for each in others):
+            still[a + 1 : b] = True
+    return still
+
+
+def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
+    """First sample and end of what is repeated to the last digit for long."""
+    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
+    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST]
+    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
+
+
+def _jumping(values: FloatArray) -> np.ndarray:
+    """Single samples (samples,) far from both of their neighbours."""
+    none = np.zeros(len(values), bool)
+    if len(values) < FEWEST:
+        return none
+    middle = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
+    off = np.abs(values[1:-1] - middle)
+    steps = np.abs(np.diff(values))
+    steps = steps[np.isfinite(steps) & (steps > 0.0)]  # a digit of a coarse transducer is no jump
+    if len(steps):
+        none[1:-1] = off > JUMPS * float(np.median(steps))
+    return none if none.mean() <= MOST else np.zeros(len(values), bool)
+
+
+def _length(time: FloatArray, marked: np.ndarray) -> float:
+    return float(np.sum(np.diff(time)[marked[1:]]))

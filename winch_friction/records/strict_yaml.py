@@ -1,8 +1,11 @@
-"""YAML read strictly: every key is asked for by name, the rest is refused in one line that says where."""
+"""Configuration files: where the shipped ones lie, and YAML read strictly: every key is asked for by name, the rest is
+refused in one line that says where.
+"""
 
 import contextlib
 import math
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +13,7 @@ from typing import Any
 import yaml
 
 from winch_friction.physics.channels import factor_to_si
-from winch_friction.physics.errors import InputError, unknown_key
+from winch_friction.physics.errors import InputError, meant, unknown_key
 
 
 def kind_said(content: Any) -> str:
@@ -179,3 +182,36 @@ def _said(value: Any) -> str:
     shown = repr(value)
     shown = shown if len(shown) <= 60 else f"{shown[:60]}..."  # a log taken for YAML is one long text
     return f"{shown} ({type(value).__name__})"
+
+
+# -- what is shipped
+_PACKAGE = "winch_friction"
+
+
+def config_directory() -> Path:
+    """The directory with cranes/, models/, nodes/, scenarios/; raises `InputError` when the installation lacks it."""
+    for candidate in _candidates():
+        if (candidate / "models").is_dir():
+            return candidate
+    raise InputError("the shipped configuration was not found: reinstall the package, or give paths instead of names")
+
+
+def _candidates() -> list[Path]:
+    package = Path(__file__).resolve().parents[1]
+    prefixes = [Path(sys.prefix), *package.parents[:5]]
+    return [package.parent / "config", *(prefix / "share" / _PACKAGE / "config" for prefix in prefixes)]
+
+
+def shipped(kind: str, name: str | Path, suffix: str = ".yaml") -> Path:
+    """A path as given, or the shipped file of that name, e.g. ('cranes', 'crane_150t')."""
+    path = Path(name)
+    if path.is_file():
+        return path
+    folder = config_directory() / kind
+    candidate = folder / f"{name}{suffix}"
+    if candidate.is_file():
+        return candidate
+    known = sorted(each.stem for each in folder.glob(f"*{suffix}"))
+    raise InputError(
+        f"'{name}' is neither a file nor a shipped name in {kind};{meant(str(name), known)} shipped: {', '.join(known)}"
+    )

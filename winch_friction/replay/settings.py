@@ -11,8 +11,8 @@ from winch_friction.estimation import EstimatorConfig
 from winch_friction.physics.errors import InputError, from_mapping, limits_of
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import load_file
+from winch_friction.records.input_mapping import NODES, parameters_of, refuse_without_nodes
 from winch_friction.records.model_file import load_model
-from winch_friction.records.runs import NODES, parameters_of, refuse_without_nodes
 from winch_friction.records.strict_yaml import finite, read_yaml
 
 OF_THE_ESTIMATOR = (("model_period", "model_period"), ("max_age", "estimator_max_age"))  # and what they are here

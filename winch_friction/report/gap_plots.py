@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, RPM

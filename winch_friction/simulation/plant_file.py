@@ -5,8 +5,7 @@ from typing import Any, Literal
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.atomic import shipped
-from winch_friction.records.strict_yaml import expect_kind, read_yaml
+from winch_friction.records.strict_yaml import expect_kind, read_yaml, shipped
 from winch_friction.simulation.pydantic_v1 import Field, StrictStr
 from winch_friction.simulation.quantities import (
     CubicMetres,

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import shipped
-from winch_friction.records.strict_yaml import as_quantity, expect_kind, read_yaml
+from winch_friction.records.strict_yaml import as_quantity, expect_kind, read_yaml, shipped
 from winch_friction.simulation.pydantic_v1 import Field, StrictStr, root_validator, validator
 from winch_friction.simulation.quantities import (
     CubicMetres,

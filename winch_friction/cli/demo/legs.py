@@ -9,8 +9,8 @@ import yaml
 
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
-from winch_friction.records.atomic import shipped, write_text
-from winch_friction.records.strict_yaml import read_yaml
+from winch_friction.records.atomic import write_text
+from winch_friction.records.strict_yaml import read_yaml, shipped
 from winch_friction.simulation.scenario import Measured, Scenario, load_scenario, scenario_from_content
 
 # what the legs after the first change; a factor tuned at the first meets a light and a heavy load, and smaller motors

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.correction import Correction, declared_correction
+from winch_friction.physics.friction.correction import DECLARED, Correction
 from winch_friction.physics.friction.term import Parameter, Term
-from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 from winch_friction.physics.winch import Crane
 
 Values = Mapping[str, float]
@@ -27,14 +27,11 @@ Columns = Callable[[PreparedRun, Values], FloatArray]
 Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
 # where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow
-SOURCE, CUT = "winch-friction gap", "cut at its bound from"
-MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flow"
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
-LINE, CHURNING = "line_pressure_drop", "churning"
 OF_WINCH = ("torque_offset", "direction_asymmetry")
-CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
-SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
+SOURCE, CUT = "winch-friction gap", "cut at its bound from"
+MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flow"
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 
 
@@ -99,31 +96,10 @@ class Untestable:
 
 def correction(name: str, estimate: ParameterEstimate, factor: float = 1.0, **ties: Any) -> Correction:
     """A correction of `factor` times an estimate, inside the declared bounds; `source` says where they cut it."""
-    declared, value = declared_correction(name).parameter, factor * estimate.value
+    declared, value = DECLARED[name].parameter, factor * estimate.value
     inside = min(max(value, declared.lower), declared.upper)
     source = SOURCE if inside == value else f"{SOURCE}, {CUT} {value:g} {declared.unit}"
     return Correction(name, inside, abs(factor) * estimate.std, source=source, **ties)
-
-
-def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
-    """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
-    motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
-    winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
-    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Empty
-    where no run shows motors.
-    """
-    run = runs[0]
-    swept = dict(run.constants).get("max_displacement", 0.0)
-    motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
-    if not swept or not motors:
-        return {}
-    one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
-    lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
-    torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
-    top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
-    churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
-    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole)}
-    return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 
 def single_shape(_: Sequence[PreparedRun]) -> list[Shape]:
@@ -261,3 +237,59 @@ def _between(value: float, grid: Iterable[float]) -> list[float]:
 def label_of(values: Values) -> str:
     """A shape in words."""
     return ", ".join(f"{name} = {value:g}" for name, value in values.items())
+
+
+# -- whose transducers and feedbacks are off: all motor groups, those of one side, or one driving group alone
+# the driving group of runs without a passive one (ALONE) and with one (BESIDE) may be two, each with transducers
+ALL, BALANCING, OTHER, ALONE, BESIDE = 0.0, 1.0, 2.0, 3.0, 4.0
+
+GroupLaw = Callable[[GroupSignals], FloatArray]
+
+
+def affected_groups(run: PreparedRun, values: Values) -> list[GroupSignals]:
+    """The motor groups whose transducers a shape speaks of."""
+    return [g for g, spoken in zip(run.groups, spoken_of(run, values), strict=True) if spoken]
+
+
+def spoken_of(run: PreparedRun, values: Values) -> list[bool]:
+    """Whether a shape speaks of each motor group of a run."""
+    which, driving = values["groups"], BESIDE if len(run.groups) > 1 else ALONE
+    return [which == ALL or which in ((BALANCING, driving) if g.balances else (OTHER,)) for g in run.groups]
+
+
+def group_columns(law: GroupLaw, run: PreparedRun, values: Values) -> FloatArray:
+    """Sum of a law over the affected motor groups, N m at the shaft, shape (samples, 1)."""
+    return sum((law(g) for g in affected_groups(run, values)), np.zeros(len(run.time)))[:, None]
+
+
+def group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Which transducers are off: all alike, or, with several groups about, those of one side alone."""
+    shapes = [Shape("all groups", {"groups": ALL})]
+    if any(len(run.groups) > 1 for run in runs):
+        shapes.append(Shape("the driving group", {"groups": BALANCING}))
+        shapes.append(Shape("the passive group", {"groups": OTHER}, carried=True))
+    return shapes
+
+
+def driving_alone(runs: Sequence[PreparedRun]) -> tuple[str, ...]:
+    """Names of the groups that close the balance of runs without a passive one."""
+    return tuple(sorted({run.groups[0].name for run in runs if len(run.groups) == 1}))
+
+
+def own_group_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Where heave compensation drives by another group than hoisting, either of the two alone; else none."""
+    alone = driving_alone(runs)
+    beside = sorted({g.name for run in runs if len(run.groups) > 1 for g in run.groups if g.balances})
+    if not alone or not beside or set(alone) & set(beside):
+        return []
+    return [
+        Shape(f"the {' and '.join(names)} group alone", {"groups": which})
+        for names, which in ((alone, ALONE), (beside, BESIDE))
+    ]
+
+
+def groups_of(shape: Shape, sides: Sides) -> tuple[str, ...]:
+    """Names of the motor groups that a shape speaks of; none stands for all."""
+    beside = tuple(name for name in sides.balancing if name not in sides.alone)
+    named = {ALL: (), BALANCING: sides.balancing, OTHER: sides.passive, ALONE: sides.alone, BESIDE: beside}
+    return named[shape.values["groups"]]

@@ -13,14 +13,21 @@ from pathlib import Path
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import ANGLE, FLOW, Candidate, Shape, Untestable, label_of
+from winch_friction.discrepancy.candidates.candidate import (
+    ANGLE,
+    FLOW,
+    Candidate,
+    Shape,
+    Untestable,
+    label_of,
+    own_group_shapes,
+)
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
 from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates, layers_apart
-from winch_friction.discrepancy.candidates.groups import own_group_shapes
 from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.term import load_file
@@ -113,7 +120,7 @@ def candidates_for(
     return [*all_candidates(effects_file), *own]
 
 
-def of_one_group(runs: Sequence[PreparedRun], _: FrictionModel) -> list[Candidate]:
+def of_one_group(runs: Sequence[PreparedRun]) -> list[Candidate]:
     """Zero and gain errors of one driving group alone, where there are two: whatever hoisting and heave compensation
     differ by looks a little like one, so they are for what nothing else explains."""
     own = own_group_shapes(runs)

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes
 from winch_friction.discrepancy.candidates.friction import COULOMB, POSSIBLE, Grid, friction_candidate, term_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import quotient_unit

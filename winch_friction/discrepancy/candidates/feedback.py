@@ -10,17 +10,22 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values, correction
-from winch_friction.discrepancy.candidates.groups import (
+from winch_friction.discrepancy.candidates.candidate import (
     BALANCING,
+    Candidate,
+    Estimates,
+    Shape,
+    Sides,
+    Values,
     affected_groups,
+    correction,
     group_columns,
     group_shapes,
     groups_of,
 )
 from winch_friction.discrepancy.candidates.signals import OIL, e_p, in_groups, scale_columns, to, warm_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import s_shape

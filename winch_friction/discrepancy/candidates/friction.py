@@ -25,7 +25,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.balance import state_history
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import compiled
 from winch_friction.physics.friction.table import outlined

@@ -22,7 +22,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.balance import SPARSEST
 from winch_friction.discrepancy.preparation.grid import lagged
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.correction import Correction

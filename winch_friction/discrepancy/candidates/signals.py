@@ -14,15 +14,18 @@ from winch_friction.discrepancy.candidates.candidate import (
     Columns,
     Corrects,
     Estimates,
+    GroupLaw,
     Shape,
     Shapes,
     Sides,
     Values,
     correction,
+    group_columns,
+    group_shapes,
+    groups_of,
 )
-from winch_friction.discrepancy.candidates.groups import GroupLaw, group_columns, group_shapes, groups_of
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR

@@ -14,7 +14,7 @@ from scipy.ndimage import minimum_filter1d
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate, Untestable
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import fluid

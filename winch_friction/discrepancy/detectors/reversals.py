@@ -18,7 +18,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import chance_of_no_gain
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
 from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 

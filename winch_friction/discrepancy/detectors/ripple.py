@@ -5,21 +5,16 @@ run keeps its own phase, because an angle counted from the start of a record has
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter
+from scipy.special import gammaincc
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
-from winch_friction.discrepancy.detectors.angle_spectrum import (
-    LOWEST_ORDER,
-    SAME_ORDER,
-    Table,
-    line_holds,
-    strongest_line,
-)
 from winch_friction.discrepancy.preparation.grid import samples_of, smooth
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -35,7 +30,6 @@ SIGNIFICANT_WITHOUT_ANGLE = 1e-12
 # share of the known amplitude that its estimate may leave: pressure lines and the sampling take more of it the faster
 # the shaft turns, and one amplitude for all speeds leaves up to itself
 LEFT_OF_KNOWN = 0.8
-SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
 FEWEST = 200  # moving samples of a run
 # what turns with the shaft has whole orders, a later gear's mesh and shaft have others, and so has an encoder's beat
 # with the sampling: in 4 of 560 data sets without a ripple, down to 7e-14; of 20 ripples the faintest such had 5e-20
@@ -44,7 +38,7 @@ BETWEEN_ORDERS, WHOLE = 1e-16, 0.03  # family-wise; of an order
 # "ripple" of 2.7e-4, and the faintest true ones were 5.6e-4
 SMALLEST = 4e-4
 
-_Wave = tuple[FloatArray, FloatArray, FloatArray]
+Table = tuple[FloatArray, FloatArray, FloatArray, FloatArray]  # of a run: angle rad, torque N m, T_d/i N m, speed
 
 
 @dataclass(frozen=True)
@@ -143,87 +137,135 @@ def _moving(
         torque = torque - np.interp(time, grid, model.subset((TERM,)).torque(prepared.point))
     if with_inertia:
         inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
-        torque = torque - inertia * np.gradient(_speed(run, crane)[good], time)
+        torque = torque - inertia * np.gradient(speed_of(run, crane)[good], time)
     fast = torque - smooth(torque, samples_of(WINDOW, prepared.dt))
     return angle[moving], fast[moving], static[moving], np.interp(time, grid, prepared.speed)[moving]
 
 
-def _speed(run: Run, crane: Crane) -> FloatArray:
+def speed_of(run: Run, crane: Crane) -> FloatArray:
     speed = run["motor_speed"] if "motor_speed" in run else run["drum_speed"] * crane.gear_ratio
     return np.nan_to_num(speed)
 
 
-def waves_of(runs: Sequence[PreparedRun], ripple: Ripple) -> dict[str, FloatArray]:
-    """Sine and cosine share of T_d/i that each run's gap has of the ripple; the phase is the run's own."""
-    return {run.name: _wave_of(run, ripple) for run in runs}
+# -- lines in a spectrum: which stands out, how surely, and whether it is one of the sampling's
+BINS_PER_REVOLUTION = 64
+LOWEST_ORDER, HIGHEST_ORDER = 0.1, 20.0  # periods per revolution of the motor shaft
+LONGEST_SPECTRUM = 1 << 18
+NEIGHBOURHOOD = 401  # lines whose median is the background
+SPEED_CLASSES = 3  # parts of a run
+MOST_OF_ONE_PART, MOST_OF_ONE_RUN = 5.0, 12.0  # of a line's power over its background
+# family-wise significance of a line in the whole runs, whose background is lumpy, and its own in their parts
+IN_RUNS, IN_PARTS = 1e-10, 1e-3
+# lines of as much power, of other orders, that make a comb of the sampling and not a ripple; far stronger ones than
+# chance has (0.78 of the weakest that is significant) must be about
+COMB_SHARE, COMB_LINES = 0.85, 3
+SAME_ORDER = 0.05  # relative; a spectrum over short runs has no finer lines
 
 
-def _wave_of(run: PreparedRun, ripple: Ripple) -> FloatArray:
-    if not run.used.any() or not np.any(run.drum_torque):
-        return np.zeros(2)
-    beta, *_ = np.linalg.lstsq(_waves(run, ripple)[run.used], run.gap[run.used], rcond=None)
-    return np.asarray(beta)
+@dataclass(frozen=True)
+class Line:
+    """Periods per revolution, amplitude as a share of T_d/i (at most what the sampling lets through) and its deviation,
+    family-wise p-value, power over the neighbours'."""
+
+    order: float
+    amplitude: float
+    std: float
+    p_value: float
+    prominence: float
 
 
-def _waves(run: PreparedRun, ripple: Ripple) -> FloatArray:
-    static = run.drum_torque / run.gear_ratio
-    return static[:, None] * np.column_stack([np.sin(ripple.order * run.angle), np.cos(ripple.order * run.angle)])
+def strongest_line(tables: Sequence[Table]) -> Line:
+    """The line that stands out most in these runs."""
+    size, orders, use = _lines(tables)
+    whole, power, parts = np.zeros(use.sum()), np.zeros(use.sum()), 0
+    for angle, torque, static, speed in tables:
+        weighted = torque * static
+        whole += np.minimum(_prominence(angle, weighted, size, use), MOST_OF_ONE_RUN)
+        for part in _speed_classes(speed):
+            # an encoder's steps beat with the sampling at one speed, in every run that has it: no part may decide alone
+            power += np.minimum(_prominence(angle[part], weighted[part], size, use), MOST_OF_ONE_PART)
+            parts += 1
+    # whole runs see a small ripple better, but it must be in their parts as well
+    whole[gammaincc(parts, power) > IN_PARTS] = 0.0
+    own = [table[:3] for table in tables]
+    of_runs = _strongest(orders[use], whole, len(tables), own)
+    return of_runs if of_runs.p_value < IN_RUNS else _strongest(orders[use], power, parts, own)
 
 
-def without_ripple(run: PreparedRun, ripple: Ripple, wave: FloatArray) -> PreparedRun:
-    """The run with a ripple of these shares taken out of its gap."""
-    return replace(run, gap=run.gap - _waves(run, ripple) @ wave)
+def line_holds(order: float, tables: Sequence[Table]) -> bool:
+    """Whether a line of that order stands out in other runs, whatever its phase there."""
+    size, orders, use = _lines(tables)
+    power = np.sum([_prominence(angle, torque * static, size, use) for angle, torque, static, _ in tables], axis=0)
+    near = np.abs(orders[use] - order) < SAME_ORDER * max(order, LOWEST_ORDER)
+    chance = gammaincc(len(tables), power[near].max(initial=0.0)) * max(int(near.sum()), 1)
+    return bool(chance <= IN_PARTS)  # a lumpy background has a line of one in a hundred near any order
 
 
-def in_phase(
-    runs: Sequence[Run], prepared: Sequence[PreparedRun], crane: Crane, ripple: Ripple
-) -> dict[str, ParameterEstimate] | None:
-    """Amplitudes a_r, b_r and order k_r of the one ripple that all runs share; None where each has a phase of its own.
-
-    Runs share a phase only if their angle is measured from one mark. The order is sharpened first: over a long run a
-    spectrum's step is many radians of phase.
-    """
-    pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if p.used.any() and np.any(p.drum_torque)]
-    if not pairs or any("shaft_angle" not in p.present for _, p in pairs):
-        return None
-    tables = [_unsmoothed(run, p, crane, ripple.with_inertia) for run, p in pairs]
-    step = np.pi / max(float(np.ptp(angle)) for angle, *_ in tables)  # a quarter of a line's width
-    orders = ripple.order + step * np.arange(-8, 9) / 2.0
-    best = max(orders, key=lambda order: _shared(tables, order)[0])
-    from scipy.optimize import minimize_scalar  # a fifth of a second, for few runs come here
-
-    near = minimize_scalar(lambda k: -_shared(tables, k)[0], bounds=(best - step, best + step), method="bounded")
-    order = float(near.x)
-    explained, amplitude, std = _shared(tables, order)
-    # of the ripple, wherever a run has it: where the runs cancel, one wave for all is best at an order that none has
-    own = sum(max(_shared([table], each)[0] for each in (order, *orders)) for table in tables)
-    if explained < SHARED_PHASE * own:
-        return None
-    a, b = (ParameterEstimate(float(value), std, "1") for value in amplitude)
-    return {"a_r": a, "b_r": b, "k_r": ParameterEstimate(order, float(0.1 * step), "1")}
+def _lines(tables: Sequence[Table]) -> tuple[int, FloatArray, np.ndarray]:
+    """Length of the spectrum, the orders of its lines and which of them are looked at."""
+    bins = max(float(np.ptp(angle)) for angle, *_ in tables) * BINS_PER_REVOLUTION / (2 * np.pi)
+    size = min(1 << int(np.ceil(np.log2(2 * bins + 2))), LONGEST_SPECTRUM)
+    orders = np.arange(size // 2 + 1) * BINS_PER_REVOLUTION / size
+    return size, orders, (orders >= LOWEST_ORDER) & (orders <= HIGHEST_ORDER)
 
 
-def _unsmoothed(run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool) -> _Wave:
-    """Angle, gap before any smoothing and T_d/i of the moving samples: a smoothed gap has lost part of a ripple."""
-    grid = prepared.time + prepared.start
-    good = np.isfinite(run.time)
-    time = run.time[good]
-    gap = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good]) - np.interp(time, grid, prepared.predicted)
-    if with_inertia:
-        inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
-        fast = np.gradient(_speed(run, crane)[good], time) - np.interp(time, grid, prepared.acceleration)
-        gap = gap - inertia * fast
-    moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
-    static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
-    return np.interp(time, grid, prepared.angle)[moving], gap[moving] - gap[moving].mean(), static[moving]
+def _prominence(angle: FloatArray, torque: FloatArray, size: int, use: np.ndarray) -> FloatArray:
+    """Power of each line over its neighbours', exponentially distributed with mean 1 where there is nothing."""
+    line = _power(angle, torque, size)[use]
+    background = np.maximum(median_filter(line, NEIGHBOURHOOD, mode="nearest") / np.log(2.0), 1e-300)
+    return np.asarray(line / background)
 
 
-def _shared(tables: Sequence[_Wave], order: float) -> tuple[float, FloatArray, float]:
-    """What one wave for all of them explains (N m)^2, its shares of T_d/i, and their standard deviation."""
-    waves = [s[:, None] * np.column_stack([np.sin(order * x), np.cos(order * x)]) for x, _, s in tables]
-    h = np.sum([w.T @ w for w in waves], axis=0)
-    g = np.sum([w.T @ gap for w, (_, gap, _) in zip(waves, tables, strict=True)], axis=0)
-    beta = np.linalg.solve(h + 1e-9 * np.trace(h) * np.eye(2), g)
-    left = sum(float(((gap - w @ beta) ** 2).sum()) for w, (_, gap, _) in zip(waves, tables, strict=True))
-    count = sum(len(gap) for _, gap, _ in tables)
-    return float(g @ beta), beta, float(np.sqrt(2.0 * left / count / np.trace(h)))
+def _speed_classes(speed: FloatArray) -> list[np.ndarray]:
+    """Indices of the slow, middle and fast thirds of a run; a ripple of the shaft is in all of them."""
+    return np.array_split(np.argsort(np.abs(speed), kind="stable"), SPEED_CLASSES)
+
+
+def _power(angle: FloatArray, torque: FloatArray, size: int) -> FloatArray:
+    """|F|^2 over angle, shape (size // 2 + 1,)."""
+    cell = np.floor((angle - angle.min()) * BINS_PER_REVOLUTION / (2 * np.pi)).astype(int) % size
+    folded = np.bincount(cell, weights=torque, minlength=size)
+    return np.abs(np.fft.rfft(folded)) ** 2
+
+
+def _strongest(
+    orders: FloatArray, power: FloatArray, parts: int, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]
+) -> Line:
+    best = int(np.argmax(power))
+    order = float(orders[best])
+    alone = 1.0 if one_of_a_comb(orders, power, best, parts) else gammaincc(parts, power[best])
+    amplitude, std = _amplitude(order, tables)
+    prominence = float(power[best] / parts)
+    return Line(order, amplitude, std, float(min(1.0, 2 * alone * len(orders))), prominence)
+
+
+def one_of_a_comb(orders: FloatArray, power: FloatArray, best: int, parts: int) -> bool:
+    """Whether lines of other orders, harmonics apart, stand out nearly as far: an encoder's steps at a high rate beat
+    with the sampling in many places, and a shaft's ripple has an order of its own. Nothing is said of a line that is as
+    strong as counts, for then the others may be."""
+    if power[best] >= COMB_SHARE * MOST_OF_ONE_RUN * parts:
+        return False
+    strong = np.flatnonzero(power >= COMB_SHARE * power[best])
+    others, seen = orders[strong[np.argsort(-power[strong])]], orders[best]
+    for _ in range(COMB_LINES):  # the strongest that is no harmonic of those before, of up to 80 000 lines
+        ratio = np.maximum(others, seen) / np.minimum(others, seen)
+        others = others[np.abs(ratio - np.round(ratio)) > SAME_ORDER]
+        if not len(others):
+            return False
+        seen = others[0]
+    return True
+
+
+def _amplitude(order: float, tables: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[float, float]:
+    """Amplitude as a share of T_d/i, the phase free in each run, weighted by the runs' certainty."""
+    values, weights = [], []
+    for angle, torque, static in tables:
+        wave = static[:, None] * np.column_stack([np.sin(order * angle), np.cos(order * angle)])
+        beta, *_ = np.linalg.lstsq(wave, torque, rcond=None)
+        noise = torque - wave @ beta
+        variance = noise.var() / max((wave**2).sum() / 2.0, 1e-300)
+        # the square of an amplitude is biased by its noise
+        values.append(max(float(beta @ beta) - 2.0 * variance, 0.0))
+        weights.append(1.0 / max(variance, 1e-300))
+    total = float(np.sum(weights))
+    return float(np.sqrt(np.dot(values, weights) / total)), float(np.sqrt(1.0 / total))

@@ -16,10 +16,10 @@ from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate, Untestable
 from winch_friction.discrepancy.detectors.flow_balance import REFERENCE, sign_flip_p_value
 from winch_friction.discrepancy.preparation.grid import lagged
-from winch_friction.discrepancy.preparation.prepared_run import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.fluid import LEAKAGE_LAWS, air_compressed, leakage_per_coefficient, path_of_high_side
-from winch_friction.physics.friction.correction import Correction, declared_correction
+from winch_friction.physics.friction.correction import DECLARED, Correction
 from winch_friction.physics.signals import FloatArray, Run
 
 NAME = "entrained_air"
@@ -101,7 +101,7 @@ def free_air(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FreeAir | 
 
 def untestable(air: FreeAir | None) -> list[Untestable]:
     """Why these runs could not have shown a typical volume of air, if they could not."""
-    typical, law = declared_correction(NAME).parameter.typical, r"V\,p^{-1/1.4}"
+    typical, law = DECLARED[NAME].parameter.typical, r"V\,p^{-1/1.4}"
     if air is None:
         return [Untestable(NAME, law, "runs at a steady displacement", "air shows in the flow of a hydraulic drive")]
     if SURE * air.std <= typical:

@@ -107,11 +107,12 @@ def swinging_load(
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
             moved = on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own])
             return Swing(moved, mode, judges[own].by_damping(first, mode.frequency), judge.swinging(first))
+    variance = judge.swinging(first)
     if len(frequencies) != 1:
-        return Swing(rigid, Mode(0.0, 0.0), (), judge.swinging(first))
+        return Swing(rigid, Mode(0.0, 0.0), (), variance)
     slow = smooth(rigid, int(2.0 * TURN / (frequencies[0] * dt)))
-    noise = judge.swinging(first, mass * lever * (rigid - slow)) <= judge.swinging(first)
-    return Swing(rigid, Mode(0.0, 0.0), judge.by_damping(first, frequencies[0]), judge.swinging(first), noise)
+    noise = judge.swinging(first, mass * lever * (rigid - slow)) <= variance
+    return Swing(rigid, Mode(0.0, 0.0), judge.by_damping(first, frequencies[0]), variance, noise)
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """From declared equations to functions: scalar, vectorised, numba kernel; each with its Jacobian.
 
-All of them take (x, theta, z): the operating point in the order of `symbols.layout`, the parameters, and the states of
+All of them take (x, theta, z): the operating point in the order of `layout`, the parameters, and the states of
 the terms with memory, each in the model's order. Nothing here restates an equation. A state is stepped by
 dz/dt = gain - decay z, exactly for signals frozen over a step.
 """
@@ -16,6 +16,18 @@ import sympy as sp
 from winch_friction.physics.friction import symbols
 from winch_friction.physics.friction.sources import function_of
 from winch_friction.physics.friction.term import Parameter, Scope, Term
+
+
+def group_symbol(symbol: sp.Symbol, group: int) -> sp.Symbol:
+    """The symbol of one group's signal in a model with several groups."""
+    return sp.Symbol(f"{symbol.name}_{{{group}}}", real=True)
+
+
+def layout(group_count: int) -> tuple[sp.Symbol, ...]:
+    """Symbols of an operating point with `group_count` motor groups, in order."""
+    winch = tuple(signal.symbol for signal in symbols.WINCH_SIGNALS)
+    groups = tuple(group_symbol(signal.symbol, g) for g in range(group_count) for signal in symbols.GROUP_SIGNALS)
+    return winch + groups
 
 
 class CompiledTerms:
@@ -34,7 +46,7 @@ class CompiledTerms:
     @cached_property
     def _arguments(self) -> tuple[tuple[sp.Symbol, ...], ...]:
         own = tuple(parameter.symbol for parameter in self.parameters)
-        return symbols.layout(self.group_count), own, self._state_symbols()
+        return layout(self.group_count), own, self._state_symbols()
 
     def _state_symbols(self) -> tuple[sp.Symbol, ...]:
         return tuple(
@@ -57,7 +69,7 @@ class CompiledTerms:
         return self._in_group(term, symbols.N * torque if term.scope is Scope.SYSTEM else torque, 0)
 
     def _in_group(self, term: Term, expression: sp.Expr, group: int) -> sp.Expr:
-        own = {symbol: symbols.group_symbol(symbol, group) for symbol in symbols.GROUP_SYMBOLS}
+        own = {symbol: group_symbol(symbol, group) for symbol in symbols.GROUP_SYMBOLS}
         return expression.xreplace({**own, **self._state_of(term, group)})
 
     def _state_of(self, term: Term, group: int) -> dict[sp.Basic, sp.Basic]:

@@ -69,7 +69,8 @@ class FrictionModel:
     crane: str = ""
 
     def __post_init__(self) -> None:
-        check_corrections(self.corrections)
+        if self.corrections:
+            check_corrections(self.corrections)
         names = self.parameter_names
         if len(self.values) != len(names):
             raise InputError(f"model '{self.name}': {len(self.values)} values for {len(names)} parameters {names}")

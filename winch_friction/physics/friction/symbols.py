@@ -4,9 +4,12 @@ A model is evaluated at an operating point: a flat tuple of the winch signals fo
 group, in the order of this table. Everything that builds or reads such a tuple derives it from here.
 """
 
+import math
 from dataclasses import dataclass
 
 import sympy as sp
+
+ANY = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True)
@@ -18,10 +21,13 @@ class Signal:
     unit: str
     doc: str
     default: float | None = None  # value where the channel is absent; None: it must be given
+    limits: tuple[float, float] = ANY  # between what it lies, SI
 
 
-def _signal(name: str, tex: str, unit: str, doc: str, default: float | None = None) -> Signal:
-    return Signal(name, sp.Symbol(tex, real=True), unit, doc, default)
+def _signal(
+    name: str, tex: str, unit: str, doc: str, default: float | None = None, limits: tuple[float, float] = ANY
+) -> Signal:
+    return Signal(name, sp.Symbol(tex, real=True), unit, doc, default, limits)
 
 
 WINCH_SIGNALS = (
@@ -45,19 +51,15 @@ GROUP_SIGNALS = (
     # a step at p_A = p_B: an equation must multiply it by the pressure, which is zero there; no table may be over it
     _signal("higher_port", "h", "1", "+1 where p_A is the higher pressure, -1 where p_B is", 1.0),
 )
-# what the model file carries as constants of the motor and the oil
+# what the model file carries as constants of the motor and the oil; a displacement of 0 is none; oils weigh 750 (light)
+# to 1450 kg/m^3 (phosphate ester), and are as thin as hot water and as thick as gear oil in frost; twice as much each
+# way is a slip of the unit
 CONSTANTS = (
-    _signal("max_displacement", "X", "m^3/rad", "largest displacement of one motor", 0.0),
-    _signal("density", r"\rho", "kg/m^3", "oil density", 870.0),
-    _signal("viscosity", r"\mu", "Pa*s", "dynamic viscosity at the reference temperature", 0.04),
-    _signal("gear_ratio", "i", "1", "gear ratio motor to drum", 1.0),
+    _signal("max_displacement", "X", "m^3/rad", "largest displacement of one motor", 0.0, (0.0, 6e-2)),
+    _signal("density", r"\rho", "kg/m^3", "oil density", 870.0, (400.0, 3000.0)),
+    _signal("viscosity", r"\mu", "Pa*s", "dynamic viscosity at the reference temperature", 0.04, (1e-4, 100.0)),
+    _signal("gear_ratio", "i", "1", "gear ratio motor to drum", 1.0, (1e-3, 1e5)),
 )
-
-# between what each lies, SI: a displacement of 0 is none; oils weigh 750 (light) to 1450 kg/m^3 (phosphate ester), and
-# are as thin as hot water and as thick as gear oil in frost; twice as much each way is a slip of the unit
-CONSTANT_LIMITS = {
-    "max_displacement": (0.0, 6e-2), "density": (400.0, 3000.0), "viscosity": (1e-4, 100.0), "gear_ratio": (1e-3, 1e5),
-}  # fmt: skip
 
 _BY_NAME = {signal.name: signal.symbol for signal in (*WINCH_SIGNALS, *GROUP_SIGNALS, *CONSTANTS)}
 
@@ -86,18 +88,4 @@ ALL_OF_LOAD = 1.0  # most that one shaft loses per drum torque: all of it, where
 
 GROUP_SYMBOLS = frozenset(signal.symbol for signal in GROUP_SIGNALS)
 SIGNAL_OF_SYMBOL = {signal.symbol: signal for signal in (*WINCH_SIGNALS, *GROUP_SIGNALS, *CONSTANTS)}
-
-
-def group_symbol(symbol: sp.Symbol, group: int) -> sp.Symbol:
-    """The symbol of one group's signal in a model with several groups."""
-    return sp.Symbol(f"{symbol.name}_{{{group}}}", real=True)
-
-
-def layout(group_count: int) -> tuple[sp.Symbol, ...]:
-    """Symbols of an operating point with `group_count` motor groups, in order."""
-    winch = tuple(signal.symbol for signal in WINCH_SIGNALS)
-    groups = tuple(group_symbol(signal.symbol, g) for g in range(group_count) for signal in GROUP_SIGNALS)
-    return winch + groups
-
-
 TIME_INDEX = [signal.name for signal in WINCH_SIGNALS].index("time")

@@ -1,4 +1,4 @@
-"""From measured signals to the operating point that every friction function takes (the order of `symbols.layout`),
+"""From measured signals to the operating point that every friction function takes (the order of `compiled.layout`),
 now or at the speed ahead, and what of them this crane can show at all.
 
 The ranges, and the largest rate of each channel, come from the crane itself. They are tighter than the

@@ -98,7 +98,7 @@ def drum_torque(p, state, share):
 
 @inlined
 def operating_point(p, state, direction, acceleration, time, drum, oil_temperature, dp, dp_passive, passive_sum):
-    """The operating point of the friction functions (the order of `physics.friction.symbols.layout`)."""
+    """The operating point of the friction functions (the order of `physics.friction.compiled.layout`)."""
     speed = state[SPEED]
     pressure_sum = state[P_A] + state[P_B] if p.secondary == 0.0 else 2.0 * p.boost_pressure + abs(dp)
     return Point(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.signals import Run
-from winch_friction.records.broken_samples import without_broken
+from winch_friction.records.runs import without_broken
 
 TIME = 0.02 * np.arange(3000)
 
@@ -25,7 +25,8 @@ def log(rng=None, **changed):
 
 
 def mended(run):
-    (one,), notes = without_broken([run])
+    (one,), broken = without_broken([run])
+    notes = [each.sentence for each in broken]
     return {name: int(np.isnan(values).sum()) for name, values in one.columns.items() if np.isnan(values).any()}, notes
 
 
@@ -37,7 +38,7 @@ def test_what_lives_is_left_alone():
 
 def test_a_pressure_that_stands_still_beside_one_that_lives_was_not_measured():
     held = log(main__pressure_a=(slice(500, 700), 2.1e7))
-    assert mended(held) == ({"main.pressure_a": 199}, ["r.csv: main.pressure_a stands still for 3.98 s; left out"])
+    assert mended(held) == ({"main.pressure_a": 199}, ["r.csv: main.pressure_a stands still for 3.98 s"])
     short = log(main__pressure_a=(slice(500, 540), 2.1e7))  # 0.8 s: a slow transmitter
     assert mended(short) == ({}, [])
 
@@ -59,8 +60,8 @@ def test_single_samples_that_jump_are_lost_telegrams(value):
     lost = log(main__pressure_a=([100, 900, 1700], value), motor_speed=([300], 900.0))
     assert mended(lost) == (
         {"motor_speed": 1, "main.pressure_a": 3},
-        ["r.csv: motor_speed jumps in 1 single sample; left out",
-         "r.csv: main.pressure_a jumps in 3 single samples; left out"],
+        ["r.csv: motor_speed jumps in 1 single sample",
+         "r.csv: main.pressure_a jumps in 3 single samples"],
     )  # fmt: skip
 
 
@@ -72,7 +73,7 @@ def test_a_speed_that_hangs_leaps_when_it_wakes_and_one_that_rests_does_not():
     speed = np.round(50.0 * np.sin(0.1 * TIME), 2)
     hung = log(motor_speed=(slice(0, None), speed))
     hung.columns["motor_speed"][500:700] = speed[500]  # 4 s, in which the winch goes on by 7 rad/s
-    assert mended(hung) == ({"motor_speed": 199}, ["r.csv: motor_speed stands still for 3.98 s; left out"])
+    assert mended(hung) == ({"motor_speed": 199}, ["r.csv: motor_speed stands still for 3.98 s"])
     gone = log(motor_speed=(slice(0, None), speed))
     gone.columns["motor_speed"][500:700] = 0.0  # read as nothing at full speed
     assert mended(gone)[0] == {"motor_speed": 199}

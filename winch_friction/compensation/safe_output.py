@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, field
 
 from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
+from winch_friction.compensation.pressure import RATED_PRESSURE, CarryingPressure
 from winch_friction.physics.errors import InputError
 
 ROUNDING = 1e-6  # s; a sample that is as old as it may be is no silence (a Unix time has 2e-7 s)
@@ -45,6 +46,7 @@ class SafeOutput:
     hold: float
     lead: float = 0.0
     against_speed: float = AGAINST_SPEED
+    carrying: CarryingPressure = field(default_factory=lambda: CarryingPressure(RATED_PRESSURE))
     torque: float = field(default=0.0, init=False)
     time: float = field(default=math.nan, init=False)  # stamp of what was published last, s
     sequence: int = field(default=0, init=False)
@@ -65,8 +67,7 @@ class SafeOutput:
         self._dt = self._gap = self._against = self._pushing = self._carried = 0.0
         self._passed = self._contrary = 0.0  # s since the last step, by stamp or clock; s against the measured motion
         self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
-        self._bump = self._usable = self._new_time = False
-        self._anew = False  # the latest sample began anew
+        self._bump = self._usable = self._new_time = self._anew = False  # anew: the latest sample began anew
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float, lead: float = 0.0) -> None:
         """Other limits from the next step on, without a bump; a ramp goes on from where it is.
@@ -260,11 +261,10 @@ class SafeOutput:
 
     def decay(self, time: float) -> float:
         """Publish the ramp to zero at stamp `time`."""
-        if not time > self.time:
-            return self.torque
-        self._let_go(self.remaining(time))
-        self.time = time
-        self.sequence += 1
+        if time > self.time:
+            self._let_go(self.remaining(time))
+            self.time = time
+            self.sequence += 1
         return self.torque
 
     def _let_go(self, torque: float) -> None:
@@ -289,6 +289,10 @@ class SafeOutput:
     def hurry(self, duration: float) -> None:
         """Let the ramp to zero be over within `duration` s, as far as the slew limit allows it."""
         self._turns_at = min(self._turns_at, self._ramp_from + duration)
+
+    def as_pressure(self, per_torque: float) -> float:
+        """What was published last in Pa on the group that carries it, at `per_torque` Pa per N m, in its own bounds."""
+        return self.carrying.of(self.torque, per_torque, self.time, self.slew)
 
     @property
     def at_rest(self) -> bool:

@@ -45,7 +45,11 @@ class CompensatorNode(WinchNode):
     """Publishes `~/friction_torque` and `~/pressure_feedforward` at every speed message."""
 
     def __init__(self, **node_arguments: Any) -> None:
-        fixed = ("pressure_group", "min_displacement")  # they change the pressure at once, which no ramp bounds
+        fixed = (
+            "pressure_group",
+            "min_displacement",
+            "pressure_limit",
+        )  # they change the pressure at once, which no ramp bounds
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between

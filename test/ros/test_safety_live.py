@@ -265,3 +265,24 @@ def test_two_loops_in_two_namespaces_have_a_clock_each(bench: Bench) -> None:
     assert bench.spin(90.0, lambda: len(torque) > 100 and bool(own))
     assert not common
     assert bench.node.count_publishers("/clock") == 0
+
+
+def test_the_estimators_torque_does_not_stand_while_an_input_is_lost(bench: Bench) -> None:
+    """It repeated the last one for as long as the pressures stayed away: of one direction, through every wave."""
+    bench.start("estimator")
+    learned = bench.listen("estimator/friction_torque")
+    bench.announce()
+    bench.drive(1.5)
+    assert abs(learned[-1].effort[0]) > 50.0
+    assert learned[-1].header.frame_id.startswith("valid")
+    before = len(learned)
+
+    def without_pressures(sample: Sample) -> None:
+        for group in sample.groups.values():
+            group.pressure_a = group.pressure_b = math.nan
+
+    bench.drive(1.0, without_pressures)
+    after = learned[before + 15 :]
+    assert len(after) > 10
+    assert efforts(after) == [0.0] * len(after)
+    assert {each.header.frame_id.split()[0] for each in after} == {"invalid"}

@@ -131,7 +131,7 @@ class FrictionEstimator:
         innovation, variance = self._filter.innovation(sample.motor_speed)
         if not self._gate.admits(sample.time, innovation, variance):
             self._load.mass = mass
-            return self._rejected(sample, innovation, variance)
+            return self._rejected(sample, innovation, variance, step.friction)
         self._filter.correct(innovation, variance, not reason, step.stick)
         self._friction.advance(point, theta, len(sample.groups), dt)
         if not reason:
@@ -166,10 +166,10 @@ class FrictionEstimator:
         self._state = reason or "learning"
         self._statuses.step(self._filter, bool(reason), dt)
 
-    def _rejected(self, sample: Sample, innovation: float, variance: float) -> Estimate:
+    def _rejected(self, sample: Sample, innovation: float, variance: float, friction: float = NAN) -> Estimate:
         self._gate.rejected(innovation)
         self.counts["rejected"] += 1
-        return self._estimate(sample, False, innovation, variance, NAN)._replace(state="rejected")
+        return self._estimate(sample, False, innovation, variance, friction)._replace(state="rejected")
 
     # -- beginning and gaps
     def _begin(self, sample: Sample) -> Estimate:

@@ -165,8 +165,9 @@ def broken(sample, how):
     + ["absurd speed", "wire layer"],
 )
 def test_a_rejected_sample_leaves_the_filter_exactly_as_it_was(running, samples, how):
-    before = inside(running)
+    before, counts = inside(running), dict(running.counts)
     estimate = running.step(broken(samples[300], how))
+    assert running.counts == {**counts, "rejected": counts["rejected"] + 1}, "whoever reads the diagnostics sees it"
     assert not estimate.accepted
     assert estimate.state == "rejected"
     assert inside(running) == before

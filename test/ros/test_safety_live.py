@@ -286,3 +286,19 @@ def test_the_estimators_torque_does_not_stand_while_an_input_is_lost(bench: Benc
     assert len(after) > 10
     assert efforts(after) == [0.0] * len(after)
     assert {each.header.frame_id.split()[0] for each in after} == {"invalid"}
+
+
+def test_a_slew_limit_that_cannot_let_go_is_refused_when_it_is_set(fed: tuple[Bench, list]) -> None:
+    """The parameter said 500, the law kept 15 000 with a traceback, and every setting after that was ignored."""
+    bench, torque = fed
+    node = bench.remote("compensator")
+    assert abs(efforts(torque)[-1]) > 150.0
+    with pytest.raises(InputError, match="cannot let go of"):
+        node.set({"slew_limit": 500.0})
+    node.set({"scale": 0.3})
+    bench.drive(1.5)
+    assert "Traceback" not in bench.log("compensator")
+    assert 10.0 < max(map(abs, efforts(torque)[-20:])) < 250.0
+    node.set({"scale": 0.0})
+    bench.drive(1.5)
+    node.set({"slew_limit": 500.0})

@@ -90,7 +90,8 @@ def test_it_never_has_another_sign_than_the_torque():
     each = CarryingPressure(1e7)
     assert each.of(100.0, 1e4, 0.0, 1e5) == 0.0  # no time has passed to grow in
     assert each.of(100.0, 1e4, 0.02, 1e9) == 1e6
-    assert each.of(-1.0, 1e4, 0.04, 1e9) == -1e4
+    assert each.of(-100.0, 1e4, 0.04, 1e3) == pytest.approx(-0.02 * 1e3 * 1e4)  # from zero on, whatever was before
+    assert each.of(1.0, 1e4, 0.06, 1e9) == 1e4
     assert each.of(0.0, 1e4, 0.04, 1e5) == 0.0
 
 

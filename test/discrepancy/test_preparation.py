@@ -16,6 +16,7 @@ from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_g
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of, least_noise_of
 from winch_friction.physics.channels import BAR
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import Run
@@ -260,3 +261,21 @@ def test_a_zero_within_a_transducers_step_is_nobodys_effect_and_a_larger_one_is(
         whole, tolerated = left(1.5, group) - asis, left(0.12, group) - asis
         assert whole > 1.0
         assert tolerated < 0.1 + 0.001 * whole
+
+
+def test_a_friction_that_drifts_is_taken_at_the_records_own_date(crane_150t, crane2_model):
+    """Wear goes over months: a record of a minute shows its level by when it was made, and hardly a slope."""
+    terms = (*crane2_model.terms, term_named("wear_drift"))
+    began, months = 1.7e9, 1.0e7  # s: Unix time, e-fold
+    values = (*crane2_model.values, 4.0, began, months)  # N m of each motor
+    worn = FrictionModel(terms=terms, values=values, name="worn")
+    run = runs_with(917, "quiet", length=0.3)[0]
+    predicted = {}
+    for date in (began, began + months):
+        dated = replace(run, columns=run.columns | {"time": run.time - run.time[0] + date})
+        prepared = prepare(dated, crane_150t, worn)
+        predicted[date] = prepared.predicted[prepared.used]
+        direction = prepared.direction[prepared.used]
+    motors = crane_150t.motor_total(run.groups)
+    added = (predicted[began + months] - predicted[began]) * direction
+    assert np.median(added) == pytest.approx(motors * 4.0, rel=0.02)

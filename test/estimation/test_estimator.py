@@ -165,11 +165,14 @@ def broken(sample, how):
     + ["absurd speed", "wire layer"],
 )
 def test_a_rejected_sample_leaves_the_filter_exactly_as_it_was(running, samples, how):
-    before = inside(running)
+    before, counts = inside(running), dict(running.counts)
     estimate = running.step(broken(samples[300], how))
+    assert running.counts == {**counts, "rejected": counts["rejected"] + 1}, "whoever reads the diagnostics sees it"
     assert not estimate.accepted
     assert estimate.state == "rejected"
     assert inside(running) == before
+    # its friction where it shows one, and not that of a sample before it
+    assert math.isfinite(estimate.friction_torque) == (how == "spike")
 
 
 def test_a_speed_that_is_lost_for_good_is_taken_anew_and_the_parameters_kept(running, samples):

@@ -156,3 +156,22 @@ def test_nothing_is_said_behind_the_end(made, monkeypatch):
     del loop
     gc.collect()
     assert not unraisable
+
+
+def test_a_wait_that_lasts_too_long_is_ended(pair, made, monkeypatch):
+    """The middleware waits for a time of the system clock: set back by an hour, no watchdog looked for an hour."""
+    ours, _ = pair
+    loop, looks = made(ours), []
+    if loop._wait != loop._wait_for_few:
+        pytest.skip("rclpy's own executor waits by itself")
+    ours.create_timer(3600.0, lambda: None, clock=Clock(clock_type=ClockType.STEADY_TIME))
+    turn(loop, 0.3)
+    monkeypatch.setattr(loop_module, "int", lambda nanoseconds: int(nanoseconds + 20e9), raising=False)
+    began = time.monotonic()
+    for _ in range(3):
+        loop.once()
+        looks.append(time.monotonic() - began)
+        began = time.monotonic()
+    monkeypatch.undo()
+    loop.end()
+    assert max(looks) < 0.5

@@ -6,7 +6,7 @@ from itertools import count
 import pytest
 from sea import PERIOD, SEED, Fed, check_invariants, swell
 
-from winch_friction.online.doubt import PATIENCE, SAID, StandingReadings
+from winch_friction.online.doubt import PATIENCE, SAID, SPEED_SAID, StandingReadings
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.signals import Sample
 
@@ -89,3 +89,62 @@ def test_nothing_is_learned_from_a_sender_that_hangs():
     assert service.law.counts["learned_from"] == learned
     learn(2.0)
     assert not service.contradiction
+
+
+# -- the speed alone: command and speed hang, the pressures live
+def hang_speeds(last):
+    def hang(sample):
+        sample.motor_speed, sample.speed_reference = last.motor_speed, last.speed_reference
+        for group in sample.groups.values():
+            group.pressure_a += 3e4 * math.sin(1e3 * sample.time)
+
+    return hang
+
+
+def test_speeds_that_hang_in_mid_wave_while_pressures_live_are_believed_no_longer():
+    """The torque of one direction had been published, `valid`, through every wave that followed."""
+    fed = Fed()
+    fed.run(7.0)
+    hang = hang_speeds(swell(fed.now))
+    said = fed.run(PATIENCE + 1.0, hang)
+    assert said[0].friction_torque != 0.0
+    assert said[-1].friction_torque == 0.0
+    assert not said[-1].valid
+    assert SPEED_SAID in fed.service.status(fed.now)["contradictions"]
+    check_invariants(fed)
+    assert fed.run(4.0)[-1].valid, "it sends again"
+
+
+def test_nothing_is_learned_from_a_speed_that_hangs():
+    fed = Fed()
+    service = EstimatorService(fed.service.law.crane, SEED, fed.service.inputs.topics)
+    hang = hang_speeds(swell(8.0))
+    for k in range(600):
+        sample = swell(k * PERIOD)
+        if k >= 400:
+            hang(sample)
+        service.take_row(sample)
+    assert service.contradiction == SPEED_SAID
+
+
+def speed_said(speed, seconds=5.0, rate=50.0):
+    """What is said of a speed in rad/s over time in s, after a wave of its own resolution."""
+    own, said = StandingReadings(MOVING), ""
+    for k in range(round((10.0 + seconds) * rate)):
+        time = k / rate
+        now = speed(60.0 * math.sin(0.6 * time) if time < 10.0 else 60.0)
+        said = own.contradiction(Sample(time, now, 60.0, motor_torque=20.0 + math.sin(k)), 1.0 / rate)
+    return said
+
+
+@pytest.mark.parametrize("digit", [0.307, 0.105])
+def test_a_speed_of_coarse_digits_may_stand_while_it_turns(digit):
+    """An encoder's count, a PLC's whole revolution: a winch at one speed shows the same for seconds."""
+    assert not speed_said(lambda speed: round(speed / digit) * digit)
+    assert speed_said(lambda speed: speed) == SPEED_SAID
+    assert not speed_said(lambda speed: speed, seconds=0.8 * PATIENCE)
+
+
+def test_a_speed_that_creeps_or_stands_is_none_that_hangs():
+    assert not speed_said(lambda speed: speed if speed != 60.0 else 0.9 * MOVING)
+    assert not speed_said(lambda speed: speed if speed != 60.0 else 0.0)

@@ -56,3 +56,41 @@ def test_the_clock_never_goes_back():
     assert clock.read(9.8, 10.0) == 10.0
     assert clock.read(3.0, 3.0) == 10.0
     assert clock.read(10.1, 10.1) == pytest.approx(10.1)
+
+
+@pytest.mark.parametrize("step", [2.0, -2.0, 3600.0, -0.7])
+def test_a_senders_clock_that_is_set_takes_no_time_and_gives_none(step):
+    """Set ahead by 2 s it skipped half a second, a silence that nobody heard; set back it stood still for as long."""
+    clock = ReplayClock()
+    read = [clock.read(10.0 + 0.02 * k + (step if k >= 50 else 0.0), 10.0 + 0.02 * k + 1e-3) for k in range(100)]
+    assert np.diff(read) == pytest.approx(0.02, abs=2e-3)
+
+
+def test_a_stray_stamp_sets_no_clock():
+    clock = ReplayClock()
+    read = [clock.read(10.0 + 0.02 * k + (40.0 if k == 50 else 0.0), 10.0 + 0.02 * k) for k in range(100)]
+    assert np.diff(read) == pytest.approx(0.02)
+
+
+def test_a_recorder_that_stalls_is_no_clock_that_was_set():
+    """Its receipts come late, and those behind it in a burst: the stamps go on as they did."""
+    clock, late = ReplayClock(), 0.4
+    receipts = [10.0 + 0.02 * k + max(0.0, late - 0.02 * (k - 50)) * (k >= 50) for k in range(100)]
+    read = [clock.read(10.0 + 0.02 * k, receipt) for k, receipt in enumerate(receipts)]
+    assert np.diff(read) == pytest.approx(0.02)
+
+
+def test_replay_bridges_a_clock_that_was_set_as_the_node_does(tmp_path, crane_150t, crane2_model):
+    """Live five messages confirm the new time, and the torque goes on; replayed it began at zero again."""
+    run = simulate(load_scenario("ahc_55t_215").override({"duration": 12.0}), crane_150t, crane2_model).run
+    topics = crane_topics(crane_150t, run.groups)
+    with BagWriter(tmp_path / "bag") as writer:
+        for k, sample in enumerate(run.samples()):
+            sample.time = 500.0 + 0.02 * k + (2.0 if k >= 300 else 0.0)
+            for topic, message in topics.encode(sample, MESSAGES):
+                writer.write(f"/{topic}", message, 500.0 + 0.02 * k)
+    replayed = replay_recording(tmp_path / "bag", crane_150t, crane2_model)
+    assert len(replayed.watchdog) <= 1  # five messages take as long as the watchdog waits
+    torque, time = replayed.compensator["friction_torque"], replayed.compensator.time
+    after = int(np.searchsorted(time, 507.0))
+    assert abs(torque[after] - torque[after - 1]) < 0.3 * abs(torque[after - 1]) + 30.0

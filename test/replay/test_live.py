@@ -33,10 +33,11 @@ def test_answers_that_no_message_was_recorded_of_are_missing():
     assert (none.compared, none.missing) == (0, 2)
 
 
-def test_an_estimator_repeats_its_last_torque_where_a_sample_taught_nothing():
+def test_an_estimator_says_zero_where_a_sample_shows_no_friction():
     nan = math.nan
-    assert _compared("estimator", live(0.0, 2.0, 2.0, 4.0), run(nan, 2.0, nan, 4.0)).equal
-    assert not _compared("compensator", live(0.0, 2.0, 2.0, 4.0), run(nan, 2.0, nan, 4.0)).equal
+    assert _compared("estimator", live(0.0, 2.0, 0.0, 4.0), run(nan, 2.0, nan, 4.0)).equal
+    assert not _compared("estimator", live(0.0, 2.0, 2.0, 4.0), run(nan, 2.0, nan, 4.0)).equal
+    assert not _compared("compensator", live(0.0, 2.0, 0.0, 4.0), run(nan, 2.0, nan, 4.0)).equal
 
 
 def test_the_largest_difference_is_relative_and_dated_and_of_next_to_nothing_absolute():

@@ -265,3 +265,40 @@ def test_two_loops_in_two_namespaces_have_a_clock_each(bench: Bench) -> None:
     assert bench.spin(90.0, lambda: len(torque) > 100 and bool(own))
     assert not common
     assert bench.node.count_publishers("/clock") == 0
+
+
+def test_the_estimators_torque_does_not_stand_while_an_input_is_lost(bench: Bench) -> None:
+    """It repeated the last one for as long as the pressures stayed away: of one direction, through every wave."""
+    bench.start("estimator")
+    learned = bench.listen("estimator/friction_torque")
+    bench.announce()
+    bench.drive(1.5)
+    assert abs(learned[-1].effort[0]) > 50.0
+    assert learned[-1].header.frame_id.startswith("valid")
+    before = len(learned)
+
+    def without_pressures(sample: Sample) -> None:
+        for group in sample.groups.values():
+            group.pressure_a = group.pressure_b = math.nan
+
+    bench.drive(1.0, without_pressures)
+    after = learned[before + 15 :]
+    assert len(after) > 10
+    assert efforts(after) == [0.0] * len(after)
+    assert {each.header.frame_id.split()[0] for each in after} == {"invalid"}
+
+
+def test_a_slew_limit_that_cannot_let_go_is_refused_when_it_is_set(fed: tuple[Bench, list]) -> None:
+    """The parameter said 500, the law kept 15 000 with a traceback, and every setting after that was ignored."""
+    bench, torque = fed
+    node = bench.remote("compensator")
+    assert abs(efforts(torque)[-1]) > 150.0
+    with pytest.raises(InputError, match="cannot let go of"):
+        node.set({"slew_limit": 500.0})
+    node.set({"scale": 0.3})
+    bench.drive(1.5)
+    assert "Traceback" not in bench.log("compensator")
+    assert 10.0 < max(map(abs, efforts(torque)[-20:])) < 250.0
+    node.set({"scale": 0.0})
+    bench.drive(1.5)
+    node.set({"slew_limit": 500.0})

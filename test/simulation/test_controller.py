@@ -68,3 +68,21 @@ def test_torque_drive_adds_load_and_friction():
     command = control(c, np.zeros(CONTROL_STATES), np.zeros(4), measured, 300.0)
     assert command == pytest.approx(2400.0 - 8e-5 * 275e5 + 300.0)
     assert control(c, np.zeros(CONTROL_STATES), np.zeros(4), measured, 1e6) == 4000.0
+
+
+def test_the_pump_is_where_a_bending_reference_will_be():
+    """With a constant jerk the look-ahead is exact once the jerk is known: without it, or with half of it, the pump
+    lags behind every crest."""
+    lead, jerk = 0.1, 200.0
+    c, memory = settings(leakage=0.0, compressibility=0.0, lead=lead), np.zeros(CONTROL_STATES)
+    flow, behind = 0.0, []
+    for k in range(100):
+        time = 0.01 * k
+        reference = np.array([0.0, 0.5 * jerk * time**2, jerk * time])
+        command = control(c, memory, reference, np.zeros(4), 0.0)
+        flow += (1.0 - np.exp(-0.1)) * (command - flow)
+        behind.append(flow / 1e-4 - 0.5 * jerk * (time + lead + 0.01) ** 2)
+    assert max(map(abs, behind[60:])) < 1e-3 * 0.5 * jerk
+    # known within its filter's time, not at once: the jerk of a quantised command is mostly noise
+    share = 1.0 - behind[6] / (-0.5 * jerk * (lead + 0.01) ** 2)
+    assert 0.5 < share < 0.9

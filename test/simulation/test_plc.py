@@ -1,10 +1,13 @@
 """One scan of the PLC: what scale, offset, bend, delay and quantisation make of a value, each by itself."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from winch_friction.simulation.scenario import load_scenario
 from winch_friction.simulation.sensors.channels import CHANNEL
-from winch_friction.simulation.sensors.plc import quantise, scan
+from winch_friction.simulation.sensors.plc import draw_scans, quantise, scan
 
 PERIOD = 0.01
 VALUE = 200.0
@@ -50,3 +53,16 @@ def test_a_channel_is_taken_in_the_middle_of_the_scan_less_its_delay():
 )
 def test_quantising_takes_the_nearest_step(value, step, shown):
     assert quantise(value, step) == pytest.approx(shown)
+
+
+@pytest.mark.parametrize(("jitter", "most"), [(0.005, 0.005), (1.0, 0.008), (0.0, 0.0)])
+def test_a_scan_ends_at_most_its_jitter_early_and_in_order(jitter, most):
+    """Of a jitter beyond the period the stamps would run backwards, which every reader refuses."""
+    scenario = load_scenario("ahc_55t_215").override({"duration": 20.0, "sensors.jitter": jitter})
+    scans = draw_scans(scenario, SimpleNamespace(names=("motor_speed",)), np.random.default_rng(3))
+    early = np.arange(1001) / 50.0 - scans.ends
+    assert early[0] == 0.0
+    assert early.min() >= -1e-12
+    assert early.max() == pytest.approx(most, rel=0.02)
+    assert np.diff(scans.ends).min() > 0.0
+    assert early[1:].mean() == pytest.approx(0.5 * most, rel=0.1)

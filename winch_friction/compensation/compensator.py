@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, pressure_per_torque, withheld
+from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, withheld
+from winch_friction.compensation.pressure import CarryingPressure, largest_pressure, pressure_per_torque
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
@@ -89,7 +90,7 @@ class FeedforwardCompensator:
         self._needs = self._needed()
         self.output = SafeOutput(
             self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead,
-            AGAINST_SPEED * crane.speed_scale,
+            AGAINST_SPEED * crane.speed_scale, CarryingPressure(largest_pressure(crane, config)),
         )  # fmt: skip
         self._enabled = True
         self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
@@ -111,8 +112,7 @@ class FeedforwardCompensator:
         self._law.reset()
         self._replaced: FrictionLaw | None = None  # the law that was published last, until the next sample
         self._last: Feedforward | None = None
-        self._target = _Target()
-        self._pressure_per_torque = 0.0
+        self._target, self._pressure_per_torque = _Target(), 0.0
         self._lost: tuple[str, ...] = ()
 
     def _absolute(self, config: CompensatorConfig) -> float:
@@ -201,7 +201,7 @@ class FeedforwardCompensator:
 
     def status(self) -> dict[str, float | str]:
         """State, counts and the model's name: numbers as numbers, for diagnostics."""
-        last, slow = self._last, self._too_slow()
+        last, slow, pressure = self._last, self._too_slow(), {"pressure": self.output.carrying.clamps}
         return {
             "state": "stale" if slow else last.state if last else "waiting",
             "enabled": self._enabled,
@@ -214,7 +214,7 @@ class FeedforwardCompensator:
             "slew_limit": self.output.limits.slew,
             "torque_limit": self.output.limits.absolute,
             "withheld": withheld(self.output.limits.absolute, self.output.absolute, self.output.slew),
-            **{f"{name}_clamps": count for name, count in self.output.limits.counts.items()},
+            **{f"{name}_clamps": count for name, count in (self.output.limits.counts | pressure).items()},
             **self._counts,
             "time_steps_back": self.output.steps_back,
         }
@@ -288,7 +288,7 @@ class FeedforwardCompensator:
     def _feedforward(self, time: float, state: str, valid: bool) -> Feedforward:
         target, torque = self._target, self.output.torque
         return Feedforward(
-            time, torque, torque * self._pressure_per_torque, target.speed, state, target.drum_torque,
+            time, torque, self.output.as_pressure(self._pressure_per_torque), target.speed, state, target.drum_torque,
             self.output.fade.value, valid, self.output.sequence,
         )  # fmt: skip
 

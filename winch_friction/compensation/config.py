@@ -72,6 +72,9 @@ class CompensatorConfig:
         doc="the same by input where it differs; above 0.5 s for load, oil and wire alone",
     )  # fmt: skip
     seed_range: float = option(0.5, lower=0.0, upper=0.5, doc="how far a model's parameters may lie from the seed's")
+    pressure_limit: float = option(
+        math.inf, lower=0.0, upper=math.inf, unit="Pa", doc="bound of the pressure; never above the crane's rated one"
+    )
     min_displacement: float = option(0.1, lower=0.01, upper=1.0, doc="floor of D/D_max in the pressure feedforward")
 
     def __post_init__(self) -> None:

@@ -8,13 +8,12 @@ from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from operator import mul
 
-from winch_friction.compensation.config import CompensatorConfig
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, registered_terms
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all
 from winch_friction.physics.friction.term import irreplaceable
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, pressure_feedforward, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 
@@ -45,19 +44,6 @@ class Needs:
         if drive.hydraulic or (self._balance_for_load and not (math.isfinite(weight) or math.isfinite(force))):
             lost += drive.lacking(sample, plausible)
         return tuple(lost)
-
-
-def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:
-    """Pa on the carrying group per N m at the shaft; 0 for an electric drive or a group that is not there.
-
-    The displacement has a floor: a group that is swung out cannot carry friction, and its pressure would be without
-    bound.
-    """
-    name = config.pressure_group if len(sample.groups) != 1 else next(iter(sample.groups))
-    if not crane.drive.hydraulic or name not in sample.groups:
-        return 0.0
-    displacement = max(sample.groups[name].displacement, config.min_displacement * crane.max_displacement)
-    return pressure_feedforward(1.0, crane.motor_count(name), displacement)
 
 
 # -- the load

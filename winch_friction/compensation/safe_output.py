@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, field
 
 from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
+from winch_friction.compensation.pressure import RATED_PRESSURE, CarryingPressure
 from winch_friction.physics.errors import InputError
 
 ROUNDING = 1e-6  # s; a sample that is as old as it may be is no silence (a Unix time has 2e-7 s)
@@ -45,6 +46,7 @@ class SafeOutput:
     hold: float
     lead: float = 0.0
     against_speed: float = AGAINST_SPEED
+    carrying: CarryingPressure = field(default_factory=lambda: CarryingPressure(RATED_PRESSURE))
     torque: float = field(default=0.0, init=False)
     time: float = field(default=math.nan, init=False)  # stamp of what was published last, s
     sequence: int = field(default=0, init=False)
@@ -65,20 +67,12 @@ class SafeOutput:
         self._dt = self._gap = self._against = self._pushing = self._carried = 0.0
         self._passed = self._contrary = 0.0  # s since the last step, by stamp or clock; s against the measured motion
         self._behind = self._overdue = 0.0  # s that the stamps are behind the steady clock, and beyond `hold`
-        self._bump = self._usable = self._new_time = False
-        self._anew = False  # the latest sample began anew
+        self._bump = self._usable = self._new_time = self._anew = False  # anew: the latest sample began anew
 
     def configure(self, absolute: float, slew: float, ramp_time: float, hold: float, lead: float = 0.0) -> None:
-        """Other limits from the next step on, without a bump; a ramp goes on from where it is.
-
-        Raises `InputError`, and changes nothing, for a slew limit that lets go of what is published too late.
-        """
-        left = abs(self.torque)
-        if slew < min(self.slew, left / LONGEST_AGAINST):
-            raise InputError(
-                f"slew_limit {slew:g} N*m/s cannot let go of the {left:.0f} N*m that are published within "
-                f"{LONGEST_AGAINST:g} s: at least {left / LONGEST_AGAINST:.0f} N*m/s, or ~/enable false first"
-            )
+        """Other limits from the next step on, without a bump; a ramp goes on from where it is. Raises as `check_slew`,
+        and changes nothing."""
+        self.check_slew(slew)
         self.absolute, self.slew, self.ramp_time, self.hold, self.lead = absolute, slew, ramp_time, hold, lead
         self.limits.absolute, self.limits.slew = min(absolute, slew * LONGEST_AGAINST), slew
         self.fade.duration = ramp_time
@@ -89,6 +83,15 @@ class SafeOutput:
         self._behind, self._credit = min(self._behind, hold), min(self._credit, hold)
         self._bump = True
 
+    def check_slew(self, slew: float) -> None:
+        """Raise `InputError` for a slew limit that lets go of what is published too late; changes nothing."""
+        left = abs(self.torque)
+        if slew < min(self.slew, left / LONGEST_AGAINST):
+            raise InputError(
+                f"slew_limit {slew:g} N*m/s cannot let go of the {left:.0f} N*m that are published within "
+                f"{LONGEST_AGAINST:g} s: at least {left / LONGEST_AGAINST:.0f} N*m/s, or ~/enable false first"
+            )
+
     def restrict(self, slew: float) -> None:
         """Slew no faster than `slew` N m/s, nor than the limit that was set."""
         self.limits.slew = min(self.slew, slew)
@@ -98,9 +101,8 @@ class SafeOutput:
         self._bump = True
 
     def carry(self, difference: float) -> None:
-        """What is asked for at the next sample differs by this, N m (before minus now), from what would have been asked
-        for: let that go by and by. Unlike a `bump` it leaves out what the motion itself changes from one sample to
-        the next, which at a reversal is half the torque."""
+        """Let a difference of what is asked for at the next sample, N m (before minus now), go by and by. Unlike a
+        `bump` it leaves out what the motion itself changes meanwhile, which at a reversal is half the torque."""
         self._carried += difference
 
     # -- a sample
@@ -237,8 +239,7 @@ class SafeOutput:
         return against_command or self._against_motion(torque) or torque * self._asked < 0.0
 
     def _fast(self, torque: float) -> float:
-        """N m/s to let go of so many N m that push against the motion, or that nothing carries: what a slow reversal
-        needs must not hold them up."""
+        """N m/s to let go of N m that push against the motion, or that nothing carries, however slow a reversal is."""
         return min(self.slew, max(self.limits.slew, torque / LONGEST_AGAINST))
 
     # -- no sample
@@ -260,11 +261,10 @@ class SafeOutput:
 
     def decay(self, time: float) -> float:
         """Publish the ramp to zero at stamp `time`."""
-        if not time > self.time:
-            return self.torque
-        self._let_go(self.remaining(time))
-        self.time = time
-        self.sequence += 1
+        if time > self.time:
+            self._let_go(self.remaining(time))
+            self.time = time
+            self.sequence += 1
         return self.torque
 
     def _let_go(self, torque: float) -> None:
@@ -289,6 +289,10 @@ class SafeOutput:
     def hurry(self, duration: float) -> None:
         """Let the ramp to zero be over within `duration` s, as far as the slew limit allows it."""
         self._turns_at = min(self._turns_at, self._ramp_from + duration)
+
+    def as_pressure(self, per_torque: float) -> float:
+        """What was published last in Pa on the group that carries it, at `per_torque` Pa per N m, in its own bounds."""
+        return self.carrying.of(self.torque, per_torque, self.time, self.slew)
 
     @property
     def at_rest(self) -> bool:

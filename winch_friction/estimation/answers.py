@@ -22,7 +22,8 @@ class Estimate(NamedTuple):
     `accepted`: the sample changed the filter; `innovation` rad/s, its variance and `nis`, the squared ratio (NaN when
     nothing was predicted); `state`: learning, or why not: waiting, disabled, rejected, stick, saturation, no
     excitation, another load (than the measured one), restarted;
-    `friction_torque`: N m at the shaft by the learned mean; `speed` rad/s; `drum_torque` N m.
+    `friction_torque`: N m at the shaft by the learned mean, NaN where the sample does not show it; `speed` rad/s;
+    `drum_torque` N m.
     """
 
     time: float

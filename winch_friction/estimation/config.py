@@ -1,9 +1,18 @@
-"""What an estimator can be told, with the limits of every value."""
+"""What an estimator can be told, with the limits of every value, and what its defaults are on a crane of another size.
 
-from dataclasses import dataclass
+The defaults are those of the reference crane (`crane_150t`). Three of them have the size of a crane in their unit: a
+torque at the shaft that no term explains, what the load's torque walks in a second, and the damping of a load on its
+wire. `at_its_size` takes the first two in proportion to the torque that holds the rated load, and the third so that
+the damping ratio c / (2 sqrt(k m)) is the same (docs/physics.md, section 5).
+"""
 
-from winch_friction.physics.channels import BAR, RPM
+import math
+from dataclasses import dataclass, replace
+
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.errors import check, option
+from winch_friction.physics.winch.crane import Crane, at_its_speeds
+from winch_friction.physics.winch.operating_point import RATED_PRESSURE
 
 
 @dataclass(frozen=True)
@@ -64,3 +73,50 @@ class EstimatorConfig:
 
     def __post_init__(self) -> None:
         check(self)
+
+
+# -- the defaults on another crane
+# of the reference crane: N m at the shaft that hold its rated load (150 t on the outer layer) and that its motors make,
+# kg, N of its wire (EA), and the bound of its feedforward, N m
+RATED_LOAD, WIRE_STIFFNESS, TORQUE_LIMIT = 150e3, 3.0e8, 2000.0
+RATED_TORQUE = RATED_LOAD * GRAVITY * 1.136 / 250.0
+MOTOR_TORQUE = 11 * (215.0 * CM3_PER_REV) * RATED_PRESSURE
+
+
+def at_its_size(config: EstimatorConfig, crane: Crane) -> EstimatorConfig:
+    """The settings with those that were left at their defaults in proportion to this crane's speeds, torques and
+    wire."""
+    usual = EstimatorConfig()
+    config = at_its_speeds(config, crane, "stick_speed", "excitation_speed")
+    factors = {
+        "disturbance_std": torque_ratio(crane),
+        "load_noise": torque_ratio(crane),
+        "wire_damping": damping_ratio(crane),
+    }
+    changes = {n: getattr(usual, n) * f for n, f in factors.items() if getattr(config, n) == getattr(usual, n)}
+    return replace(config, **changes)
+
+
+def in_use(config: EstimatorConfig) -> dict[str, float]:
+    """What a status tells of the settings that go with the crane: a parameter shows the reference crane's."""
+    return {name: getattr(config, name) for name in ("disturbance_std", "load_noise", "wire_damping")}
+
+
+def torque_ratio(crane: Crane) -> float:
+    """How many times the torques of the reference crane's shaft this crane's are: by the rated load, else by what the
+    motors make, else by the bound of the feedforward; 1 where nothing is said."""
+    if crane.rated_load:
+        return crane.drum_torque(crane.rated_load) / crane.gear_ratio / RATED_TORQUE
+    if motors := max(crane.groups.values(), default=0) * crane.max_displacement:
+        return motors * (crane.rated_pressure or RATED_PRESSURE) / MOTOR_TORQUE
+    return crane.absolute_torque_limit / TORQUE_LIMIT if 0.0 < crane.absolute_torque_limit < math.inf else 1.0
+
+
+def damping_ratio(crane: Crane) -> float:
+    """How many times the reference crane's damping, N s/m, gives the same damping ratio: sqrt(k m) goes with the wire's
+    EA and the rated load; a wire of which nothing is said is taken as that of the reference for its load."""
+    lever = crane.drum.radius(math.nan) / crane.gear_ratio
+    load = crane.rated_load or torque_ratio(crane) * RATED_TORQUE / (GRAVITY * lever)  # kg
+    mass = load / RATED_LOAD
+    wire = crane.wire_stiffness / WIRE_STIFFNESS if 0.0 < crane.wire_stiffness < math.inf else mass
+    return math.sqrt(wire * mass)

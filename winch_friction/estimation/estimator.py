@@ -13,7 +13,7 @@ from winch_friction.estimation.answers import (
 )
 from winch_friction.estimation.checkpoint import Kept, filter_state, restored_state
 from winch_friction.estimation.compiled_filter import filter_class
-from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.config import EstimatorConfig, at_its_size, in_use
 from winch_friction.estimation.conflict import SeedConflict
 from winch_friction.estimation.dynamics import FIRST_PARAMETER, fresh_motion
 from winch_friction.estimation.interval import FrictionFunctions, Intervals
@@ -25,7 +25,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, at_its_speeds, sample_drive_torque
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 NAN = math.nan
@@ -73,8 +73,8 @@ class FrictionEstimator:
     ) -> None:
         # refuses by name what only a whole run can be rid of, unless it was over at `since` s
         self._correct = SampleCorrector(crane, seed_model, since=since)
-        self.config = at_its_speeds(config or EstimatorConfig(), crane, "stick_speed", "excitation_speed")
         self.crane = self._correct.crane
+        self.config = at_its_size(config or EstimatorConfig(), self.crane)
         self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
         self._ranges, self._needed = ChannelRanges(self.crane), needed(self.seed.terms)
         self._enabled = True
@@ -131,7 +131,7 @@ class FrictionEstimator:
         innovation, variance = self._filter.innovation(sample.motor_speed)
         if not self._gate.admits(sample.time, innovation, variance):
             self._load.mass = mass
-            return self._rejected(sample, innovation, variance)
+            return self._rejected(sample, innovation, variance, step.friction)
         self._filter.correct(innovation, variance, not reason, step.stick)
         self._friction.advance(point, theta, len(sample.groups), dt)
         if not reason:
@@ -166,10 +166,10 @@ class FrictionEstimator:
         self._state = reason or "learning"
         self._statuses.step(self._filter, bool(reason), dt)
 
-    def _rejected(self, sample: Sample, innovation: float, variance: float) -> Estimate:
+    def _rejected(self, sample: Sample, innovation: float, variance: float, friction: float = NAN) -> Estimate:
         self._gate.rejected(innovation)
         self.counts["rejected"] += 1
-        return self._estimate(sample, False, innovation, variance, NAN)._replace(state="rejected")
+        return self._estimate(sample, False, innovation, variance, friction)._replace(state="rejected")
 
     # -- beginning and gaps
     def _begin(self, sample: Sample) -> Estimate:
@@ -255,6 +255,7 @@ class FrictionEstimator:
             "past_corrections": past_corrections(self._correct),
             "prior": self.assumed or "as the seed states it",
             "drum_torque": self.drum_torque,
+            **in_use(self.config),
             "noise_factor": math.sqrt(self._filter.noise_factor),
             "nis_mean": self.consistency.last_mean,
             "nis_windows": self.consistency.windows,
@@ -272,8 +273,7 @@ class FrictionEstimator:
 
     def restore(self, content: Mapping[str, Any]) -> None:
         """Go on from a `snapshot` of the same crane and seed; `InputError`, and nothing changed, for any other."""
-        kept = self._kept(content)
-        counts = self.counts
+        kept, counts = self._kept(content), self.counts
         self.reset()
         self.counts = counts
         self._parameters.widen_named(kept.widened)

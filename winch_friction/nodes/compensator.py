@@ -3,7 +3,7 @@
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,7 +45,11 @@ class CompensatorNode(WinchNode):
     """Publishes `~/friction_torque` and `~/pressure_feedforward` at every speed message."""
 
     def __init__(self, **node_arguments: Any) -> None:
-        fixed = ("pressure_group", "min_displacement")  # they change the pressure at once, which no ramp bounds
+        fixed = (
+            "pressure_group",
+            "min_displacement",
+            "pressure_limit",
+        )  # they change the pressure at once, which no ramp bounds
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
@@ -164,6 +168,12 @@ class CompensatorNode(WinchNode):
             self._pressure.publish(pressure_message(feedforward.time, feedforward.pressure, header.frame_id))
 
     # -- settings and health
+    def check_settings(self, changes: Mapping[str, Any]) -> None:
+        """Refuse what the output could not follow as well, before the parameter says that it is so."""
+        super().check_settings(changes)
+        if hasattr(self, "service"):
+            self.service.law.output.check_slew(self._config.read(self, changes).slew_limit)
+
     def apply_settings(self) -> None:
         """Take over changed settings without a bump."""
         if hasattr(self, "service"):

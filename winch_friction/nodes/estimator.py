@@ -132,12 +132,13 @@ class EstimatorNode(WinchNode):
 
     # -- outputs
     def _publish(self, estimate: Estimate) -> None:
-        """One answer to each sample; one that taught nothing repeats the torque before it, and says that it is not
-        valid."""
+        """One answer to each sample; of one that was not taken in it is not valid, and of one that shows no friction it
+        is zero: the torque before it would stand for as long as an input is lost."""
         self._answers += 1
-        header = stamp_header(estimate.time, ROS, mark(math.isfinite(estimate.friction_torque), self._answers))
+        known = math.isfinite(estimate.friction_torque)
+        header = stamp_header(estimate.time, ROS, mark(known and estimate.accepted, self._answers))
         speed = estimate.speed if math.isfinite(estimate.speed) else 0.0
-        torque = self.service.friction_torque
+        torque = estimate.friction_torque if known else 0.0
         self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=torque))
 
     # -- what an earlier run left, health

@@ -208,7 +208,7 @@ class Inputs:
         receipt, now = self.node.ros_now(), self.node.service_now()
         for source, subscription in self._held:
             for message, info in drain(subscription):
-                self._service.take(source, message, receipt, now, _sent(info))
+                self._service.take(source, message, receipt, now, sent_at(info))
 
     def _on_speed(self, message: Any, info: Any) -> None:
         """The others first, all that have come: stamps decide what belongs to which speed."""
@@ -218,7 +218,7 @@ class Inputs:
         self.poll()
         receipt, now = self.node.ros_now(), self.node.service_now()
         for each, sent in self._in_time(source, waiting):
-            answer = self._service.take(source, each, receipt, now, _sent(sent))
+            answer = self._service.take(source, each, receipt, now, sent_at(sent))
             if answer is not None:
                 self._answer(answer)
 
@@ -231,9 +231,21 @@ class Inputs:
         return kept
 
 
-def _sent(info: Mapping[str, Any]) -> float:
-    """When a message was sent, s by its sender's clock."""
-    return float(info["source_timestamp"] * 1e-9)
+# s; a message that seems to have been on its way for longer was sent by another clock than ours: an input that old
+# would be lost anyway (`compensation.config.OLDEST_INPUT`)
+LONGEST_WAY = 0.5
+
+
+def sent_at(info: Mapping[str, Any]) -> float:
+    """When a message was sent, s: by its sender's clock as long as that may be ours, else when it was received.
+
+    Messages without a stamp wait for the speed that was sent after them. Of a clock that is ahead, or of a speed's that
+    is behind, they would wait for as long, and count as measured then.
+    """
+    source, received = info["source_timestamp"], info.get("received_timestamp", 0)
+    if received > 0 and not received - LONGEST_WAY * 1e9 <= source <= received:
+        source = received
+    return float(source * 1e-9)
 
 
 def _never(_: Any) -> None:

@@ -7,12 +7,15 @@ task, which costs more than the message and its answer. The wait set here holds 
 
 import functools
 import inspect
+import math
+import threading
 import time
 import traceback
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
@@ -125,16 +128,26 @@ URGENT = ("change_state", "enable", "reset", "load_model", "save")  # services t
 
 
 class Loop:
-    """Waits for a node and runs what it is woken by, all in one thread."""
+    """Waits for a node and runs what it is woken by, all in one thread.
+
+    The middleware's wait ends at a time of the system clock: set back by an hour, it lasts an hour, and nothing but a
+    message ends it, whatever the node's timers go by. A second thread, by the steady clock, ends what lasts too long.
+    """
 
     def __init__(self, node: Any) -> None:
         self._node, self._executor, self._seldom = node, SingleThreadedExecutor(), Seldom(URGENT)
         self._executor.add_node(node)
-        self._next = 0.0
+        self._next, self._until, self._ended = 0.0, math.inf, False  # _until: steady s at which a wait is to be over
+        self._alarm = GuardCondition(callback=None, callback_group=None, context=node.context)
+        self._waker = threading.Thread(target=self._wake, name="waker", daemon=True)
+        self._waker.start()
         self._wait: Callable[[float], bool] = self._wait_for_few if _wait_sets_as_known(node) else self._wait_for_all
 
     def end(self) -> None:
         """Let the node go."""
+        self._ended = True
+        self._waker.join()
+        self._alarm.destroy()
         self._executor.remove_node(self._node)
         self._executor.shutdown(timeout_sec=0.0)  # else whoever collects it later prints a traceback behind the end
 
@@ -147,6 +160,12 @@ class Loop:
             self._run_ready()
         elif self._wait(left):
             self._run_ready()
+
+    def _wake(self) -> None:
+        while not self._ended:
+            time.sleep(HEARTBEAT)
+            if time.monotonic() > self._until:
+                self._alarm.trigger()
 
     def _run_ready(self) -> None:
         """One look of the executor, and every callback that it finds ready."""
@@ -182,8 +201,11 @@ class Loop:
         ):  # fmt: skip
             for each in entities:
                 add(each.handle)
+        waiting.add_guard_condition(self._alarm.handle)
         place = None if speed is None else waiting.add_subscription(speed.handle)
+        self._until = time.monotonic() + seconds
         waiting.wait(int(seconds * 1e9))
+        self._until = math.inf
         if place is not None and waiting.is_ready("subscription", place):
             _take(speed)
             return any(waiting.is_ready("subscription", k) for k in range(len(others))) or _ready(waiting)
@@ -213,7 +235,7 @@ def _take(subscription: Any) -> None:
 
 
 def _wait_set(node: Any, subscriptions: int, timers: int, clients: int, services: int) -> Any:
-    return rclpy_implementation.WaitSet(subscriptions, 0, timers, clients, services, 0, node.context.handle)
+    return rclpy_implementation.WaitSet(subscriptions, 1, timers, clients, services, 0, node.context.handle)
 
 
 def _wait_sets_as_known(node: Any) -> bool:

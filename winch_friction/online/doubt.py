@@ -63,21 +63,42 @@ def span(last: float, time: float) -> float:
 # s; what comes is at most half a second old (`compensation.config.OLDEST_INPUT`): twice that is no slow sender
 PATIENCE = 1.0
 SAID = "all readings of the drive stand still while it turns: a sender that hangs?"
+# of the largest speed: no drive turns so evenly that its speed is the same to that for a second. Encoder counts and
+# whole revolutions are coarser, and may well stand: two of their steps differ by a whole one, or by rounding. So many
+# finer differences show that a speed has more digits than they
+FINE, ROUNDING, FINE_SEEN = 1e-4, 1e-9, 20
+SPEED_SAID = "motor_speed stands still while the winch turns: a sender that hangs?"
 
 
 class StandingReadings:
-    """Whether everything that was measured stands still although the winch turns, or is told to, faster than `moving`
-    rad/s."""
+    """Whether everything that was measured, or a speed of many digits alone, stands still although the winch turns, or
+    is told to, faster than `moving` rad/s."""
 
     def __init__(self, moving: float) -> None:
         self._moving, self._last = moving, Sample(math.nan, math.nan)
-        self._doubt = Doubt(PATIENCE)
+        self._doubt, self._speed = Doubt(PATIENCE), Doubt(PATIENCE)
+        # of the speed: the last step and the largest, rad/s; how often its steps told that it has digits
+        self._step, self._largest, self._fine = math.nan, 0.0, 0
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
         last, self._last = self._last, sample
         stand = sample.motor_speed == last.motor_speed and _readings(sample) == _readings(last)
-        return SAID if self._doubt.step(self._tells(sample) if stand else False, dt) else ""
+        speed = self._speed.step(self._hangs(sample.motor_speed, sample.motor_speed - last.motor_speed), dt)
+        if self._doubt.step(self._tells(sample) if stand else False, dt):
+            return SAID
+        return SPEED_SAID if speed else ""
+
+    def _hangs(self, speed: float, step: float) -> bool | None:
+        """Whether a speed, so many rad/s from the last, stands that never stood; None of one at rest, or of few
+        digits."""
+        self._largest = max(self._largest, abs(speed))  # NaN is not larger
+        moves = abs(speed) > self._moving
+        self._fine += moves and ROUNDING * self._largest < abs(step - self._step) < FINE * self._largest
+        self._step = step
+        if step != 0.0:  # NaN as well
+            return False
+        return True if moves and self._fine >= FINE_SEEN else None
 
     def _tells(self, sample: Sample) -> bool | None:
         """Whether readings that stand still are wrong; None of a winch at rest, or of one without a torque."""

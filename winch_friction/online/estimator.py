@@ -49,7 +49,6 @@ class EstimatorService:
         self._enabled, self._seen = True, math.nan
         self._gain = InertiaBalance(self.law.crane)
         self._before = BeforeDoubt(self.law)
-        self.friction_torque = 0.0  # N m, the last one that was learned from
         self._published, self._published_at = -math.inf, -math.inf
 
     def _watch_loads(self) -> None:
@@ -78,8 +77,6 @@ class EstimatorService:
         )
         self.last = self.law.step(sample)
         self._doubt(sample, self.last.accepted)
-        if math.isfinite(self.last.friction_torque):
-            self.friction_torque = self.last.friction_torque
         return self.last
 
     def _doubt(self, sample: Sample, accepted: bool) -> None:

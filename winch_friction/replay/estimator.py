@@ -21,7 +21,7 @@ def replay_estimator(
 ) -> Run:
     """What the estimator learns along a run, one row per sample.
 
-    Columns: `time` s, `friction_torque` N m (NaN where nothing was learned), `speed` rad/s, `drum_torque` N m,
+    Columns: `time` s, `friction_torque` N m (NaN where an input was lost), `speed` rad/s, `drum_torque` N m,
     `innovation` rad/s, `innovation_variance`, `nis`, and per parameter its value and, as `<name>_std`, its standard
     deviation in SI, looked at every `period` s and held between; `aside['state']` in words.
     """

@@ -46,7 +46,7 @@ def compare_live(path: Path | str, replayed: dict[str, Run], **bag_options: obje
 
 def _compared(node: str, live: dict[float, float], replayed: Run, silences: Run | None = None) -> Comparison:
     """A node's answers to samples, and for the compensator also what its watchdog said in silences."""
-    torque = _held(replayed["friction_torque"]) if node == "estimator" else replayed["friction_torque"]
+    torque = _published(replayed["friction_torque"]) if node == "estimator" else replayed["friction_torque"]
     # nanoseconds: live stamps went through a message, replayed times through a float
     stamps = np.array([round(time * 1e9) for time in live])
     order = dict(zip(stamps.tolist(), live.values(), strict=True))
@@ -67,10 +67,6 @@ def _compared(node: str, live: dict[float, float], replayed: Run, silences: Run 
     return Comparison(node, len(pairs), missing, float(difference[worst]), float(times[worst]))
 
 
-def _held(values: FloatArray) -> FloatArray:
-    """The estimator node repeats its last torque where a sample taught nothing; 0 before the first."""
-    held, last = np.empty_like(values), 0.0
-    for k, value in enumerate(values.tolist()):
-        last = value if value == value else last
-        held[k] = last
-    return held
+def _published(values: FloatArray) -> FloatArray:
+    """The estimator node says zero where a sample shows no friction."""
+    return np.where(np.isnan(values), 0.0, values)

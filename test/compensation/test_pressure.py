@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
-from winch_friction.compensation.pressure import CarryingPressure
+from winch_friction.compensation.parts import CarryingPressure
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import GroupSample, Sample
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.compensation.config import CompensatorConfig
-from winch_friction.compensation.pressure import pressure_per_torque
+from winch_friction.compensation.parts import pressure_per_torque
 from winch_friction.physics.channels import LIMITS
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import LOAD_MARGIN, ChannelRanges

@@ -3,10 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from winch_friction.compensation.config import CompensatorConfig
+from winch_friction.compensation.config import CompensatorConfig, check_gains
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs, check_gains, withheld
-from winch_friction.compensation.pressure import CarryingPressure, largest_pressure, pressure_per_torque
+from winch_friction.compensation.parts import CarryingPressure, DrumTorque, FrictionLaw, Needs, pressure_per_torque
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
@@ -90,7 +89,7 @@ class FeedforwardCompensator:
         self._needs = self._needed()
         self.output = SafeOutput(
             self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead,
-            AGAINST_SPEED * crane.speed_scale, CarryingPressure(largest_pressure(crane, config)),
+            AGAINST_SPEED * crane.speed_scale, CarryingPressure.on(crane, config),
         )  # fmt: skip
         self._enabled = True
         self._counts = {"steps": 0, "stale": 0, "refused_models": 0, "accepted_models": 0}
@@ -213,7 +212,7 @@ class FeedforwardCompensator:
             "drum_torque": self._target.drum_torque,
             "slew_limit": self.output.limits.slew,
             "torque_limit": self.output.limits.absolute,
-            "withheld": withheld(self.output.limits.absolute, self.output.absolute, self.output.slew),
+            "withheld": self.output.limits.withheld(self.output.absolute, self.output.slew),
             **{f"{name}_clamps": count for name, count in (self.output.limits.counts | pressure).items()},
             **self._counts,
             "time_steps_back": self.output.steps_back,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError, check, limits_of, option
+from winch_friction.physics.friction import registered_terms
 
 # below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed
 SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s
@@ -108,3 +109,10 @@ class ReplayConfig(CompensatorConfig):
     max_age: float = option(
         0.1, lower=0.001, upper=OLDEST_IN_A_LOG, unit="s", doc="age beyond which an input counts as lost"
     )
+
+
+def check_gains(gains: Mapping[str, float]) -> None:
+    """Raise `InputError` for a gain whose name is no term at all."""
+    for name in gains:
+        if name not in registered_terms():
+            raise InputError(f"gains: there is no term '{name}'; terms are {', '.join(sorted(registered_terms()))}")

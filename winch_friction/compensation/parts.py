@@ -1,4 +1,4 @@
-"""The parts that the feedforward is put together from: the inputs that it needs, load, law; bounds, fades.
+"""The parts that the feedforward is put together from: the inputs that it needs, load, law; bounds, fades, pressure.
 
 `compensator` asks the first three for a torque; `safe_output` leads what is published there by the last two.
 """
@@ -8,13 +8,13 @@ from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from operator import mul
 
-from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import FrictionModel, registered_terms
+from winch_friction.compensation.config import CompensatorConfig
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all
 from winch_friction.physics.friction.term import irreplaceable
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, sample_drive_torque
-from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.physics.winch.crane import Crane, pressure_feedforward, sample_drive_torque
+from winch_friction.physics.winch.operating_point import RATED_PRESSURE, ChannelRanges
 
 
 # -- what it needs to see
@@ -158,24 +158,7 @@ class FrictionLaw:
         return self._compiled
 
 
-def check_gains(gains: Mapping[str, float]) -> None:
-    """Raise `InputError` for a gain whose name is no term at all."""
-    for name in gains:
-        if name not in registered_terms():
-            raise InputError(f"gains: there is no term '{name}'; terms are {', '.join(sorted(registered_terms()))}")
-
-
 # -- its bounds
-def withheld(most: float, granted: float, slew: float) -> str:
-    """What a slew limit, N m/s, takes of a torque that was granted where it leaves `most`, N m, in words."""
-    if not most < granted < math.inf:
-        return ""
-    return (
-        f"slew_limit {slew:g} N*m/s leaves {most:g} of {granted:g} N*m: "
-        f"what cannot be let go within {most / slew:g} s is not published"
-    )
-
-
 @dataclass
 class TorqueLimits:
     """Absolute, envelope and slew limit of a torque; N m and N m/s."""
@@ -194,6 +177,15 @@ class TorqueLimits:
     def slewed(self, torque: float, previous: float, dt: float, slew: float = 0.0) -> float:
         """The torque no further from the previous one than the slew limit, or `slew` where more, allows in `dt` s."""
         return previous + self._clamped("slew", torque - previous, max(self.slew, slew) * dt)
+
+    def withheld(self, granted: float, slew: float) -> str:
+        """What a slew limit, N m/s, takes of a torque that was granted, N m, where less is left, in words."""
+        if not self.absolute < granted < math.inf:
+            return ""
+        return (
+            f"slew_limit {slew:g} N*m/s leaves {self.absolute:g} of {granted:g} N*m: "
+            f"what cannot be let go within {self.absolute / slew:g} s is not published"
+        )
 
     def _clamped(self, name: str, value: float, bound: float) -> float:
         if abs(value) <= bound:
@@ -253,3 +245,49 @@ class Bridge:
         """Let go for `dt` s."""
         self._left = max(0.0, self._left - dt)
         return self.value()
+
+
+# -- as a pressure: p = T / (n D) goes with a displacement that somebody else moves, and that a broken feedback shows,
+# so that it has a bound and a rate of its own
+def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:
+    """Pa on the carrying group per N m at the shaft; 0 for an electric drive or a group that is not there.
+
+    The displacement has a floor: a group that is swung out cannot carry friction, and its pressure would be without
+    bound.
+    """
+    name = config.pressure_group if len(sample.groups) != 1 else next(iter(sample.groups))
+    if not crane.drive.hydraulic or name not in sample.groups:
+        return 0.0
+    displacement = max(sample.groups[name].displacement, config.min_displacement * crane.max_displacement)
+    return pressure_feedforward(1.0, crane.motor_count(name), displacement)
+
+
+@dataclass
+class CarryingPressure:
+    """The last published pressure, Pa, and the way from it to the next.
+
+    It never means more torque than is published, and grows no faster than a slew limit of torque lets it at the
+    present displacement; so it is over when the torque is, and falls as fast.
+    """
+
+    absolute: float
+    value: float = field(default=0.0, init=False)
+    clamps: int = field(default=0, init=False)
+    _time: float = field(default=math.nan, init=False)
+
+    @classmethod
+    def on(cls, crane: Crane, config: CompensatorConfig) -> "CarryingPressure":
+        """Bounded by what was set, and never by more than the motors are rated for, however far they are swung out."""
+        return cls(min(config.pressure_limit, crane.rated_pressure or RATED_PRESSURE))
+
+    def of(self, torque: float, per_torque: float, time: float, slew: float) -> float:
+        """The pressure for a published torque in N m, at `per_torque` Pa per N m and stamp `time` s; `slew` N m/s."""
+        wanted, grown = torque * per_torque, slew * per_torque * max(0.0, time - self._time)
+        before = max(0.0, math.copysign(1.0, wanted) * self.value)  # of what has the same sign
+        most = min(self.absolute, before + (grown if grown == grown else 0.0))
+        self._time = time
+        if abs(wanted) > most:
+            self.clamps += 1
+            wanted = math.copysign(most, wanted)
+        self.value = wanted
+        return wanted

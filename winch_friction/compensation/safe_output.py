@@ -7,8 +7,7 @@ torque stays inside its limits, moves no faster than the slew limit, and goes to
 import math
 from dataclasses import dataclass, field
 
-from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
-from winch_friction.compensation.pressure import RATED_PRESSURE, CarryingPressure
+from winch_friction.compensation.parts import RATED_PRESSURE, Bridge, CarryingPressure, Fade, TorqueLimits
 from winch_friction.physics.errors import InputError
 
 ROUNDING = 1e-6  # s; a sample that is as old as it may be is no silence (a Unix time has 2e-7 s)

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy.engine.grammar import Factor, Law
+from winch_friction.discrepancy.proposals import explained
 from winch_friction.discrepancy.vocabulary import (
     BY_NAME,
     TEXTS,
@@ -161,3 +163,11 @@ def test_the_proposals_files_go_back_in(drag, tmp_path):
 def test_a_law_that_acts_once_in_all_is_divided_by_the_motors_that_its_term_is_taken_times(each, share):
     equation = declare(Law((Factor("linear", "pressure"),), opposing=True, each=each), 2.0).term.equation
     assert float(equation.subs(symbols.n, 2) / equation.subs(symbols.n, 1)) == share
+
+
+@pytest.mark.parametrize(("verdict", "closed", "says"), [
+    ("missing_effect", (), True), ("ambiguous", (), True), ("nothing_missing", (), False),
+    ("unexplained", (), False), ("unexplained", (0.4, 0.8), False), ("unexplained", (0.4, 0.96), True),
+])  # fmt: skip
+def test_what_a_name_or_an_equation_says_is_no_fault_of_the_seed(verdict, closed, says):
+    assert explained(verdict, [SimpleNamespace(closed=each) for each in closed]) == says

@@ -239,7 +239,10 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
         return Verdict(UNEXPLAINED, f"{implausible[0].name} would need an implausible size{times}")
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
-        return Verdict(UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it")
+        names = ", ".join(selection.final.names)
+        return Verdict(
+            UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it ({names})"
+        )
     whole, whole_before = cross.excess(selection.final), max(cross.excess(selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)

@@ -58,7 +58,8 @@ def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> 
     own = repaired.blocks
     beside = float(np.sqrt(max(refit.size_after.value**2 - after.value**2, 0.0)))
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit):
-        return Proof(f"{named} takes {beside:.2g} off what a mere refit of the model leaves, which is nobody's effect")
+        why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
+        return Proof(f"{named} {why}")
     chance = chance_of_no_gain(*_common(refit, repaired), rng)
     if chance > LIMITS.proof_p:
         return Proof(f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.assembly import Trial
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.candidates.friction import friction_candidate
@@ -112,6 +112,12 @@ def propose(
             break
     best = max((each.closed for each in found), default=0.0)
     return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
+
+
+def explained(verdict: str, proposals: Sequence[Proposal]) -> bool:
+    """Whether a name, or an equation that closes nearly all of the locked gap, says what is missing: then it is not
+    the seed that is wrong, however far a fit without them would move it."""
+    return verdict in (MISSING, AMBIGUOUS) or any(each.closed >= LIMITS.closes_nearly_all for each in proposals)
 
 
 def near_laws(

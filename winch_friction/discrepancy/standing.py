@@ -129,7 +129,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         worse = ", ".join(worse_runs(full.holdout, rng))
         return (None, f"{names}: the gap of {worse} grows") if worse else (full, "")
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
-        return None, f"{names}: a mere refit leaves less than anybody's effect of the locked runs, and this the others"
+        why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
+        return None, f"{names}: {why}, and of the others this takes hardly more"
     proof = prove(names, refit.holdout, full.holdout, rng)
     why = (
         proof.why

@@ -64,6 +64,7 @@ class Thresholds:
     grammar_judged: int = 12  # laws of one and of two factors whose held-out loss is looked at
     proposal_gain: float = 0.3  # of the gap's square above the noise that a law must close, on locked runs too
     proposal_share: float = 0.8  # of what the best law closes: simpler ones that do nearly as well come first
+    closes_nearly_all: float = 0.9  # of the locked gap above the noise: then an equation, and no seed, is what is off
     word_price: float = 0.05  # of the logarithm of the loss, per word and constant: a simpler law may leave 5 % more
     as_good: float = 0.25  # of the same logarithm, within which another law is worth showing beside the best
     most_proposals: int = 3

@@ -26,7 +26,7 @@ from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
-from winch_friction.discrepancy.proposals import Proposal, near_laws, propose
+from winch_friction.discrepancy.proposals import Proposal, explained, near_laws, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
 from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
@@ -266,9 +266,10 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             trial = by_runs(split, crane, options, trial, rng)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result = assemble(split, options, trial)
+    refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     result = replace(
-        result, seed_model=model, seed_refuted=() if seed.refuted is None else (seed.refuted,), adequacy=tuple(checks),
-        notes=(*notes, *result.notes), proposals=proposals,
+        result, seed_model=model, seed_refuted=refuted, adequacy=tuple(checks), notes=(*notes, *result.notes),
+        proposals=proposals,
     )  # fmt: skip
     swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
     # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing

@@ -916,7 +916,7 @@ def test_a_name_refused_for_what_it_leaves_of_the_training_runs_stands_by_the_lo
         sides = [side(3.0 * WAVE + noise(), left * OTHER + noise(1)) for left in (train, locked)]
         return Trial(own, SimpleNamespace(parameters={}), *sides)
 
-    refit = Trial(search, None, None, side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1)))
+    refit = Trial(search, None, *[side(3.0 * WAVE + noise(), 3.0 * WAVE + noise(1))] * 2)
     full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
     assert (full is not None) is stands
     assert bool(why) is (not stands and bool(refused.refused))
@@ -936,7 +936,7 @@ def test_a_name_that_leaves_most_of_the_training_runs_gap_is_not_what_shows_ther
         sides = [side(3.0 * np.sqrt(2) * WAVE, left * np.sqrt(2) * OTHER + noise(1)) for left in (train, 0.2)]
         return Trial(own, SimpleNamespace(parameters={}), *[replace(each, noise_floor=0.8) for each in sides])
 
-    refit = Trial(search, None, None, side(3.0 * np.sqrt(2) * WAVE + noise(), 3.0 * np.sqrt(2) * WAVE + noise(1)))
+    refit = Trial(search, None, *[side(3.0 * np.sqrt(2) * WAVE + noise(), 3.0 * np.sqrt(2) * WAVE + noise(1))] * 2)
     full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
     assert (full is not None) is stands
     assert ("training gap" in why) is not stands
@@ -960,9 +960,9 @@ def test_no_name_is_given_for_what_a_refit_leaves_of_nobodys_effect(taught, refi
         return Trial(own, SimpleNamespace(parameters={}), *[side(9.0 * WAVE + noise(), noise(1)) for _ in range(2)])
 
     left = side(9.0 * WAVE + noise(), refit * np.sqrt(2) * WAVE + noise(1))
-    full, why = standing_module._stands(search, Trial(search, None, None, left), trial_of, np.random.default_rng(0))
+    full, why = standing_module._stands(search, Trial(search, None, left, left), trial_of, np.random.default_rng(0))
     assert (full is not None) is stands, why
-    assert ("anybody's effect" in why) is not stands
+    assert ("too little of the locked runs for an effect" in why) is not stands
 
 
 def test_a_law_of_the_set_is_not_tried_beside_itself():

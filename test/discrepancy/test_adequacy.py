@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
+from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records, of_wire
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
@@ -154,3 +154,13 @@ def test_a_row_that_is_lost_of_a_time_in_ms_is_no_hole():
     time = np.delete(np.arange(500.0) * 20.0, 250)
     run = Run("in ms", {"time": time, "motor_speed": np.sin(time)})
     assert apart([run]) == ([run], [])
+
+
+@pytest.mark.parametrize(("stiffness", "silent", "said"), [
+    (1e8, "ab", "no run says wire_out"), (1e8, "a", "a do not say wire_out"), (1e8, "", ""), (float("nan"), "ab", ""),
+])  # fmt: skip
+def test_a_wire_whose_length_is_not_told_may_be_the_gap(stiffness, silent, said):
+    runs = [SimpleNamespace(name=own, channels={} if own in silent else {"wire_out": 0}) for own in "ab"]
+    notes = of_wire(SimpleNamespace(wire_stiffness=stiffness), runs)
+    assert len(notes) == bool(said)
+    assert "".join(notes).startswith(said)

@@ -111,6 +111,7 @@ def surrounded(monkeypatch, met, told=True):
     split = SimpleNamespace(runs=runs, train=("run_0",), holdout=("run_1",))
     check = SimpleNamespace(met=told)
     adequacy = SimpleNamespace(
+        of_wire=lambda *_: [],
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
         of_swing=lambda crane, left: check,

@@ -266,6 +266,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             trial = by_runs(split, crane, options, trial, rng)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result = assemble(split, options, trial)
+    if result.verdict == UNEXPLAINED:
+        notes += adequacy.of_wire(crane, given.prepared)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     result = replace(
         result, seed_model=model, seed_refuted=refuted, adequacy=tuple(checks), notes=(*notes, *result.notes),

@@ -161,6 +161,6 @@ def test_a_row_that_is_lost_of_a_time_in_ms_is_no_hole():
 ])  # fmt: skip
 def test_a_wire_whose_length_is_not_told_may_be_the_gap(stiffness, silent, said):
     runs = [SimpleNamespace(name=own, channels={} if own in silent else {"wire_out": 0}) for own in "ab"]
-    notes = of_wire(SimpleNamespace(wire_stiffness=stiffness), runs)
+    notes = of_wire(SimpleNamespace(crane=SimpleNamespace(wire_stiffness=stiffness), prepared=runs))
     assert len(notes) == bool(said)
     assert "".join(notes).startswith(said)

@@ -161,12 +161,12 @@ def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Ch
     return _at_least(SWING, longest, LIMITS.swing_told, "s")
 
 
-def of_wire(crane: Crane, runs: Sequence[PreparedRun]) -> list[str]:
+def of_wire(given: Given) -> list[str]:
     """What is said of a gap that nothing explains where runs on a wire that gives do not say how long it is."""
-    silent = [run.name for run in runs if "wire_out" not in run.channels]
-    if not silent or not np.isfinite(crane.wire_stiffness):
+    silent = [run.name for run in given.prepared if "wire_out" not in run.channels]
+    if not silent or not np.isfinite(given.crane.wire_stiffness):
         return []
-    which = "no run says" if len(silent) == len(runs) else f"{', '.join(silent)} do not say"
+    which = "no run says" if len(silent) == len(given.prepared) else f"{', '.join(silent)} do not say"
     return [
         f"{which} wire_out, so that how the load swings on its wire is a guess, and its swing may be the gap: log it"
     ]

@@ -267,7 +267,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result = assemble(split, options, trial)
     if result.verdict == UNEXPLAINED:
-        notes += adequacy.of_wire(crane, given.prepared)
+        notes += adequacy.of_wire(given)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     result = replace(
         result, seed_model=model, seed_refuted=refuted, adequacy=tuple(checks), notes=(*notes, *result.notes),

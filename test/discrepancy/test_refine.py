@@ -122,3 +122,18 @@ def test_what_the_load_tells_of_the_gear_is_drawn_as_finely_of_the_sheaves(found
     ]
     slot = SimpleNamespace(name=found, law=f"free_{found}", free=free, origin=(None, Shape("")))
     assert {each for each in _refined(candidates, [slot]) if isinstance(each, str)} == finer
+
+
+@pytest.mark.parametrize(
+    "name", ["port_power", "line_pressure_power", "viscosity_each_way", "low_displacement_each_way"]
+)
+def test_no_law_is_refined_beyond_what_its_parameters_may_be(name):
+    """A port's loss with the root of the displacement is churning, and in the file its exponent would be cut to 1."""
+    own = law(name)
+    bounds = {p.name: (p.lower, p.upper) for p in own.term.parameters}
+    shapes = [shape for at in own.shapes([]) for shape in own.refined(at).shapes([])]
+    for k in own.continuous:
+        tried = [shape.values[k] for shape in shapes]
+        assert bounds[k][0] <= min(tried)
+        assert max(tried) <= bounds[k][1]
+        assert len(set(tried)) > len({shape.values[k] for shape in own.shapes([])})

@@ -213,6 +213,9 @@ def _finer(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> l
     # one axis at a time where there are several: neighbours of neighbours would be too many
     points = itertools.product(*axes.values()) if len(axes) < 2 else _one_by_one(axes, shape)
     finer = [{**shape.values, **dict(zip(axes, point, strict=True))} for point in points]
+    # beyond its bounds a law is another cause's, and its file would be cut there
+    own = [p for p in (candidate.term.parameters if candidate.term is not None else ()) if p.name in axes]
+    finer = [values for values in finer if all(p.lower <= values[p.name] <= p.upper for p in own)]
     if candidate.possible is not None:
         finer = [values for values in finer if candidate.possible(values, runs)]
     return given + [replace(shape, label=label_of(values), values=values) for values in finer if values != shape.values]

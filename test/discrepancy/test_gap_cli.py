@@ -157,3 +157,21 @@ def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
 def test_what_depends_on_no_signal_is_not_said_to_depend_on_anything():
     assert _unexplained(["oil"], "too small", share_of_gap=0.5) == "it depends on: oil (too small)"
     assert _unexplained([], "too small", share_of_gap=0.5) == "no effect is named: too small"
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_what_a_file_lacks_stands_in_the_answer_too(quiet, tmp_path, capsys):
+    """Who opens gap.json, or said `--quiet`, has not seen what was said while the runs were read."""
+    run = runs_with(4010, "quiet", length=0.2)[0]
+    holes = replace(
+        run, columns=run.columns | {"hook_load": np.where(np.arange(len(run)) < 30, np.nan, run["hook_load"])}
+    )
+    path = tmp_path / "run_01.csv"
+    write_run(holes, path)
+    said = ["--quiet"] if quiet else []
+    assert winch_friction([*said, "gap", str(path), "--out", str(tmp_path / "out"), "--no-report"]) == 0
+    shown = capsys.readouterr()
+    (note,) = [each for each in json.loads((tmp_path / "out/gap.json").read_text())["notes"] if "not numbers" in each]
+    assert "'hook_load': 30 of" in note
+    assert (f"warning: {note}" in shown.err) is not quiet
+    assert note not in shown.out

@@ -1,6 +1,7 @@
 """`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
 
 import json
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -68,11 +69,11 @@ def command(
         blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json, overwrite)
         return
     files = (fmu, fmu_map, params_file, overwrite)
-    content = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, *files)
+    content, said = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, *files)
     if as_json:
         show_json(content)
     else:
-        show_result(content, out)
+        show_result(content, out, said)
 
 
 @search_at_hand()
@@ -90,8 +91,8 @@ def run_gap(
     fmu_map: Path | None = None,
     params_file: Path | None = None,
     overwrite: bool = False,
-) -> dict[str, Any]:
-    """The workflow from files to files; returns the content of gap.json."""
+) -> tuple[dict[str, Any], Collection[str]]:
+    """The workflow from files to files; returns the content of gap.json, and which of its notes were warnings."""
     from winch_friction.cli.console import refuse_foreign, refuse_input_as_output
     from winch_friction.cli.inputs import read_inputs, refuse_copies, refuse_implausible, run_paths
     from winch_friction.discrepancy.answer import STEPS, GapOptions
@@ -115,8 +116,8 @@ def run_gap(
     crane = load_model(MODEL).crane if assumed else crane
     conventions = bag_options_of(params_file) if params_file is not None else {}
     read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
-    for run in read:
-        show_warnings(run.warnings)
+    warned = [each for run in read for each in run.warnings]
+    show_warnings(warned)
     refuse_copies(read)
     read = _simulated(read, fmu, fmu_map)
     try:
@@ -134,14 +135,14 @@ def run_gap(
 
     made = provenance_of(paths, loaded_crane.name, model, seed) | forced
     noted = replace(result.model, provenance={**result.model.provenance, **forced})
-    result = replace(result, provenance=made, model=noted)
+    result = replace(result, provenance=made, model=noted, notes=(*warned, *result.notes))
     content = result.content()
     _write(out, result, content, read)
     if report:
         from winch_friction.report.gap import write_gap_report
 
         write_gap_report(out / "report.html", result)
-    return content
+    return content, warned
 
 
 def _write(out: Path, result: Any, content: dict[str, Any], runs: list[Any]) -> None:
@@ -237,8 +238,8 @@ def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
     return f"it depends on: {', '.join(depends_on)} ({reason})" if depends_on else f"no effect is named: {reason}"
 
 
-def show_result(content: dict[str, Any], out: Path) -> None:
-    """The verdict for a person."""
+def show_result(content: dict[str, Any], out: Path, said: Collection[str] = ()) -> None:
+    """The verdict for a person; what was `said` as a warning is not said again."""
     from winch_friction.discrepancy.adequacy import Check
 
     gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
@@ -265,7 +266,8 @@ def show_result(content: dict[str, Any], out: Path) -> None:
             f"noise floor {gap['noise_floor']:.3g} {unit}"
         )
     for note in content["notes"]:
-        print(f"note: {note}")
+        if note not in said:
+            print(f"note: {note}")
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if plan := content["next_experiment"]:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.chance import (
     _closest,
     _designs,
@@ -84,7 +84,7 @@ def remainder(features, weight=1.0, unresolved=0.0):
     zero = np.zeros(RUNS * BLOCKS)
     blocks = Blocks(zero, zero[:, None], RUN, SEGMENT, zero + weight, features, SIGN, np.tile(np.arange(BLOCKS), RUNS))
     return SimpleNamespace(
-        problem=SimpleNamespace(blocks=blocks), fold=np.repeat(np.arange(RUNS), 2), unresolved=unresolved
+        problem=SimpleNamespace(blocks=blocks, grams=grams(blocks)), fold_of_block=RUN, unresolved=unresolved
     )
 
 

@@ -13,6 +13,17 @@ from winch_friction.physics.signals import Sample
 MOVING = 5.0  # rad/s
 
 
+def believed_no_longer(fed, hang, words):
+    """What hangs ends the torque, is said in these words, and is forgiven once it sends again."""
+    said = fed.run(PATIENCE + 0.5 + 0.5, hang)
+    assert said[0].friction_torque != 0.0
+    assert said[-1].friction_torque == 0.0
+    assert not said[-1].valid
+    assert words in fed.service.status(fed.now)["contradictions"]
+    check_invariants(fed)
+    assert fed.run(4.0)[-1].valid, "it sends again"
+
+
 def test_a_sender_that_hangs_in_mid_wave_is_believed_no_longer():
     """Its last torque had been published, `valid`, for good."""
     fed = Fed()
@@ -23,13 +34,7 @@ def test_a_sender_that_hangs_in_mid_wave_is_believed_no_longer():
         sample.motor_speed, sample.speed_reference, sample.groups = last.motor_speed, last.speed_reference, last.groups
 
     assert abs(last.motor_speed) > 50.0
-    said = fed.run(PATIENCE + 0.5 + 0.5, hang)
-    assert said[0].friction_torque != 0.0
-    assert said[-1].friction_torque == 0.0
-    assert not said[-1].valid
-    assert SAID in fed.service.status(fed.now)["contradictions"]
-    check_invariants(fed)
-    assert fed.run(4.0)[-1].valid, "it sends again"
+    believed_no_longer(fed, hang, SAID)
 
 
 def said_of(change, seconds=5.0, rate=50.0):
@@ -106,13 +111,7 @@ def test_speeds_that_hang_in_mid_wave_while_pressures_live_are_believed_no_longe
     fed = Fed()
     fed.run(7.0)
     hang = hang_speeds(swell(fed.now))
-    said = fed.run(PATIENCE + 1.0, hang)
-    assert said[0].friction_torque != 0.0
-    assert said[-1].friction_torque == 0.0
-    assert not said[-1].valid
-    assert SPEED_SAID in fed.service.status(fed.now)["contradictions"]
-    check_invariants(fed)
-    assert fed.run(4.0)[-1].valid, "it sends again"
+    believed_no_longer(fed, hang, SPEED_SAID)
 
 
 def test_nothing_is_learned_from_a_speed_that_hangs():

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, charged, fitted, flip_p_values, heads
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -172,7 +172,7 @@ def dependences(cross: CrossFit, left: FloatArray, rng: np.random.Generator) -> 
     for name, values in blocks.features.items():
         for design in _designs(values, blocks.direction):
             names.append(name)
-            gains.append(_segment_gains(design, left, blocks, cross.fold))
+            gains.append(_segment_gains(design, left, cross))
     if not names:
         return []
     table = np.array(gains)
@@ -206,12 +206,11 @@ def _by_direction(columns: FloatArray, good: np.ndarray, direction: FloatArray) 
     return np.column_stack([known * (direction > 0)[:, None], known * (direction < 0)[:, None]])
 
 
-def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of_segment: np.ndarray) -> FloatArray:
+def _segment_gains(design: FloatArray, left: FloatArray, cross: CrossFit) -> FloatArray:
     """Reduction of each segment's sum of squares by a ridge fit to the other folds."""
-    weighted = design * blocks.weight[:, None]
-    scale = np.sqrt(np.mean(blocks.weight**2))
-    numbers, index = np.unique(blocks.segment, return_inverse=True)
-    fold = fold_of_segment[index]
+    weight, fold = cross.problem.blocks.weight, cross.fold_of_block
+    weighted = design * weight[:, None]
+    scale = np.sqrt(np.mean(weight**2))
     ridge = LIMITS.ridge * scale**2 * np.eye(design.shape[1])
     full_h, full_g = weighted.T @ weighted, weighted.T @ left
     predicted = np.zeros(len(left))
@@ -220,8 +219,7 @@ def _segment_gains(design: FloatArray, left: FloatArray, blocks: Blocks, fold_of
         h = full_h - weighted[own].T @ weighted[own]
         g = full_g - weighted[own].T @ left[own]
         predicted[own] = weighted[own] @ np.linalg.solve(h + ridge, g)
-    gain = left**2 - (left - predicted) ** 2
-    return np.asarray(np.bincount(index, weights=gain, minlength=len(numbers)), float)
+    return cross.problem.grams.by_segment(left**2 - (left - predicted) ** 2)
 
 
 def least_part(cross: CrossFit, every: Explanation, names: Iterable[str]) -> float:

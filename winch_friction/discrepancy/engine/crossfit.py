@@ -54,7 +54,7 @@ class CrossFit:
         for k in range(self.fold.max(initial=-1) + 1):
             own_g, own_b = g.total(k)
             self.sums.append((self.total_g - own_g, self.total_b - own_b))
-        self._fold_of_block = g.of_segments(g.fold)
+        self.fold_of_block = g.of_segments(g.fold)
         # a search asks for most sets three times; each answer keeps its slots alive, so that an id stays one slot's
         self._fits: dict[tuple[int, ...], tuple[float, FloatArray]] = {}
         self._explained: dict[tuple[int, ...], Explanation] = {}
@@ -98,7 +98,7 @@ class CrossFit:
         loss, beta = self.train_loss(slots)
         fits = [self.problem.fit(sum_g, sum_b, columns, beta) for sum_g, sum_b in self.sums]
         left_out = np.reshape(fits, (-1, len(columns)))
-        left = self._left(columns, left_out[self._fold_of_block])
+        left = self._left(columns, left_out[self.fold_of_block])
         return Explanation(tuple(slots), self.problem.grams.by_segment(left**2), beta, loss, left_out)
 
     def _left(self, columns: Sequence[int], beta: FloatArray) -> FloatArray:

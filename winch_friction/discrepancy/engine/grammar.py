@@ -89,11 +89,7 @@ class Grammar:
         self.y = blocks.y * blocks.weight
         self.unit = torque * blocks.weight
         self.direction = direction
-        numbers, first = np.unique(blocks.segment, return_index=True)
-        self.segment = np.searchsorted(numbers, blocks.segment)
-        fold_of_segment = np.asarray(cross.fold)[np.argsort(np.argsort(numbers))]
-        self.fold = fold_of_segment[self.segment]
-        self.count = len(first)
+        self.fold = cross.fold_of_block
         self.parts: dict[int | None, _Part] = {None: self._part(np.ones(len(self.y), bool))}
         self.parts |= {int(fold): self._part(self.fold != fold) for fold in np.unique(self.fold)}
 
@@ -127,12 +123,12 @@ class Grammar:
     def judged(self, scored: Scored, values: Values) -> Scored:
         """The same law with its held-out losses."""
         z, _ = _unit(self.column(scored.law, values))
-        losses = np.zeros(self.count)
+        left = np.empty(len(self.y))
         for fold in np.unique(self.fold):
             own = self.fold == fold
             amount, beta = self._fit(z, int(fold))
-            left = self.y[own] - self.x[own] @ beta - amount * z[own]
-            losses += np.bincount(self.segment[own], weights=left**2, minlength=self.count)
+            left[own] = self.y[own] - self.x[own] @ beta - amount * z[own]
+        losses = self.cross.problem.grams.by_segment(left**2)
         return Scored(scored.law, scored.amount, scored.inside, float(losses.sum()), losses)
 
     def _fit(self, z: FloatArray, fold: int | None) -> tuple[float, FloatArray]:

@@ -119,6 +119,15 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     windows = found.term.table.knots[0][1]
     assert all(windows[2 * k] < runs[7 - k].start < runs[7 - k].start + 60.0 < windows[2 * k + 1] for k in range(8))
     assert run_states.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []
+    # runs whose torque cannot be closed, as heave compensation without a logged pressure, tell nothing and need nothing
+    monkeypatch.setattr(
+        run_states, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, 1.0, *[np.nan] * 2]), None)
+    )
+    found, _ = run_states.another_in_each_run({"run_0"}, runs, model)
+    assert found.term.table.weights == (0.25, 0.5, 0.75, 1.0, 0.5, 0.25)
+    assert found.term.table.knots[0][1][0] > runs[6].start + 60.0
+    monkeypatch.setattr(run_states, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, *[np.nan] * 3]), None))
+    assert run_states.another_in_each_run({"run_0"}, runs, model) == []  # five are too few
 
 
 @pytest.mark.parametrize(

@@ -943,6 +943,26 @@ def test_a_name_that_leaves_most_of_the_training_runs_gap_is_not_what_shows_ther
 
 
 @pytest.mark.parametrize(
+    ("train", "locked", "stands"), [(0.1, 1.9, True), (0.1, 2.4, False), (1.3, 2.4, True), (0.1, 0.5, True)]
+)
+def test_a_name_that_fits_only_the_runs_it_was_chosen_on_does_not_stand(train, locked, stands):
+    """Floors of 0.84; what leaves 2.4 of the locked runs tells nothing of them, unless it leaves as much of its own."""
+    cross = crossfit(9.0 * WAVE + noise())
+    final = cross.explain(SLOTS[:1])
+    found = (Finding(SLOTS[0], (), 0.0, 0.1, 1.0),)
+    search = _Tried(cross, Selection(cross.explain(()), final, found), Verdict(MISSING))
+
+    def trial_of(own):
+        sides = [side(9.0 * np.sqrt(2) * WAVE, left * np.sqrt(2) * OTHER + 0.1 * noise(1)) for left in (train, locked)]
+        return Trial(own, SimpleNamespace(parameters={}), *[replace(each, noise_floor=0.8) for each in sides])
+
+    refit = Trial(search, None, *[side(9.0 * np.sqrt(2) * WAVE + noise(), 9.0 * np.sqrt(2) * WAVE + noise(1))] * 2)
+    full, why = standing_module._stands(search, refit, trial_of, np.random.default_rng(0))
+    assert (full is not None) is stands
+    assert ("chosen on" in why) is not stands
+
+
+@pytest.mark.parametrize(
     ("taught", "refit", "stands"), [(0.3, 0.3, False), (3.0, 0.5, True), (3.0, 1.3, True), (0.3, 3.0, True)]
 )
 def test_no_name_is_given_for_what_a_refit_leaves_of_nobodys_effect(taught, refit, stands):

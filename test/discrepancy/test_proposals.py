@@ -9,6 +9,7 @@ import pytest
 
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
+from winch_friction.discrepancy import proposals
 from winch_friction.discrepancy.engine.grammar import Factor, Law
 from winch_friction.discrepancy.proposals import explained
 from winch_friction.discrepancy.vocabulary import (
@@ -143,6 +144,29 @@ def test_a_drag_without_a_name_gets_a_law(drag):
     assert amount["value"] == pytest.approx(0.12, abs=max(5 * amount["std"], 0.02))  # 12 N m per 100 m
     assert first["holdout"]["closed"] > 0.8
     assert "the data do not say" in first["sentence"]
+
+
+@pytest.mark.parametrize(("left_of_locked", "said"), [(1.0, True), (3.0, False)])
+def test_a_law_that_fits_only_the_runs_it_was_chosen_on_is_not_proposed(monkeypatch, left_of_locked, said):
+    """Both leave the training runs at their floor, and the locked gap falls surely."""
+    sides = [SimpleNamespace(size_after=SimpleNamespace(value=left), floor=1.0) for left in (1.0, left_of_locked)]
+    law = next(_laws())
+    declared = declare(law, 0.1)
+    found = {declared.term.name: {name: SimpleNamespace(value=1.0) for name in declared.constants}}
+    locked = SimpleNamespace(size_before=SimpleNamespace(value=9.0), noise_floor=1.0, **vars(sides[1]))
+    trial = SimpleNamespace(train=sides[0], holdout=locked, repaired=SimpleNamespace(parameters=found, model=None))
+    taken = SimpleNamespace(slots=[None])
+    cross = SimpleNamespace(explain=lambda slots: taken, gain=lambda *_: 0.5)
+    expansion = SimpleNamespace(layout=SimpleNamespace(slots=()), cross=lambda *_: cross)
+    monkeypatch.setattr(proposals, "prove", lambda *_: SimpleNamespace(holds=True))
+    monkeypatch.setattr(proposals, "declare", lambda *_: declared)
+    monkeypatch.setattr(proposals, "in_words", lambda *_: "a law")
+    monkeypatch.setattr(proposals, "replace", lambda of, **_: of)
+    search = SimpleNamespace(given=SimpleNamespace(crane=SimpleNamespace(drive=SimpleNamespace(unit="bar"))))
+    refit, scored = SimpleNamespace(search=search, holdout=None), SimpleNamespace(law=law, amount=0.1)
+    rng = np.random.default_rng(0)
+    proposal = proposals._proven(refit, ("run",), scored, 0.0, lambda *_: expansion, lambda _: trial, rng)
+    assert (proposal is not None) is said
 
 
 def test_the_proposals_files_go_back_in(drag, tmp_path):

@@ -99,6 +99,16 @@ def leaves_most(side: Side) -> str:
     return _left(side, "training", LIMITS.outdone)
 
 
+def fits_only_its_own(train: Side, locked: Side) -> str:
+    """Why names tell the training runs one by one instead of saying what all have; empty where the locked runs, each
+    beside its floor, are left with no more than that."""
+    own, others = (side.size_after.value / side.floor for side in (train, locked))
+    if others <= LIMITS.chosen_on * max(own, 1.0):
+        return ""
+    kept, of = locked.size_after.value, train.size_after.value
+    return f"fits the runs that it was chosen on ({of:.3g} left) and not the locked ones ({kept:.3g} left)"
+
+
 def _left(side: Side, which: str, most: float) -> str:
     floor, before, after = side.floor, side.size_before.value, side.size_after
     excess = max(before**2 - floor**2, 1e-12)

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.proof import prove
+from winch_friction.discrepancy.proof import fits_only_its_own, prove
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -263,9 +263,10 @@ def _proven(
             refit.search, expansion=expansion, cross=cross, selection=selection, verdict=Verdict(MISSING), left=()
         )
         trial = evaluate(own)
-    if not prove(declared.term.name, refit.holdout, trial.holdout, rng).holds:
+    held = trial.holdout
+    if not prove(declared.term.name, refit.holdout, held, rng).holds or fits_only_its_own(trial.train, held):
         return None
-    held, found = trial.holdout, trial.repaired.parameters[declared.term.name]
+    found = trial.repaired.parameters[declared.term.name]
     declared = replace(declared, sentence=in_words(scored.law, [found[name].value for name in declared.constants]))
     return Proposal(
         declared, dict(found), declared.text, trial.repaired.model,

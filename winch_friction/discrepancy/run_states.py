@@ -118,7 +118,9 @@ def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], mod
         return []
     problem = build_problem(runs, layout_of(base_of(model, model), [brake], runs, model))
     levels, _ = levels_of(problem, problem.slots[0], len(runs), [run.name in train for run in runs])
-    if not np.isfinite(levels).all() or levels.max() <= 0.0 or follows_a_signal(runs, levels):
+    known = np.isfinite(levels)  # a run whose torque cannot be closed tells nothing, and needs nothing
+    runs, levels = [run for run, has in zip(runs, known, strict=True) if has], levels[known]
+    if len(runs) < LIMITS.fewest_levels or levels.max() <= 0.0 or follows_a_signal(runs, levels):
         return []
     order, begins, ends = _by_date(runs)
     windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))

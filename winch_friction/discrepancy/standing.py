@@ -19,6 +19,7 @@ from winch_friction.discrepancy.proof import (
     adds,
     at_the_floor,
     far_off,
+    fits_only_its_own,
     is_minor,
     leaves_most,
     leaves_too_much,
@@ -136,6 +137,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         proof.why
         or leaves_too_much(full.holdout)
         or leaves_most(full.train)
+        or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
         or within_a_step(search.cross, search.explanation)
     )

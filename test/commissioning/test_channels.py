@@ -7,17 +7,12 @@ import pytest
 
 from winch_friction.api.work import simulate
 from winch_friction.commissioning.balance import _top
-from winch_friction.commissioning.channels import (
-    channel_findings,
-    clock_findings,
-    frozen_findings,
-    runs_say,
-    told_slow_clock,
-)
+from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
+from winch_friction.commissioning.summaries import channel_findings
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import winch_friction as wf
-from winch_friction.commissioning.channels import channel_findings, first_contradiction
+from winch_friction.commissioning.channels import first_contradiction
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.summaries import channel_findings
 
 CRANE = wf.load_crane("crane_150t")
 MODEL = wf.load_model("a6vm215_crane2")

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.check import quick_check
-from winch_friction.commissioning.simulated import simulated_findings
+from winch_friction.commissioning.check import quick_check, simulated_findings
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane

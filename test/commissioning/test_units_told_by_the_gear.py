@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.commissioning.channels import summaries
 from winch_friction.commissioning.kinematics import MOST_BEYOND, range_score
 from winch_friction.commissioning.mistakes import fixed_mistakes
+from winch_friction.commissioning.summaries import summaries
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.signals import Run
 

@@ -1,5 +1,7 @@
-"""What a finding of the commissioning check is, and those of every channel by itself: range, rate, gaps, steps,
-saturation, standing still; and the clock.
+"""What a finding of the commissioning check is, and those of a channel by itself that the quick check asks for.
+
+The clock, broken cells, a pressure that is frozen, motor groups without columns; a layer that the drum has not, oil
+hotter than oil is.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.commissioning.view import broken_cells, usable
-from winch_friction.physics.channels import LIMITS, display_unit
+from winch_friction.commissioning.view import BROKEN_SHARE, broken_cells, usable
+from winch_friction.physics.channels import display_unit
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
@@ -80,26 +82,8 @@ UNIX = (6.3e8, 2.6e9)  # s since 1970, years 1990 to 2052
 SLOW_STEP = 2.0  # s; in ms the step of a log with 500 Hz
 THOUSANDTH = (4e-4, 2.5e-3)  # of the speed, as a channel tells it that is sampled coarsely
 UNEVEN = 0.3  # of the usual step: scatter of the steps beyond which the clock is worth a word
-COARSE = 200.0  # steps over a channel's range; fewer are coarse
-SATURATED = 0.02  # of the samples at one extreme value of a moving channel
-STUCK = 3.0  # s without any change in a channel that otherwise changes at every sample
-MAY_SATURATE = ("pressure_a", "pressure_b", "motor_speed", "motor_torque", "motor_current")
-MAY_STAND = ("hook_load", "wire_layer", "oil_temperature", "displacement", "wire_out", "speed_reference")
 
 FROZEN_SPEED, FROZEN_SAMPLES, FROZEN_SWIVEL = 5.0, 100, 0.02  # rad/s both ways; samples; relative span
-
-
-@dataclass(frozen=True)
-class ChannelSummary:
-    """One channel of one run in numbers: SI values, `step` its smallest change, `longest_still` s without a change."""
-
-    channel: str
-    unit: str
-    smallest: float
-    largest: float
-    missing: float
-    step: float
-    longest_still: float
 
 
 def clock_findings(run: Run) -> Iterator[Finding]:
@@ -169,31 +153,6 @@ def cell_findings(run: Run) -> Iterator[Finding]:
             )
 
 
-def summaries(run: Run) -> list[ChannelSummary]:
-    """Every channel in numbers."""
-    return [_summary(run, name, usable(name, values)) for name, values in run.columns.items() if name != "time"]
-
-
-def _summary(run: Run, name: str, values: FloatArray) -> ChannelSummary:
-    good = values[np.isfinite(values)]
-    changes = np.abs(np.diff(good))
-    moved = changes[changes > 0.0]
-    return ChannelSummary(
-        name,
-        column_unit(name) or "",
-        float(good.min()) if good.size else float("nan"),
-        float(good.max()) if good.size else float("nan"),
-        1.0 - good.size / len(values),
-        float(np.percentile(moved, 5)) if moved.size else 0.0,
-        _longest_still(run.time, values),
-    )
-
-
-def _longest_still(time: FloatArray, values: FloatArray) -> float:
-    places = np.concatenate(([0], np.flatnonzero(np.diff(values) != 0.0) + 1, [len(values) - 1]))
-    return float(np.diff(time[places]).max(initial=0.0))
-
-
 def frozen_findings(run: Run) -> Iterator[Finding]:
     """The pressure that holds the load and does not change by a bit while the winch moves both ways at one
     displacement: friction and acceleration must move it, so nobody measured it.
@@ -208,46 +167,10 @@ def frozen_findings(run: Run) -> Iterator[Finding]:
         held = max(ports, key=lambda name: float(np.nanmean(run[name])))
         if np.nanmax(run[held]) == np.nanmin(run[held]):
             said = (
-                f"{run.name}: {held} never changes ({_read(held, float(run[held][0]))}) though the winch hoists and "
+                f"{run.name}: {held} never changes ({read_as(held, float(run[held][0]))}) though the winch hoists and "
                 "lowers: a dead transducer or a frozen channel"
             )
             yield Finding("error", "stuck", said, held, (run.name,))
-
-
-def channel_findings(run: Run) -> Iterator[Finding]:
-    """What deserves a look in the channels of one run; nothing of it contradicts the crane."""
-    for each in summaries(run):
-        kind = each.channel.rpartition(".")[2]
-        yield from _span_findings(run, each, kind)
-        if each.missing > 0.0:
-            said = f"{run.name}: {each.channel} has no value in {100 * each.missing:.2g} % of the samples"
-            yield Finding("note", "missing", said, each.channel, (run.name,), {"share": each.missing})
-
-
-def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Finding]:
-    values = run[each.channel]
-    span = each.largest - each.smallest
-    if span <= 0.0 and kind not in MAY_STAND:
-        said = (
-            f"{run.name}: {each.channel} never changes ({_read(each.channel, each.smallest)}): is the sensor connected?"
-        )
-        yield Finding("warning", "stuck", said, each.channel, (run.name,))
-        return
-    if kind in MAY_STAND or span <= 0.0:
-        return
-    if each.longest_still > STUCK and _changes_always(values) and not _rests(run, each):
-        said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
-        yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
-    if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
-        steps = f"steps of {_read(each.channel, each.step, of_size=True)}, {span / each.step:.0f} over its range"
-        said = f"{run.name}: {each.channel} has {steps}"
-        yield Finding("note", "quantisation", said, each.channel, (run.name,), {"step": each.step})
-    for extreme in (each.smallest, each.largest):
-        share = float(np.mean(values == extreme))
-        if share > SATURATED and kind in MAY_SATURATE and extreme != 0.0:
-            often = f"in {100 * share:.1f} % of the samples: saturated?"
-            said = f"{run.name}: {each.channel} is at {_read(each.channel, extreme)} {often}"
-            yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
 
 
 def group_findings(runs: Sequence[Run], crane: Crane, contradicting: Sequence[str]) -> Iterator[Finding]:
@@ -269,7 +192,7 @@ def group_findings(runs: Sequence[Run], crane: Crane, contradicting: Sequence[st
         yield Finding(severity, "groups", said, f"{forgotten[0]}.pressure_a", (run.name,), {"motors": there})
 
 
-def _read(column: str, value: float, of_size: bool = False) -> str:
+def read_as(column: str, value: float, of_size: bool = False) -> str:
     """An SI value (`of_size`: a difference) in the unit in which people read the column."""
     unit = column_unit(column) or "SI"
     display = display_unit(column) or unit
@@ -277,13 +200,49 @@ def _read(column: str, value: float, of_size: bool = False) -> str:
     return f"{(value - (0.0 if of_size else offset)) / scale:.4g} {display}"
 
 
-def _rests(run: Run, each: ChannelSummary) -> bool:
-    """Whether the winch rests: its speed is zero, or turned the angle by two steps (`dead_findings` asks on)."""
-    places = np.concatenate(([0], np.flatnonzero(np.diff(run[each.channel]) != 0.0) + 1, [len(run) - 1]))
-    k = int(np.diff(run.time[places]).argmax())
-    turned = abs(float(np.mean(run["motor_speed"][places[k] : places[k + 1]]))) * each.longest_still
-    return turned <= {"motor_speed": 0.0, "shaft_angle": 2.0 * each.step}.get(each.channel, -1.0)
+# -- readings that cannot be what their column says
+# degC; a hydraulic oil is at the end of its viscosity above, and 40 degC are 104 degF and 313 K
+OIL = (-20.0, 95.0)
+FREEZING = 273.15  # K
+COUNTED = "counted"  # cause of layers counted from 0, which no drum has
 
 
-def _changes_always(values: FloatArray) -> bool:
-    return float(np.mean(np.diff(values) != 0.0)) > 0.8
+def reading_findings(runs: Sequence[Run], crane: Crane) -> Iterator[Finding]:
+    """What is wrong with the layers and the oil of runs, by the crane's drum and by what oil is."""
+    for run in runs:
+        yield from _of_layers(run, crane)
+        yield from _of_oil(run)
+
+
+def _of_layers(run: Run, crane: Crane) -> Iterator[Finding]:
+    layers = _sane(run, "wire_layer")
+    if not len(layers) or (crane.drum.has(layers.min()) and crane.drum.has(layers.max())):
+        return
+    said = (
+        f"{run.name}: wire_layer is {layers.min():g} ... {layers.max():g}, the drum has layers 1 ... "
+        f"{len(crane.drum.layer_radii)}"
+    )
+    from_zero = layers.min() == 0.0 and crane.drum.has(layers.max() + 1.0)
+    if from_zero:
+        said += ": 1 is the innermost; where the log counts it as 0, add 1"
+    off = float(np.mean([not crane.drum.has(each) for each in layers]))
+    # few cells are a counter that was not set yet
+    severity, cause = "error" if off > BROKEN_SHARE else "warning", COUNTED if from_zero else "range"
+    yield Finding(severity, cause, said, "wire_layer", (run.name,), {"share": off})
+
+
+def _of_oil(run: Run) -> Iterator[Finding]:
+    oil = _sane(run, "oil_temperature")
+    if not len(oil) or (OIL[0] <= oil.min() and oil.max() <= OIL[1]):
+        return
+    kelvin = OIL[0] <= oil.min() - FREEZING and oil.max() - FREEZING <= OIL[1]
+    unit, severity = ("kelvin", "error") if kelvin else ("degF", "warning")
+    said = (
+        f"{run.name}: oil of {oil.min():.3g} ... {oil.max():.3g} degC: does oil_temperature hold {unit} under [degC]?"
+    )
+    yield Finding(severity, "range", said, "oil_temperature", (run.name,))
+
+
+def _sane(run: Run, name: str) -> FloatArray:
+    values = usable(name, run.column(name))
+    return values[np.isfinite(values)]

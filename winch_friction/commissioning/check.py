@@ -1,15 +1,16 @@
 """Can these runs be this crane's? The quick part, which `identify`, `replay` and `gap` ask first.
 
-Every channel by itself, the runs against each other, sensors that are not there, and the single mistakes.
+Every channel by itself, the runs against each other, sensors that are not there, a simulation beside its measurement,
+and the single mistakes.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from winch_friction.commissioning.channels import (
+    COUNTED,
     SEVERITIES,
     Finding,
     cell_findings,
@@ -17,21 +18,20 @@ from winch_friction.commissioning.channels import (
     first_contradiction,
     frozen_findings,
     group_findings,
-    run_words,
+    reading_findings,
     runs_say,
     told_slow_clock,
 )
-from winch_friction.commissioning.diagnose import Diagnosis, Hypothesis, diagnose
-from winch_friction.commissioning.kinematics import CONTRADICTS, Fit, agreements, fit_of
+from winch_friction.commissioning.diagnose import diagnose
+from winch_friction.commissioning.kinematics import Fit, agreements, fit_of
+from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
-from winch_friction.commissioning.readings import COUNTED, reading_findings
-from winch_friction.commissioning.simulated import simulated_findings
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.runs import apart
@@ -116,8 +116,64 @@ def _load(run: Run, view: RunView) -> Iterator[Finding]:
         yield Finding("error", "sign", said, "hook_load", (run.name,), {"usual": usual})
 
 
+# -- a user's own simulation beside the measurement: the same signal in the same unit
+SIMULATED = "_simulated"
+# times the measured one: without any friction, and with the hook alone, a simulation has still a tenth of it; no
+# missing effect makes it twice as large
+SMALLEST, LARGEST = 0.05, 2.0
+MET = 0.1  # relative, by which a unit's factor is met
+UNITS = {1e5: "Pa", 14.5: "psi under [bar]", 100.0: "kPa under [bar]", 10.0: "bar under [MPa]", 0.1: "MPa under [bar]",
+         1e-3: "kN under [N]", 1e3: "N under [kN]", 1e-5: "bar under [Pa] (a column without a unit is in SI)",
+         1e-6: "MPa under [Pa] (a column without a unit is in SI)"}  # fmt: skip
+
+
+def simulated_findings(runs: Sequence[Run], hydraulic: bool) -> Iterator[Finding]:
+    """Simulated columns that are no such thing: another unit, the other sign, nothing at all.
+
+    Of an electric drive, whose friction may be all of its torque, it is said and refutes nothing.
+    """
+    for name in dict.fromkeys(name for run in runs for name in run.columns if name.endswith(SIMULATED)):
+        having = tuple(run.name for run in runs if name in run and _measured(run, name) is not None)
+        ratio = _ratio([run for run in runs if run.name in having], name)
+        if ratio is None or SMALLEST < ratio < LARGEST:
+            continue
+        yield Finding(
+            "error" if hydraulic else "warning", "simulation", _words(name, ratio), name, having, {"ratio": ratio}
+        )
+
+
+def _words(name: str, ratio: float) -> str:
+    measured = name.removesuffix(SIMULATED).replace("pressure_drop", "pressure_a - pressure_b")
+    if ratio == 0.0:
+        return f"{name} is 0 where {measured} is not: was it written?"
+    unit = next((unit for factor, unit in UNITS.items() if abs(abs(ratio) / factor - 1.0) < MET), "")
+    why = "it counts the other way" if ratio < -SMALLEST else ""
+    why = " and ".join(filter(None, [why, f"it holds {unit}" if unit else ""])) or "is its unit right?"
+    return f"{name} is {ratio:.3g} times {measured} over these runs, which no missing effect makes of it: {why}"
+
+
+def _ratio(runs: Sequence[Run], name: str) -> float | None:
+    """The simulated signal as a multiple of the measured one, by least squares over all runs; None without any."""
+    pairs = [(run[name], measured) for run in runs if (measured := _measured(run, name)) is not None]
+    if not pairs:
+        return None
+    simulated, measured = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    known = np.isfinite(simulated) & np.isfinite(measured)
+    size = float(measured[known] @ measured[known])
+    return float(simulated[known] @ measured[known]) / size if size > 0.0 else None
+
+
+def _measured(run: Run, name: str) -> FloatArray | None:
+    """What the simulated column is compared with."""
+    own = name.removesuffix(SIMULATED)
+    group, _, channel = own.rpartition(".")
+    if channel == "pressure_drop":
+        ports = [f"{group}.pressure_{port}" for port in "ab"]
+        return run[ports[0]] - run[ports[1]] if all(port in run for port in ports) else None
+    return run.columns.get(own)
+
+
 # -- the quick check
-RIVALS = 12.0  # score by which another mistake may be worse and still be told beside the likeliest
 MOST_FILES = 40  # crane files of a folder that are looked at
 
 
@@ -156,96 +212,13 @@ def diagnosed(
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
         *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
-        *(() if slow or diagnosis is None else _trusted(_mistake(diagnosis, crane), crane)),
+        *(() if slow or diagnosis is None else likeliest_mistake(diagnosis, crane)),
         *(each for each in readings if each.cause != COUNTED),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,
     ]
     return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis or fit
-
-
-def _trusted(findings: list[Finding], crane: Crane) -> list[Finding]:
-    """What the balance says: of a hydraulic winch it is known what friction is ordinary; of another drive, whose
-    friction and inertia may be most of its torque, a misfit is worth a word and refutes nothing."""
-    if crane.drive.hydraulic:
-        return findings
-    return [replace(each, severity="warning") if each.contradicts else each for each in findings]
-
-
-def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
-    best, bad = diagnosis.best, diagnosis.contradicting
-    if best is None:
-        return [_unexplained(diagnosis, crane)] if bad else []
-    # a channel that only tells the speed again is not used by the balance: the rest fits without it
-    harmless = best.mistake.cause == "companion" and max(best.scores) < CONTRADICTS
-    rivals = [
-        each
-        for each in diagnosis.hypotheses
-        if each is not best and each.score < best.score + RIVALS and each.mistake.cause != "companion"
-    ]
-    words = f"{best.mistake.words}; {_proof(diagnosis, best)}"
-    if rivals:
-        words += f"; hardly to be told from: {'; '.join(each.mistake.words for each in rivals[:3])}"
-    severity, found = "warning" if harmless else "error", best.mistake
-    return [Finding(severity, found.cause, words, found.channel, best.runs, _evidence(diagnosis, best, rivals))]
-
-
-def _proof(diagnosis: Diagnosis, best: Hypothesis) -> str:
-    told = runs_say(best.runs, len(diagnosis.names), "fit")
-    worst = max(diagnosis.closures, key=lambda each: each.before if each.before == each.before else -1.0)
-    balance = ""
-    if worst.before == worst.before:
-        balance = f" (the torque balance of {worst.run} is off by {worst.before:.3g} N m RMS)"
-    misfit = f"misfit {diagnosis.score:.3g} -> {best.score:.3g}{balance}"
-    if max(best.scores) > CONTRADICTS:
-        return f"with that put right {told} the crane better and not well, so there is more amiss: {misfit}"
-    return f"with that put right {told} the crane: {misfit}"
-
-
-def _evidence(diagnosis: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesis]) -> dict[str, object]:
-    ranked = [
-        {"cause": h.mistake.cause, "channel": h.mistake.channel, "words": h.mistake.words, "misfit": h.score}
-        for h in diagnosis.hypotheses[:6]
-    ]
-    return {
-        "misfit_before": diagnosis.score,
-        "misfit_after": best.score,
-        "factor": best.mistake.factor if best.mistake.factor == best.mistake.factor else None,
-        "contradicting_runs": list(diagnosis.contradicting),
-        "or": [h.mistake.words for h in rivals],
-        "ranking": ranked,
-    }
-
-
-def _unexplained(diagnosis: Diagnosis, crane: Crane) -> Finding:
-    bad = diagnosis.contradicting
-    worst = max(range(len(diagnosis.scores)), key=lambda k: diagnosis.scores[k])
-    closure = diagnosis.closures[worst]
-    runs = run_words(bad, len(diagnosis.names))
-    off = (
-        f"the torque balance of {closure.run} is off by {closure.before:.3g} N m RMS where the load's torque is "
-        f"{closure.level:.3g} N m"
-    )
-    if not np.isfinite(closure.before):
-        off = (
-            f"{closure.run} does not move long enough for a torque balance, and its values by themselves are beyond "
-            f"what the crane can do (misfit {diagnosis.scores[worst]:.3g}, limit {CONTRADICTS:.3g})"
-        )
-    if not crane.drive.hydraulic:
-        words = (
-            f"{runs_say(bad, len(diagnosis.names), 'leave')} the torque "
-            f"balance open and no single mistake closes it: {off}; of a drive of kind "
-            f"'{crane.drive.kind}' friction and inertia are not known beforehand, so this may be the winch itself: "
-            "winch-friction gap says what is missing"
-        )
-        return Finding("error", "unexplained", words, "", bad, {"misfit_before": diagnosis.score, "limit": CONTRADICTS})
-    words = f"{runs} cannot be this crane's and no single mistake explains it: {off}; check crane file, units and signs"
-    words += " one by one"
-    nearest = diagnosis.hypotheses[0] if diagnosis.hypotheses else None
-    if nearest is not None and nearest.score < diagnosis.score:
-        words += f"; nearest: {nearest.mistake.words} (misfit {diagnosis.score:.3g} -> {nearest.score:.3g})"
-    return Finding("error", "unexplained", words, "", bad, {"misfit_before": diagnosis.score, "limit": CONTRADICTS})
 
 
 def _named_crane(runs: Sequence[Run], crane: Crane, others: Mapping[str, Crane]) -> list[Finding]:

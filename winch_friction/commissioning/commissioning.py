@@ -5,18 +5,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from winch_friction.commissioning.balance import Closure
-from winch_friction.commissioning.channels import (
-    SEVERITIES,
-    ChannelSummary,
-    Finding,
-    channel_findings,
-    first_contradiction,
-    summaries,
-)
+from winch_friction.commissioning.channels import SEVERITIES, Finding, first_contradiction
 from winch_friction.commissioning.check import diagnosed
 from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.kinematics import CONTRADICTS, Agreement, agreements
+from winch_friction.commissioning.summaries import ChannelSummary, channel_findings, summaries
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from winch_friction.commissioning.readings import OIL
+from winch_friction.commissioning.channels import OIL
 from winch_friction.physics.channels import FASTEST_ROPE, GRAVITY, limits_of
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane

@@ -11,8 +11,7 @@ from winch_friction.identification.plateaus import find_plateaus
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.run_checks import checked_run
-from winch_friction.records.runs import apart, read_run
-from winch_friction.records.slow_columns import filled, rows_between
+from winch_friction.records.runs import apart, filled, read_run, rows_between
 
 EXAMPLES = Path(__file__).parents[2] / "config" / "examples" / "practice_150t"
 TIME = 0.02 * np.arange(600)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from winch_friction.physics.signals import GROUP_CHANNELS, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.slow_columns import filled
+from winch_friction.records.runs import filled
 
 MAIN = "main"
 

@@ -17,7 +17,7 @@ from winch_friction.physics.channels import plausible
 from winch_friction.physics.errors import InputError, Problems, counted, meant
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import ELECTRIC, HYDRAULIC, Crane, Drive
-from winch_friction.records.slow_columns import rows_between
+from winch_friction.records.runs import rows_between
 
 # -- columns without a unit
 

@@ -292,8 +292,8 @@ def run_rope_radius(run: Run, crane: Crane) -> FloatArray:
 
 
 def held(values: FloatArray) -> FloatArray:
-    """Values of which each holds over the NaN behind it, the first one before it too."""
-    known = ~np.isnan(values)
+    """Values of which each holds over what is no number behind it, the first one before it too."""
+    known = np.isfinite(values)
     if known.all() or not known.any():
         return values
     last = np.maximum.accumulate(np.where(known, np.arange(len(values)), 0))

@@ -19,7 +19,7 @@ from winch_friction.physics.channels import (
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, operating_point
-from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.unit_names import conversion_to_si
 
 
 def test_a_sample_has_the_fields_of_the_table():

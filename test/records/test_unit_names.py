@@ -5,8 +5,8 @@ import time
 import pytest
 
 from winch_friction.physics.errors import InputError
-from winch_friction.records.headers import AMBIGUOUS, SPELLINGS, conversion_to_si, plain_spelling
 from winch_friction.records.runs import read_run
+from winch_friction.records.unit_names import AMBIGUOUS, SPELLINGS, conversion_to_si, plain_spelling
 
 # unit, SI unit of the column, what one of it is, what none of it is
 KNOWN = [

@@ -57,7 +57,7 @@ def from_frame(data: Any, name: str = "frame", crane: Crane | None = None) -> Ru
     >>> run.to_frame()["motor_speed"].round(2).tolist(), run.to_frame().attrs["units"]["motor_speed"]
     ([0.0, 62.83], 'rad/s')
     """
-    from winch_friction.records.headers import parse_header, said_of_nameless
+    from winch_friction.records.csv_file import parse_header, said_of_nameless
     from winch_friction.records.run_checks import checked_run
 
     columns, aside, headers = {}, {}, []

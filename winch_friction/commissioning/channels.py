@@ -15,7 +15,7 @@ from winch_friction.physics.channels import display_unit
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.unit_names import conversion_to_si
 
 SEVERITIES = ("error", "warning", "note")  # what contradicts the crane, what deserves a look, what is only said
 

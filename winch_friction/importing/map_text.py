@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterable
 
 from winch_friction.importing.mapping import SCHEMA, Entry, LogMap
-from winch_friction.records.headers import column_unit
+from winch_friction.physics.channels import column_unit
 
 _HEAD = """\
 # How this log becomes run files. Proposed by `winch-friction import --propose`; read it, change what is wrong, then run

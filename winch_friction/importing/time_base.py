@@ -21,7 +21,7 @@ from winch_friction.importing.time_numbers import clock_of_numbers, is_clock, se
 from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.unit_names import conversion_to_si
 
 FORMS = ("seconds", "unix", "excel", "matlab", "filetime", "dotnet", "datetime", "parts", "clock")
 ORDERS = ("ymd", "dmy", "mdy")

@@ -4,7 +4,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.unit_names import conversion_to_si
 
 _HOUR, _MINUTE = 10_000, 100  # what an hour and a minute count in 235959
 _LEAP = 40.0  # from 59 to 100: what such a number gains with each minute beside the seconds

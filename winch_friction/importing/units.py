@@ -10,7 +10,7 @@ from functools import lru_cache
 
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
-from winch_friction.records.headers import AMBIGUOUS, SPELLINGS, conversion_to_si, known_spelling, plain_spelling
+from winch_friction.records.unit_names import AMBIGUOUS, SPELLINGS, conversion_to_si, known_spelling, plain_spelling
 
 # channel (without its group) -> the SI units that it may be logged in, its own first
 CHANNEL_UNITS: dict[str, tuple[str, ...]] = {

@@ -15,8 +15,8 @@ from winch_friction.physics.friction import registered_terms
 from winch_friction.physics.friction.correction import Correction, declared_correction
 from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 from winch_friction.physics.friction.term import Scope, Term
-from winch_friction.records.headers import conversion_to_si
 from winch_friction.records.strict_yaml import Section, as_quantity, finite
+from winch_friction.records.unit_names import conversion_to_si
 
 
 def read_corrections(top: Section) -> tuple[Correction, ...]:

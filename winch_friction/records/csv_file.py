@@ -2,21 +2,67 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from winch_friction.physics.errors import InputError, Problems
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
-from winch_friction.records.headers import Header, header_text, parse_header, said_of_nameless
 from winch_friction.records.run_checks import Place, checked_run
+from winch_friction.records.unit_names import conversion_to_si
 
 _SHOWN = 3  # places named of one kind of problem
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-nan")
+
+
+@dataclass(frozen=True)
+class Header:
+    """One header: `text` as it stands, the column's `name`, the `unit` in brackets (empty: SI)."""
+
+    text: str
+    name: str
+    unit: str
+
+    @property
+    def known(self) -> bool:
+        """Whether the name is one of the contract's columns."""
+        return column_unit(self.name) is not None
+
+    def to_si(self, values: FloatArray, where: str) -> FloatArray:
+        """Values of a known column in SI; raises `InputError` for a unit that does not fit."""
+        expected = column_unit(self.name) or "1"
+        if self.unit in ("", expected):
+            return values
+        scale, offset = conversion_to_si(self.unit, expected, f"{where}: column '{self.text}'")
+        with np.errstate(over="ignore"):  # infinite is told with its row, as what is not finite in the file
+            return values * scale + offset if offset else values * scale
+
+
+def parse_header(text: str, where: str = "") -> Header:
+    """Name and unit of a header; a bracket that does not close raises `InputError`."""
+    name, bracket, rest = text.strip().partition("[")
+    if bracket and not rest.rstrip().endswith("]"):
+        raise InputError(
+            f"{where}: header '{text}' opens a bracket that does not close; write e.g. 'motor_speed [rpm]'"
+        )
+    return Header(text.strip(), name.strip(), rest.strip().removesuffix("]").strip())
+
+
+def said_of_nameless(headers: Iterable[Header], name: str) -> list[str]:
+    """What is said of columns without a name, by their places from 1: nothing else tells them."""
+    places = (place for place, header in enumerate(headers, 1) if not header.name)
+    return [f"{name}: column {place} has no name and is kept aside" for place in places]
+
+
+def header_text(column: str) -> str:
+    """The header that this package writes for a column: with its SI unit, bare for an unknown one or a plain number."""
+    unit = column_unit(column)
+    return column if unit in (None, "1") else f"{column} [{unit}]"
 
 
 def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:

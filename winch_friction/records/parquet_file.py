@@ -10,8 +10,7 @@ from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
-from winch_friction.records.csv_file import read_headers
-from winch_friction.records.headers import Header, header_text, said_of_nameless
+from winch_friction.records.csv_file import Header, header_text, read_headers, said_of_nameless
 from winch_friction.records.parquet_units import said_units
 from winch_friction.records.run_checks import Place, checked_run, own_metadata
 

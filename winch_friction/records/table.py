@@ -13,9 +13,9 @@ import numpy as np
 from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.atomic import write_text
-from winch_friction.records.csv_file import as_floats, separator_of
-from winch_friction.records.headers import conversion_to_si, parse_header
+from winch_friction.records.csv_file import as_floats, parse_header, separator_of
 from winch_friction.records.strict_yaml import utf_8_text
+from winch_friction.records.unit_names import conversion_to_si
 
 _SHOWN = 3  # places named of one kind of problem
 _SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods")

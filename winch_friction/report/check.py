@@ -11,7 +11,7 @@ from winch_friction.commissioning.commissioning import CheckResult
 from winch_friction.commissioning.view import usable
 from winch_friction.physics.channels import OF_GROUP, WINCH
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.records.headers import conversion_to_si
+from winch_friction.records.unit_names import conversion_to_si
 from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html

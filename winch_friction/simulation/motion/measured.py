@@ -8,8 +8,9 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
-from winch_friction.records.headers import conversion_to_si, parse_header
+from winch_friction.records.csv_file import parse_header
 from winch_friction.records.strict_yaml import utf_8_text
+from winch_friction.records.unit_names import conversion_to_si
 
 SLOWEST = 2.0  # s between two heights; a wave of 6 s has three of them
 LARGEST = 20.0  # m about the mean: no crane tip heaves more

@@ -1,4 +1,4 @@
-"""Headers of run files: `motor_speed [rpm]` is a column with its unit, read with pint, `rev` meaning a revolution.
+"""Units as people write them in brackets over a column, `motor_speed [rpm]`: read with pint, `rev` being a revolution.
 
 Angle is a dimension of its own here: `Hz` or `cm^3` alone would leave open whether a revolution or a radian is meant.
 
@@ -9,8 +9,6 @@ by the SI unit that its column has, since `C`, `1/min` or `t` mean nothing by th
 
 import re
 import unicodedata
-from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -18,7 +16,6 @@ import numpy as np
 
 from winch_friction.physics.channels import CHANNELS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray, column_unit
 
 # -- how people write units
 
@@ -175,7 +172,7 @@ _LOOKUP = {
 }
 
 
-# -- headers
+# -- to SI
 
 # what people write for the units a winch is logged in; quoted in error messages
 _EXAMPLES = {each.unit: each.display for each in CHANNELS if each.display != each.unit} | {
@@ -203,51 +200,6 @@ _DEFINITIONS = (
     "kPa_absolute = 1000 * pascal; offset: -101325",
     "MPa_absolute = 1000000 * pascal; offset: -101325",
 )
-
-
-@dataclass(frozen=True)
-class Header:
-    """One header: `text` as it stands, the column's `name`, the `unit` in brackets (empty: SI)."""
-
-    text: str
-    name: str
-    unit: str
-
-    @property
-    def known(self) -> bool:
-        """Whether the name is one of the contract's columns."""
-        return column_unit(self.name) is not None
-
-    def to_si(self, values: FloatArray, where: str) -> FloatArray:
-        """Values of a known column in SI; raises `InputError` for a unit that does not fit."""
-        expected = column_unit(self.name) or "1"
-        if self.unit in ("", expected):
-            return values
-        scale, offset = conversion_to_si(self.unit, expected, f"{where}: column '{self.text}'")
-        with np.errstate(over="ignore"):  # infinite is told with its row, as what is not finite in the file
-            return values * scale + offset if offset else values * scale
-
-
-def parse_header(text: str, where: str = "") -> Header:
-    """Name and unit of a header; a bracket that does not close raises `InputError`."""
-    name, bracket, rest = text.strip().partition("[")
-    if bracket and not rest.rstrip().endswith("]"):
-        raise InputError(
-            f"{where}: header '{text}' opens a bracket that does not close; write e.g. 'motor_speed [rpm]'"
-        )
-    return Header(text.strip(), name.strip(), rest.strip().removesuffix("]").strip())
-
-
-def said_of_nameless(headers: Iterable[Header], name: str) -> list[str]:
-    """What is said of columns without a name, by their places from 1: nothing else tells them."""
-    places = (place for place, header in enumerate(headers, 1) if not header.name)
-    return [f"{name}: column {place} has no name and is kept aside" for place in places]
-
-
-def header_text(column: str) -> str:
-    """The header that this package writes for a column: with its SI unit, bare for an unknown one or a plain number."""
-    unit = column_unit(column)
-    return column if unit in (None, "1") else f"{column} [{unit}]"
 
 
 _COUNTED = re.compile(r"^[x×]?\s*(0?[.,]0{0,5}1|10{1,5})\s*[x×*]?\s*([A-Za-z°%µμ].*)$")  # powers of ten alone

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import search
 from winch_friction.discrepancy.detectors import flow_balance, ripple, ripple_waves
-from winch_friction.discrepancy.detectors import reversals as turning
 from winch_friction.discrepancy.detectors.flow_balance import FEWEST_RUNS, ORDINARY, Leakage
-from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import SMALLEST, TERM, Ripple
 from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.search import ReversalFinding
 
 RNG = np.random.default_rng(0)
 
@@ -108,28 +108,28 @@ class _Run:
 @pytest.mark.parametrize(("named", "asked"), [("accumulator_thermal", ["plain"]), ("stribeck", ["plain", "passive"])])
 def test_beside_a_gas_only_runs_without_it_say_what_shows_after_reversals(monkeypatch, named, asked):
     """What its law has wrong is largest where the passive side's motion turns: a break-away was named beside it."""
-    used = np.ones(turning.FEWEST_BLOCKS, bool)
+    used = np.ones(search.FEWEST_BLOCKS, bool)
     runs = [
         SimpleNamespace(name=name, used=used, groups=range(count)) for name, count in (("plain", 1), ("passive", 2))
     ]
-    monkeypatch.setattr(turning, "expand_around", lambda *_, **__: Expansion(tuple(runs), None, None))
+    monkeypatch.setattr(search, "expand_around", lambda *_, **__: Expansion(tuple(runs), None, None))
     seen = []
 
     def build(chosen, *_, **__):
         seen.extend(run.name for run in chosen)
         raise StopIteration
 
-    monkeypatch.setattr(turning, "build_problem", build)
+    monkeypatch.setattr(search, "build_problem", build)
     explanation = SimpleNamespace(slots=(SimpleNamespace(name=named),))
     with pytest.raises(StopIteration):
-        turning.detect(None, None, explanation, [], ["plain", "passive"], RNG, lambda each: each)
+        search.after_reversals(None, None, explanation, [], ["plain", "passive"], RNG, lambda each: each)
     assert seen == asked
 
 
 # -- after reversals
 def test_beside_a_delay_nothing_is_looked_for_after_reversals():
     explanation = SimpleNamespace(slots=(SimpleNamespace(name="signal_delay"),))
-    assert turning.detect(None, None, explanation, [], (), RNG, None) is None
+    assert search.after_reversals(None, None, explanation, [], (), RNG, None) is None
 
 
 @pytest.mark.parametrize(("loud", "quiet", "holds"), [(0.5, 0.5, True), (0.5, 1.5, False)])
@@ -148,7 +148,7 @@ def test_what_shows_after_reversals_holds_by_the_locked_runs_each_in_its_own_noi
         )  # fmt: skip
         return SimpleNamespace(blocks=blocks)
 
-    monkeypatch.setattr(turning, "build_problem", build)
+    monkeypatch.setattr(search, "build_problem", build)
     cross = SimpleNamespace(problem=SimpleNamespace(columns=lambda slots: tuple(range(1 + len(slots)))))
     base, fitted = (SimpleNamespace(slots=slots, beta=np.ones(1 + len(slots))) for slots in ((), ("bristles",)))
     expansion = SimpleNamespace(runs=runs, layout=None)

@@ -13,7 +13,7 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.assembly import LEFT_AS_GIVEN
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import blurred_travel
-from winch_friction.discrepancy.detectors.reversals import too_short
+from winch_friction.discrepancy.search import too_short
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run
 

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import search
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.candidates.signals import SPEED
+from winch_friction.discrepancy.detectors import delay
 from winch_friction.discrepancy.engine.blocks import Slot
 
 SIZE, MODE = 0.1, (3.0, 0.05, None)
@@ -41,17 +41,17 @@ def test_the_five_values_share_the_swing_that_is_told_without_the_first_estimate
         asked.append((modes["run"], model.corrections[0].value))
         yield prepared(gap_without(model))
 
-    monkeypatch.setattr(search, "meet", meet)
-    monkeypatch.setattr(search, "met_in_turn", in_turn)
+    monkeypatch.setattr(delay, "meet", meet)
+    monkeypatch.setattr(delay, "met_in_turn", in_turn)
     given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=(prepared(np.full(len(TIME), 2.0)),))
     shape = Shape("late", {"ahead": SIZE, "behind": 0.0, "late": SPEED})
-    suspect = Slot(search.DELAY, "late", (0,), origin=(None, shape))
-    (found,) = search.without_delay(
-        given, [Candidate(search.DELAY, shapes=lambda _: [])], [suspect], None, SimpleNamespace(slots=())
+    suspect = Slot(delay.DELAY, "late", (0,), origin=(None, shape))
+    (found,) = delay.without_delay(
+        given, [Candidate(delay.DELAY, shapes=lambda _: [])], suspect, None, SimpleNamespace(slots=())
     )
     assert asked[0] == ("told", pytest.approx(SIZE))
     assert [mode for mode, _ in asked[1:]] == [MODE] * 4
-    assert sorted(value / SIZE for _, value in asked) == pytest.approx(sorted(search.AROUND))
+    assert sorted(value / SIZE for _, value in asked) == pytest.approx(sorted(delay.AROUND))
     for own in found.shapes([]):  # what a delay of one second would leave
         np.testing.assert_allclose(found.columns(given.prepared[0], own.values), 1.0)
     assert len(found.shapes([])) == 5

@@ -24,7 +24,6 @@ from winch_friction.discrepancy.answer import (
     unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
-from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.engine.blocks import Slot, find_regions
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
@@ -34,7 +33,7 @@ from winch_friction.discrepancy.next_experiment import NextExperiment, plan_expe
 from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import compare, drift_note, nothing_compared, read_back
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair, draft, polished
-from winch_friction.discrepancy.search import Search
+from winch_friction.discrepancy.search import ReversalFinding, Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.ties import Company, company, known_combination
 from winch_friction.physics.friction import FrictionModel

@@ -1,122 +1,137 @@
 """Locate and name on the training runs: everything that happens before the locked runs are looked at.
 
-A delay, once one is suspected, is what the runs would be without it. A regressor shifts what was predicted; that leaves
-a quarter of a delay of a tenth of a second, since the acceleration, the load's inertia and the reversals shift as well.
-Taken out of the signals themselves, all of it goes.
+What shows only just after a reversal, bristles that turn over with travel and contacts that have grown while at rest,
+has a problem of its own. The moving regime names everything else first; here its explanation is the base, on samples
+whose travel since the reversal is certain but short. Samples at rest take no part: static friction is undetermined
+there.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
-from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate, Shape, Untestable, Values
+from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape, Untestable
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
-from winch_friction.discrepancy.candidates.signals import DELAY, PRESSURES, tau
-from winch_friction.discrepancy.detectors import flow_balance, reversals, soft_oil
+from winch_friction.discrepancy.candidates.friction import blurred_travel
+from winch_friction.discrepancy.candidates.geometry import GAS
+from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.detectors import flow_balance, soft_oil
 from winch_friction.discrepancy.detectors import ripple as angle
+from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.detectors.flow_balance import Leakage
-from winch_friction.discrepancy.detectors.reversals import ReversalFinding
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
 from winch_friction.discrepancy.detectors.soft_oil import FreeAir
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.chance import Dependence, dependences, near
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, near
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
 from winch_friction.discrepancy.engine.selection import Selection, select
-from winch_friction.discrepancy.expansion import Expansion, Given, expand_around, meet, met_in_turn
+from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
 from winch_friction.discrepancy.locking import Split
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.regressors import base_of, layout_of
+from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.correction import Correction
 
 LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
 
-# -- a delay taken out
-AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
-REACH = 1.1  # times a delay: half way to the next one
+# -- just after reversals
+SIGNIFICANCE_AFTER_REVERSALS = 0.005
+FEWEST_BLOCKS = 200
 
 
-def without_delay(
-    given: Given, candidates: Sequence[Candidate], suspects: Sequence[Slot], cross: CrossFit, fitted: Explanation
-) -> list[Candidate]:
-    """The candidates, a delay that is among the suspects as what its signals are without it."""
-    suspect = next((each for each in suspects if each.name == DELAY and not each.law and _long(each)), None)
-    if suspect is None:
-        return list(candidates)
-    late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted)
-    shapes = [_shape(size * factor, late) for factor in AROUND]
-    columns: dict[tuple[str, float], FloatArray] = {}
+@dataclass(frozen=True)
+class ReversalFinding:
+    """One effect of the turning regime: its slot in the regime's own problem, evidence and fit."""
 
-    def taken_out(delay: float) -> FrictionModel:
-        return replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
+    slot: Slot
+    p_value: float
+    gain: float
+    cross: CrossFit
+    fitted: Explanation
+    base: Explanation  # the same without it
+    expansion: Expansion
 
-    def keep(delay: float, without: Iterable[PreparedRun]) -> None:
-        for old, new in zip(given.prepared, without, strict=True):
-            gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
-            columns[old.name, delay] = (old.gap - gap)[:, None] / delay
-
-    # a swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay differs
-    met = meet(given.runs, given.crane, taken_out(size), ()).prepared
-    modes = {run.name: run.wire_mode for run in met}
-    keep(size, met)
-    del met  # its gaps are all that is needed
-    for shape in shapes:
-        if (delay := shape.values["delay"]) != size:
-            keep(delay, met_in_turn(given, taken_out(delay), modes))
-    return [
-        replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
-        if each.name == DELAY and not each.law_name
-        else each
-        for each in candidates
-    ]
+    def holds_on(self, names: Sequence[str], rng: np.random.Generator) -> bool:
+        """Whether it also shrinks the gap just after reversals of runs that it was not fitted to, each run by its own
+        noise: one whose reversals are blurred would otherwise speak for all."""
+        chosen = [run for run in self.expansion.runs if run.name in names and run.used.any()]
+        if not chosen:
+            return False
+        blocks = build_problem(chosen, self.expansion.layout, by_sample=True).blocks
+        columns = self.cross.problem.columns
+        without, with_it = (
+            (blocks.y - blocks.x[:, list(columns(each.slots))] @ each.beta) * blocks.weight
+            for each in (self.base, self.fitted)
+        )
+        return chance_of_no_gain(without, with_it, blocks.segment, blocks.run, rng) <= LIMITS.proof_p
 
 
-def _long(slot: Slot) -> bool:
-    """Whether it is no small one, which its first derivative says."""
-    return 0.0 in (slot.origin[1].values["ahead"], slot.origin[1].values["behind"])
+def too_short(candidate: Candidate, shape: Shape, runs: Sequence[PreparedRun]) -> bool:
+    """Whether a travel is over before the instant of a reversal is known."""
+    if candidate.shortest is None:
+        return False
+    name, least = candidate.shortest
+    return shape.values[name] <= max(least, blurred_travel(runs))
 
 
-def _size(slot: Slot, cross: CrossFit, fitted: Explanation) -> float:
-    """The delay in s, of the speed behind the pressures: as fitted, or as its shape has it."""
-    if slot in fitted.slots:
-        at = cross.problem.columns(fitted.slots).index(slot.columns[0])
-        return float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
-    values = slot.origin[1].values
-    return values["ahead"] - values["behind"]
+def after_reversals(
+    given: Given, expansion: Expansion, explanation: Explanation, candidates: Sequence[Candidate],
+    train: Sequence[str], rng: np.random.Generator, cleaned: Callable[[Expansion], Expansion],
+) -> ReversalFinding | None:  # fmt: skip
+    """The best effect just after reversals, if it is one that only shows there, surely and usefully.
 
-
-def _shape(delay: float, late: float) -> Shape:
-    values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay}
-    reach = sorted((delay / REACH / tau.typical, delay * REACH / tau.typical))
-    signal = "pressures" if late == PRESSURES else "speed"
-    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms", values, (reach[0], reach[1]))
-
-
-def _delay(delay: float, late: float) -> Correction:
-    name, value = ("pressure_delay", -delay) if late == PRESSURES else ("signal_delay", delay)
-    return Correction(name, float(np.clip(value, *Correction(name, 0.0).bounds)))
-
-
-def _shapes(candidate: Candidate, exact: Sequence[Shape], runs: Sequence[PreparedRun]) -> list[Shape]:
-    return [*candidate.shapes(runs), *exact]
-
-
-def _columns(
-    candidate: Candidate, exact: Mapping[tuple[str, float], FloatArray], run: PreparedRun, values: Values
-) -> FloatArray:
-    own = exact.get((run.name, values.get("delay", 0.0)))
-    return candidate.columns(run, values) if own is None else own
+    `cleaned` takes out of the runs what has been found beside the torque balance.
+    """
+    named = {slot.name for slot in explanation.slots}
+    balanced = [each for each in candidates if each.regime in (MOVING, REVERSALS)]
+    tried = [each for each in balanced if each.reversal_rival or each.name in named]
+    if DELAY in named:  # with speed and pressure apart, the instant of a reversal is not known well enough
+        return None
+    turning = cleaned(expand_around(given, expansion, explanation, tried, turning=True))
+    if GAS in named:  # what its law has wrong is largest where the passive side's motion turns
+        turning = replace(turning, runs=tuple(run for run in turning.runs if len(run.groups) < 2))
+    chosen = [run for run in turning.runs if run.name in train and run.used.any()]
+    if sum(int(run.used.sum()) for run in chosen) < FEWEST_BLOCKS:
+        return None
+    cross = CrossFit(build_problem(chosen, turning.layout, by_sample=True))
+    kept = [turning.layout.slot_like(slot) for slot in explanation.slots]
+    base = cross.explain(kept)
+    trials = candidate_trials(cross, base, named)
+    if not trials:
+        return None
+    p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
+    best = min(range(len(trials)), key=lambda k: trials[k].loss)
+    gain = cross.gain(base, trials[best])
+    candidate, shape = trials[best].slots[-1].origin
+    if too_short(candidate, shape, chosen) or cross.at_bound(trials[best], trials[best].slots[-1]):
+        return None
+    # what a named effect's law leaves of itself is its own second order, here as elsewhere
+    own = max(cross.explain(()).loss - base.loss, 0.0) if kept else 0.0
+    if base.loss - trials[best].loss < LIMITS.small_left_over * own:
+        return None
+    # what swings, rings or is squeezed after a reversal is imitated in part; what is there is most of it
+    if base.loss - trials[best].loss < LIMITS.reversal_share * (base.loss - cross.floor):
+        return None
+    least = 1.0 if candidate.reversal_gain is None else candidate.reversal_gain
+    if p[best] > SIGNIFICANCE_AFTER_REVERSALS or gain < least:
+        return None
+    return ReversalFinding(trials[best].slots[-1], float(p[best]), float(gain), cross, trials[best], base, turning)
 
 
 # -- the search
+def is_long_delay(slot: Slot) -> bool:
+    """Whether a shape is a delay that is no small one, which its first derivative says."""
+    values = slot.origin[1].values
+    return slot.name == DELAY and not slot.law and 0.0 in (values["ahead"], values["behind"])
+
+
 @dataclass(frozen=True)
 class Search:
     """What the training runs gave."""
@@ -165,7 +180,9 @@ def search_runs(
     for _ in range(LIMITS.most_expansions):
         shapes = (*selection.final.slots, *near(cross, selection.final))
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
-        candidates = without_delay(given, candidates, shapes, cross, selection.final)
+        late = next((each for each in shapes if is_long_delay(each)), None)
+        if late is not None:
+            candidates = without_delay(given, candidates, late, cross, selection.final)
         del cross  # the largest thing there is, and not needed beside the next one
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)
@@ -182,7 +199,7 @@ def search_runs(
     if verdict.kind != UNEXPLAINED:
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
-        reversal = reversals.detect(given, expansion, selection.final, usable, split.train, rng, cleaned)
+        reversal = after_reversals(given, expansion, selection.final, usable, split.train, rng, cleaned)
     leakage, air = flow_balance.detect(own_runs, own_prepared), soft_oil.free_air(own_runs, own_prepared)
     flow = tuple(each for each in (leakage, air) if each is not None and each.found)
     if any(each.name == soft_oil.NAME for each in usable):

@@ -260,7 +260,7 @@ def blurred_travel(runs: Sequence[PreparedRun]) -> float:
 
 def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
     """A travel well beyond that in which nobody knows when the shaft turned: shorter ones are looked for just after
-    reversals alone (`detectors.reversals`)."""
+    reversals alone (`search.after_reversals`)."""
     return values["d_z"] > CLEAR * blurred_travel(runs)
 
 

@@ -16,9 +16,9 @@ from winch_friction.cli.demo.tuning import efficiency_compensator, search_effici
 from winch_friction.cli.main import run
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import operating_point
 from winch_friction.physics.friction.scaled import scaled_system
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.operating_point import operating_point
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.strict_yaml import config_directory
 from winch_friction.simulation.scenario import load_scenario

@@ -16,9 +16,10 @@ from winch_friction.physics.channels import (
     limits_of,
     plausible,
 )
+from winch_friction.physics.friction.compiled import operating_point
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, operating_point
+from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS
 from winch_friction.records.unit_names import conversion_to_si
 
 

@@ -8,12 +8,12 @@ import pytest
 from clean_sensors import CLEAN
 
 from winch_friction.physics.channels import BAR, GRAVITY
-from winch_friction.physics.friction.compiled import unique_parameters
+from winch_friction.physics.friction.compiled import operating_point
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.friction.term import registered_terms, term_named
+from winch_friction.physics.friction.term import registered_terms, term_named, unique_parameters
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import run_drive_torque, run_drum_torque
-from winch_friction.physics.winch.operating_point import operating_point, run_operating_points
+from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.simulation import Simulator, simulate
 from winch_friction.simulation.plant.equations import operating_point as kernel_point
 from winch_friction.simulation.plant.friction_kernel import friction_kernel

@@ -16,8 +16,8 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.compiled import group_point, operating_point
 from winch_friction.physics.signals import FloatArray
-from winch_friction.physics.winch.operating_point import group_point, operating_point, smooth_signs
 
 EFFECTIVE = 40.0  # samples that a run counts for: neighbouring blocks repeat each other
 # ordinary errors, 1 sigma
@@ -175,7 +175,7 @@ def friction_point(view: RunView) -> tuple[Any, ...]:
     speed = np.clip(view.speed, -MOST_SPEED, MOST_SPEED)
     drum = np.clip(np.nan_to_num(static_torque(view)), -view.rated_torque, view.rated_torque) * view.gear_ratio
     return operating_point(
-        direction=smooth_signs(view.speed, 0.0),
+        direction=np.sign(view.speed),
         speed=speed,
         drum_torque=np.abs(drum),
         groups=groups,

@@ -9,10 +9,10 @@ from winch_friction.commissioning.balance import EFFECTIVE, friction_point, with
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.channels import CM3_PER_REV, GRAVITY, RPM
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.compiled import operating_point
 from winch_friction.physics.friction.model import with_stated_std
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import operating_point
 
 TAUGHT, SOME = 0.6, 0.9  # of the model's own sigma: below, a parameter is taught; between, a little
 FIT_NOISE = 0.002  # of the rated torque: what a plateau's mean is good for (a transducer of 0.25 % less its offset)

@@ -27,8 +27,8 @@ from winch_friction.discrepancy.regressors import base_of, build_problem, key_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Term, term_named
-from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.correction import Action, Correction
+from winch_friction.physics.friction.term import unique_parameters
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, Parameter, term_named
-from winch_friction.physics.friction.compiled import unique_parameters
+from winch_friction.physics.friction.term import unique_parameters
 
 
 @dataclass(frozen=True)

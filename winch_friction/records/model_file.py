@@ -10,9 +10,8 @@ import yaml
 from winch_friction.physics.channels import factor_to_si
 from winch_friction.physics.errors import InputError, Problems, meant
 from winch_friction.physics.friction import FrictionModel, registered_terms, term_named
-from winch_friction.physics.friction.compiled import unique_parameters
 from winch_friction.physics.friction.symbols import CONSTANTS
-from winch_friction.physics.friction.term import Parameter, Term
+from winch_friction.physics.friction.term import Parameter, Term, unique_parameters
 from winch_friction.records.atomic import write_text
 from winch_friction.records.corrections import corrections_content, read_corrections, read_tables, tables_content
 from winch_friction.records.schemas import with_all_problems

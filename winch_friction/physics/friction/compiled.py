@@ -1,7 +1,7 @@
-"""From declared equations to functions: scalar, vectorised, numba kernel; each with its Jacobian.
+"""From declared equations to functions of an operating point: scalar, vectorised, numba kernel; each with its Jacobian.
 
-All of them take (x, theta, z): the operating point in the order of `layout`, the parameters, and the states of
-the terms with memory, each in the model's order. Nothing here restates an equation. A state is stepped by
+All of them take (x, theta, z): the operating point, in the order of `layout`, the parameters, and the states of the
+terms with memory, each in the model's order. Nothing here restates an equation. A state is stepped by
 dz/dt = gain - decay z, exactly for signals frozen over a step.
 """
 
@@ -15,9 +15,10 @@ import sympy as sp
 
 from winch_friction.physics.friction import symbols
 from winch_friction.physics.friction.sources import function_of
-from winch_friction.physics.friction.term import Parameter, Scope, Term
+from winch_friction.physics.friction.term import Parameter, Scope, Term, unique_parameters
 
 
+# -- the operating point
 def group_symbol(symbol: sp.Symbol, group: int) -> sp.Symbol:
     """The symbol of one group's signal in a model with several groups."""
     return sp.Symbol(f"{symbol.name}_{{{group}}}", real=True)
@@ -30,6 +31,59 @@ def layout(group_count: int) -> tuple[sp.Symbol, ...]:
     return winch + groups
 
 
+# its signals by name, and those that have a value where nobody gives one
+ORDER = tuple(signal.name for signal in symbols.WINCH_SIGNALS)
+DEFAULTS: dict[str, Any] = {each.name: each.default for each in symbols.WINCH_SIGNALS if each.default is not None}
+# of a motor group's last signals, for whoever does not give them
+_GROUP_DEFAULTS = tuple(signal.default for signal in symbols.GROUP_SIGNALS)
+
+
+def operating_point(
+    *,
+    direction: Any,
+    speed: Any,
+    drum_torque: Any,
+    groups: Sequence[tuple[Any, ...]] = (),
+    motor_total: Any,
+    **optional: Any,
+) -> tuple[Any, ...]:
+    """The operating point as a flat tuple of floats or of arrays; SI.
+
+    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor and which port's
+    pressure is the higher (left out: port A's), in short a `group_point`. `optional` are signals of the table that have
+    a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
+    """
+    values = DEFAULTS | optional
+    if len(values) > len(DEFAULTS):
+        raise TypeError(f"no such signals: {sorted(set(optional) - set(DEFAULTS))}")
+    values |= {
+        "direction": direction, "speed_magnitude": abs(speed), "speed": speed, "drum_torque": drum_torque,
+        "motor_total": motor_total,
+    }  # fmt: skip
+    return tuple(values[name] for name in ORDER) + tuple(value for group in groups for value in _whole(group))
+
+
+def _whole(group: tuple[Any, ...]) -> tuple[Any, ...]:
+    """A group's signals with the defaults of those at the end that are not given."""
+    missing = _GROUP_DEFAULTS[len(group) :]
+    if len(group) > len(_GROUP_DEFAULTS) or None in missing:
+        raise TypeError(f"a group has {[signal.name for signal in symbols.GROUP_SIGNALS]}, not {len(group)} values")
+    return (*group, *missing)
+
+
+def group_point(count: Any, drop: Any, displacement: Any, pressure_sum: Any = None) -> tuple[Any, ...]:
+    """A motor group's part of an operating point: `drop` is p_A - p_B in Pa, a float or an array; without p_A + p_B the
+    lower port's pressure is taken for zero.
+
+    The higher port is +1 for port A and -1 for port B, so that p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2; it
+    steps where the pressures are equal and |p_A - p_B| is zero.
+    """
+    size = np.abs(drop)
+    higher_port = np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
+    return count, size, size if pressure_sum is None else pressure_sum, displacement, higher_port
+
+
+# -- their functions
 class CompiledTerms:
     """The functions of one list of terms, for one number of motor groups and one set of constants.
 
@@ -46,12 +100,8 @@ class CompiledTerms:
     @cached_property
     def _arguments(self) -> tuple[tuple[sp.Symbol, ...], ...]:
         own = tuple(parameter.symbol for parameter in self.parameters)
-        return layout(self.group_count), own, self._state_symbols()
-
-    def _state_symbols(self) -> tuple[sp.Symbol, ...]:
-        return tuple(
-            sp.Symbol(f"z_{{{k},{g}}}", real=True) for k, term in enumerate(self.stateful) for g in self._groups(term)
-        )
+        states = [f"z_{{{k},{g}}}" for k, term in enumerate(self.stateful) for g in self._groups(term)]
+        return layout(self.group_count), own, tuple(sp.Symbol(name, real=True) for name in states)
 
     def _groups(self, term: Term) -> range:
         per_group = term.scope is Scope.MOTOR and bool(term.state_symbols)
@@ -221,23 +271,10 @@ def _declared(term: Term) -> tuple[Any, ...]:
     return term.scope, term.opposing, names, *map(sp.srepr, (term.equation, *state))
 
 
-def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:
-    """The parameters of the terms in order, each once."""
-    return tuple({parameter.name: parameter for term in terms for parameter in term.parameters}.values())
-
-
 @lru_cache(maxsize=256)  # 80 kB each; one search makes 140, of which 30 are its data's own and never come again
 def compiled(terms: tuple[Term, ...], group_count: int, constants: tuple[tuple[str, float], ...]) -> CompiledTerms:
     """The functions of these terms, made once per process."""
     return CompiledTerms(terms, group_count, constants)
-
-
-def broadcast_columns(columns: Sequence[Any], length: int) -> np.ndarray:
-    """Stack what lambdify returned, scalars included, to an array (length, len(columns))."""
-    out = np.empty((length, len(columns)))
-    for k, column in enumerate(columns):
-        out[:, k] = column
-    return out
 
 
 # -- memory

@@ -11,16 +11,10 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction.compiled import (
-    CompiledTerms,
-    advance_all,
-    broadcast_columns,
-    compiled,
-    unique_parameters,
-)
+from winch_friction.physics.friction.compiled import CompiledTerms, advance_all, compiled
 from winch_friction.physics.friction.correction import Correction, check_corrections
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, TIME_INDEX, WINCH_SIGNALS
-from winch_friction.physics.friction.term import Parameter, Term
+from winch_friction.physics.friction.term import Parameter, Term, unique_parameters
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
@@ -181,7 +175,10 @@ class FrictionModel:
         """Partial derivatives of the torque by the parameters, shape (samples, parameters)."""
         functions = self.compile(_group_count(x))
         parts = functions.vector_gradient(tuple(x), self.values, self._states(functions, x, z))
-        return broadcast_columns(parts, np.broadcast(*x).size)
+        columns = np.empty((np.broadcast(*x).size, len(parts)))
+        for k, part in enumerate(parts):
+            columns[:, k] = part  # one that is constant comes back as a scalar
+        return columns
 
     def _states(self, functions: CompiledTerms, x: Sequence[Any], z: Sequence[Any] | None) -> tuple[Any, ...]:
         if z is not None:

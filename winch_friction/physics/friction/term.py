@@ -4,7 +4,7 @@ A name in a model file stands for exactly one declared term, by the registry.
 """
 
 import importlib.util
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
@@ -140,6 +140,11 @@ class Term:
     def latex(self) -> str:
         """The equation in LaTeX, from the same declaration; a table of windows is told in words behind it."""
         return (self.table.latex if self.table is not None else "") or str(sp.latex(self.torque))
+
+
+def unique_parameters(terms: Sequence[Term]) -> tuple[Parameter, ...]:
+    """The parameters of the terms in order, each once."""
+    return tuple({parameter.name: parameter for term in terms for parameter in term.parameters}.values())
 
 
 # channels that a term may read and in whose place nothing can stand: a layer that is not said is the outer one

@@ -8,11 +8,11 @@ import numpy as np
 from winch_friction.physics.channels import BAR, FASTEST_ROPE, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import group_point, operating_point
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import group_point, operating_point
 
 TOP_SPEED = 2000.0 * RPM  # rad/s; supplier tables and the paper's tests end near it
 LOWEST_SPEED = 5.0 * RPM  # rad/s; at rest friction is whatever holds the load

@@ -1,5 +1,5 @@
-"""From measured signals to the operating point that every friction function takes (the order of `compiled.layout`),
-now or at the speed ahead, and what of them this crane can show at all.
+"""From measured signals to the operating point that every friction function takes (`compiled.operating_point`), now or
+at the speed ahead, and what of them this crane can show at all.
 
 The ranges, and the largest rate of each channel, come from the crane itself. They are tighter than the
 limits of `physics.channels`, which say only what any winch's sensor could mean: a value outside is a broken sensor, a
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH
-from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
+from winch_friction.physics.friction.compiled import DEFAULTS, ORDER, group_point, operating_point
 from winch_friction.physics.signals import FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 
@@ -92,68 +92,19 @@ def time_to_reversal(ahead: PredictedSpeed) -> float:
     return -ahead.speed / ahead.acceleration if ahead.speed * ahead.acceleration < 0.0 else math.inf
 
 
-# -- the operating point
-_ORDER = tuple(signal.name for signal in WINCH_SIGNALS)
-_DEFAULTS: dict[str, Any] = {signal.name: signal.default for signal in WINCH_SIGNALS if signal.default is not None}
-# of a motor group's last signals, for whoever does not give them
-_GROUP_DEFAULTS = tuple(signal.default for signal in GROUP_SIGNALS)
+# -- the operating point of a sample, or of each of a run
 # m^3/rad; the feedback of a motor that is swung out reads about zero, of which a power law has no logarithm, and below
 LEAST_DISPLACEMENT = 1e-12
 # what of them is a channel of its own: taken from a sample or run as it is, where it is there
-CHANNEL_SIGNALS = tuple(name for name in _DEFAULTS if name in WINCH)
+CHANNEL_SIGNALS = tuple(name for name in DEFAULTS if name in WINCH)
 # places for the one point of a sample, which a node needs at every step
-_TEMPLATE: list[Any] = [_DEFAULTS.get(name) for name in _ORDER]
-_PLACES = tuple(_ORDER.index(name) for name in CHANNEL_SIGNALS)
+_TEMPLATE: list[Any] = [DEFAULTS.get(name) for name in ORDER]
+_PLACES = tuple(ORDER.index(name) for name in CHANNEL_SIGNALS)
 _channels_of = attrgetter(*CHANNEL_SIGNALS)
 _DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL, _WIRE_LAYER = (
-    _ORDER.index(name)
+    ORDER.index(name)
     for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total", "wire_layer")
 )
-
-
-def operating_point(
-    *,
-    direction: Any,
-    speed: Any,
-    drum_torque: Any,
-    groups: Sequence[tuple[Any, ...]] = (),
-    motor_total: Any,
-    **optional: Any,
-) -> tuple[Any, ...]:
-    """The operating point as a flat tuple of floats or of arrays; SI.
-
-    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor and which port's
-    pressure is the higher (left out: port A's), in short a `group_point`. `optional` are signals of the table that have
-    a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
-    """
-    values = _DEFAULTS | optional
-    if len(values) > len(_DEFAULTS):
-        raise TypeError(f"no such signals: {sorted(set(optional) - set(_DEFAULTS))}")
-    values |= {
-        "direction": direction, "speed_magnitude": abs(speed), "speed": speed, "drum_torque": drum_torque,
-        "motor_total": motor_total,
-    }  # fmt: skip
-    return tuple(values[name] for name in _ORDER) + tuple(value for group in groups for value in _whole(group))
-
-
-def _whole(group: tuple[Any, ...]) -> tuple[Any, ...]:
-    """A group's signals with the defaults of those at the end that are not given."""
-    missing = _GROUP_DEFAULTS[len(group) :]
-    if len(group) > len(_GROUP_DEFAULTS) or None in missing:
-        raise TypeError(f"a group has {[signal.name for signal in GROUP_SIGNALS]}, not {len(group)} values")
-    return (*group, *missing)
-
-
-def group_point(count: Any, drop: Any, displacement: Any, pressure_sum: Any = None) -> tuple[Any, ...]:
-    """A motor group's part of an operating point: `drop` is p_A - p_B in Pa, a float or an array; without p_A + p_B the
-    lower port's pressure is taken for zero.
-
-    The higher port is +1 for port A and -1 for port B, so that p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2; it
-    steps where the pressures are equal and |p_A - p_B| is zero.
-    """
-    size = np.abs(drop)
-    higher_port = np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
-    return count, size, size if pressure_sum is None else pressure_sum, displacement, higher_port
 
 
 def sample_operating_point(

@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records, of_wire
+from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
+from winch_friction.discrepancy.next_experiment import of_wire
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError

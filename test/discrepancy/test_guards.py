@@ -8,7 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy import workflow as workflow_module
-from winch_friction.discrepancy.adequacy import of_names, supplying
+from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -39,6 +39,7 @@ from winch_friction.discrepancy.engine.selection import (
     select,
     with_fewer,
 )
+from winch_friction.discrepancy.next_experiment import supplying
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.locking import lock_holdout
+from winch_friction.discrepancy.adequacy import lock_holdout
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import Run
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from gap_rig import names_of, runs_with
 
+from winch_friction.discrepancy.adequacy import lock_holdout
 from winch_friction.discrepancy.answer import GapOptions
-from winch_friction.discrepancy.locking import lock_holdout
 from winch_friction.discrepancy.workflow import find_gap
 
 DRAG = 6.0  # N m per motor; the catalogue's brake takes 3

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import of_swing, supplying
+from winch_friction.discrepancy.adequacy import of_swing
+from winch_friction.discrepancy.next_experiment import supplying
 
 RIGID, ELASTIC = SimpleNamespace(wire_stiffness=np.inf), SimpleNamespace(wire_stiffness=8e7)
 

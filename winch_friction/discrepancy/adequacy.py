@@ -1,11 +1,11 @@
-"""Can these runs answer at all? Asked before the search, in numbers, and with the runs that would supply what lacks."""
+"""Can these runs answer at all, in numbers, and which of them are locked? Asked before the search."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.expansion import Given, Split
 from winch_friction.discrepancy.preparation.grid import HOLE
 from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING, PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
@@ -14,7 +14,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.runs import NO_RECORD
+from winch_friction.records.runs import NO_RECORD, refuse_same_names
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"
@@ -161,17 +161,6 @@ def of_swing(crane: Crane, left: Sequence[tuple[PreparedRun, FloatArray]]) -> Ch
     return _at_least(SWING, longest, LIMITS.swing_told, "s")
 
 
-def of_wire(given: Given) -> list[str]:
-    """What is said of a gap that nothing explains where runs on a wire that gives do not say how long it is."""
-    silent = [run.name for run in given.prepared if "wire_out" not in run.channels]
-    if not silent or not np.isfinite(given.crane.wire_stiffness):
-        return []
-    which = "no run says" if len(silent) == len(given.prepared) else f"{', '.join(silent)} do not say"
-    return [
-        f"{which} wire_out, so that how the load swings on its wire is a guess, and its swing may be the gap: log it"
-    ]
-
-
 def of_names(untold: str) -> Check:
     """That the runs do not tell names apart; `untold` says which."""
     return _at_least(f"{TELLING} ({untold})", 0.0, 1.0)
@@ -220,10 +209,92 @@ def _span(runs: Sequence[PreparedRun], channel: str) -> float:
     return float(np.ptp(values)) if len(values) else 0.0
 
 
-def supplying(checks: Sequence[Check]) -> str:
-    """The shipped scenario that supplies what is lacking: both directions, nine speeds, three minutes at 50 Hz."""
-    lacking = {check.what for check in checks if not check.met}
-    if SWING in lacking or HEAVE in lacking:
-        return "ahc_55t_215"
-    many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
-    return "experiment_loads" if many else "test_02"
+# -- which runs are locked: never learned from, and what every name and file is proven on
+
+
+def refuse(runs: Sequence[Run], fraction: float, seed: int) -> None:
+    """Raise `InputError` for what cannot be divided: no run, two of one name, a share or a seed that is none."""
+    if not runs:
+        raise InputError("no run given; name at least one run file")
+    refuse_same_names(runs)
+    if not 0.05 <= fraction <= 0.6:
+        raise InputError(f"--holdout {fraction:g} is outside 0.05 ... 0.6")
+    if seed < 0:
+        raise InputError(f"seed {seed}: give a whole number, 0 or more")
+
+
+def lock_holdout(runs: Sequence[Run], fraction: float, rng: np.random.Generator) -> Split:
+    """Choose the locked runs by kind (their motor groups), so that each kind is on both sides where there are two of
+    it.
+
+    Of a number of draws the one whose locked runs reach least beyond what the others cover: a law that the data draw
+    says nothing of loads, pressures, layers or dates that it has not seen, and a proof there would be one of luck. Of
+    those that reach as little the one whose locked runs cover most: what is small in all of them proves nothing.
+    """
+    if len(runs) < LIMITS.fewest_to_lock_whole:
+        return _divided(runs, fraction)
+    kinds: dict[tuple[str, ...], list[int]] = {}
+    for k, run in enumerate(runs):
+        kinds.setdefault(run.groups, []).append(k)
+    covered = {name: _covered(name, runs) for name in dict.fromkeys(c for run in runs for c in run.columns)}
+    draws = [_drawn(list(kinds.values()), fraction, rng) for _ in range(LIMITS.lock_draws)]
+    layers = [frozenset(np.rint(v[np.isfinite(v)])) for v in (run.column("wire_layer") for run in runs)]
+    locked = min(draws, key=lambda each: _beyond(each, list(covered.values())) + _unseen(each, layers))
+    names = tuple(run.name for k, run in enumerate(runs) if k in locked)
+    return Split(tuple(runs), tuple(run.name for run in runs if run.name not in names), names)
+
+
+def _drawn(kinds: Sequence[Sequence[int]], fraction: float, rng: np.random.Generator) -> frozenset[int]:
+    """Runs to lock, of every kind its share."""
+    locked: list[int] = []
+    for own in kinds:
+        count = min(max(round(fraction * len(own)), 1 if len(own) > 1 else 0), len(own) - 1)
+        locked += [own[k] for k in rng.permutation(len(own))[:count]]
+    return frozenset(locked)
+
+
+def _covered(name: str, runs: Sequence[Run]) -> FloatArray:
+    """The range of a column in each run without its rarest values, shape (runs, 2); nan where a run has none of it."""
+    found = np.full((len(runs), 2), np.nan)
+    for k, run in enumerate(runs):
+        values = run.column(name)
+        if np.isfinite(values).any():
+            found[k] = np.quantile(values[np.isfinite(values)], LIMITS.lock_range)
+    return found
+
+
+def _beyond(locked: frozenset[int], covered: Sequence[FloatArray]) -> float:
+    """How far the locked runs reach beyond the others, in ranges of all runs, summed over the columns; a small part of
+    what they cover themselves is taken off."""
+    far = 0.0
+    own = np.zeros(len(covered[0]) if covered else 0, bool)
+    own[list(locked)] = True
+    for ranges in covered:
+        known = np.isfinite(ranges[:, 0])
+        here, there = ranges[own & known], ranges[~own & known]
+        if not len(here) or not len(there):
+            continue
+        whole = max(float(np.nanmax(ranges) - np.nanmin(ranges)), 1e-12)
+        low, high = there[:, 0].min() - here[:, 0].min(), here[:, 1].max() - there[:, 1].max()
+        covers = float(here[:, 1].max() - here[:, 0].min())
+        far += (max(float(low), 0.0) + max(float(high), 0.0) - LIMITS.lock_cover * covers) / whole
+    return far
+
+
+def _unseen(locked: frozenset[int], layers: Sequence[frozenset[float]]) -> int:
+    """How many of the drum's layers only the locked runs are on: a radius is learned where it is met."""
+    here, there = (set().union(*(layers[k] for k in some)) for some in (locked, set(range(len(layers))) - locked))
+    return len(here - there)
+
+
+def _divided(runs: Sequence[Run], fraction: float) -> Split:
+    parts, train, locked = [], [], []
+    for run in runs:
+        time = run.time - run.time[0]
+        border = time[-1] * (1.0 - fraction)
+        for label, keep in (("first part", time < border - LIMITS.guard_time), ("last part", time >= border)):
+            columns = {name: values[keep] for name, values in run.columns.items()}
+            parts.append(Run(f"{run.name} ({label})", columns, {}, run.warnings, run.metadata))
+        train.append(parts[-2].name)
+        locked.append(parts[-1].name)
+    return Split(tuple(parts), tuple(train), tuple(locked))

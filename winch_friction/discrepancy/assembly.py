@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Check, supplying
+from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     INSUFFICIENT,
@@ -27,9 +27,8 @@ from winch_friction.discrepancy.candidates.candidate import Candidate, Parameter
 from winch_friction.discrepancy.engine.blocks import Slot, find_regions
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
-from winch_friction.discrepancy.expansion import Given, meet
-from winch_friction.discrepancy.locking import Split
-from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment
+from winch_friction.discrepancy.expansion import Given, Split, meet
+from winch_friction.discrepancy.next_experiment import NextExperiment, plan_experiment, supplying
 from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import compare, drift_note, nothing_compared, read_back
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair, draft, polished

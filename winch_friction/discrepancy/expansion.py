@@ -59,6 +59,15 @@ class Given:
         return replace(self, runs=tuple(run for run, _ in pairs), prepared=tuple(own for _, own in pairs))
 
 
+@dataclass(frozen=True)
+class Split:
+    """Names of the runs to learn from and of the locked ones, and all runs (divided ones renamed)."""
+
+    runs: tuple[Run, ...]
+    train: tuple[str, ...]
+    holdout: tuple[str, ...]
+
+
 def meet(runs: Sequence[Run], crane: Crane, model: FrictionModel, fitted: Collection[str] | None = None) -> Given:
     """Measured runs as this model sees them; `InputError` for runs that lack what balance or corrections need.
 

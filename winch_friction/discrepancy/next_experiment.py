@@ -3,7 +3,7 @@
 Each scenario of a small family is simulated without any effect; on its operating points the effect at its found size
 is the truth, and the rival is refitted, with the base inside its prior, to the runs at hand and the new one together;
 then the other way round, for nobody knows which of them is there. What cannot be imitated, in standard deviations of
-the measurement, is the expected separation.
+the measurement, is the expected separation. And what to log where the runs cannot answer at all.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.discrepancy.adequacy import HEAVE, SWING, TELLING, Check
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.expansion import Expansion, Given
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -138,3 +139,23 @@ def _missed(cross: CrossFit, g: FloatArray, truth: Explanation, slots: Sequence[
     y2 = float(truth.beta @ g[np.ix_(true_columns, true_columns)] @ truth.beta)
     beta = cross.problem.fit(g, b, columns.tolist())
     return max(float(y2 - 2.0 * b[columns] @ beta + beta @ g[np.ix_(columns, columns)] @ beta), 0.0)
+
+
+def of_wire(given: Given) -> list[str]:
+    """What is said of a gap that nothing explains where runs on a wire that gives do not say how long it is."""
+    silent = [run.name for run in given.prepared if "wire_out" not in run.channels]
+    if not silent or not np.isfinite(given.crane.wire_stiffness):
+        return []
+    which = "no run says" if len(silent) == len(given.prepared) else f"{', '.join(silent)} do not say"
+    return [
+        f"{which} wire_out, so that how the load swings on its wire is a guess, and its swing may be the gap: log it"
+    ]
+
+
+def supplying(checks: Sequence[Check]) -> str:
+    """The shipped scenario that supplies what is lacking: both directions, nine speeds, three minutes at 50 Hz."""
+    lacking = {check.what for check in checks if not check.met}
+    if SWING in lacking or HEAVE in lacking:
+        return "ahc_55t_215"
+    many = "loads" in lacking or any(what.startswith(TELLING) for what in lacking)
+    return "experiment_loads" if many else "test_02"

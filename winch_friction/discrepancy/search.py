@@ -30,8 +30,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, near
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
 from winch_friction.discrepancy.engine.selection import Selection, select
-from winch_friction.discrepancy.expansion import Expansion, Given, expand_around
-from winch_friction.discrepancy.locking import Split
+from winch_friction.discrepancy.expansion import Expansion, Given, Split, expand_around
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
 from winch_friction.discrepancy.run_states import run_states

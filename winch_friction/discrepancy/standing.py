@@ -14,7 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.chance import dependences, least_part
 from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
-from winch_friction.discrepancy.locking import Split
+from winch_friction.discrepancy.expansion import Split
 from winch_friction.discrepancy.proof import (
     adds,
     at_the_floor,

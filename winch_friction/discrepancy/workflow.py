@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy import adequacy
+from winch_friction.discrepancy.adequacy import lock_holdout, refuse
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -21,8 +22,8 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
-from winch_friction.discrepancy.expansion import Expansion, Given, as_rigid, expand_around, meet, swings
-from winch_friction.discrepancy.locking import Split, lock_holdout, refuse
+from winch_friction.discrepancy.expansion import Expansion, Given, Split, as_rigid, expand_around, meet, swings
+from winch_friction.discrepancy.next_experiment import of_wire
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
@@ -267,7 +268,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result = assemble(split, options, trial)
     if result.verdict == UNEXPLAINED:
-        notes += adequacy.of_wire(given)
+        notes += of_wire(given)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     result = replace(
         result, seed_model=model, seed_refuted=refuted, adequacy=tuple(checks), notes=(*notes, *result.notes),

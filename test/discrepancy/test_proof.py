@@ -21,7 +21,7 @@ def side(after, before=None, noise_floor=0.01, least_noise=0.1):
     before = after if before is None else np.broadcast_to(before, RUN.shape) * SIGN
     size = float(np.sqrt(np.mean(after**2)))
     blocks = SimpleNamespace(
-        run=RUN, segment=RUN * 10 + np.tile(np.arange(BLOCKS), RUNS) // 10, position=np.arange(len(RUN))
+        run=RUN, segment=RUN * 10 + np.tile(np.arange(BLOCKS), RUNS) // 10, position=np.arange(len(RUN)), y=before
     )
     return SimpleNamespace(
         runs=tuple(SimpleNamespace(name=f"run {k}") for k in range(RUNS)), blocks=blocks, before=before, after=after,
@@ -34,6 +34,28 @@ def side(after, before=None, noise_floor=0.01, least_noise=0.1):
 def test_a_further_name_takes_more_off_than_a_balance_closes_by(fewer, worth):
     """What is sure in every segment may be less than any balance of a winch can tell."""
     assert adds(side(fewer), side(0.05), np.random.default_rng(0)) is worth
+
+
+@pytest.mark.parametrize(
+    ("refit", "after", "share"),
+    [(1.0, 0.5, 0.25), (1.0, 0.9, 0.81), (1.0, 0.12, 0.0), (0.14, 0.12, 0.0), (0.14, 0.135, 0.86), (0.05, 0.2, 3e10)],
+)
+def test_what_names_leave_is_held_against_what_a_mere_refit_leaves(refit, after, share):
+    """Of the square above a floor of 0.1; up to 1.3 times that is noise, of which a share says nothing."""
+    found = module.left_beside_a_refit(side(refit), side(after))
+    assert found == pytest.approx(share, rel=0.1, abs=1e-9)
+
+
+@pytest.mark.parametrize(("after", "holds"), [(0.5, True), (0.8, True), (0.9, False), (0.97, False)])
+def test_a_name_that_a_mere_refit_nearly_replaces_is_not_proven(monkeypatch, after, holds):
+    """It lies surely below the gap of 3 that the given model leaves, and surely below the refit's of 1."""
+    refit, repaired = (side(left, before=3.0) for left in (1.0, after))
+    for each in (refit, repaired):
+        each.size_before = Size(3.0, (2.9, 3.1))
+        each.excused = each.floor
+    proof = module.prove("wave", refit, repaired, np.random.default_rng(0))
+    assert proof.holds is holds
+    assert ("mere refit leaves" in proof.why) is not holds
 
 
 @pytest.mark.parametrize(

@@ -146,9 +146,14 @@ def test_a_drag_without_a_name_gets_a_law(drag):
     assert "the data do not say" in first["sentence"]
 
 
-@pytest.mark.parametrize(("left_of_locked", "said"), [(1.0, True), (3.0, False)])
-def test_a_law_that_fits_only_the_runs_it_was_chosen_on_is_not_proposed(monkeypatch, left_of_locked, said):
-    """Both leave the training runs at their floor, and the locked gap falls surely."""
+@pytest.mark.parametrize(
+    ("left_of_locked", "beside_a_refit", "said"),
+    [(1.0, 0.0, True), (2.0, 0.4, True), (3.0, 0.0, False), (2.0, 0.6, False)],
+)
+def test_a_law_for_its_own_runs_alone_or_that_a_refit_nearly_replaces_is_not_proposed(
+    monkeypatch, left_of_locked, beside_a_refit, said
+):
+    """All leave the training runs at their floor, and the locked gap falls surely."""
     sides = [SimpleNamespace(size_after=SimpleNamespace(value=left), floor=1.0) for left in (1.0, left_of_locked)]
     law = next(_laws())
     declared = declare(law, 0.1)
@@ -159,6 +164,7 @@ def test_a_law_that_fits_only_the_runs_it_was_chosen_on_is_not_proposed(monkeypa
     cross = SimpleNamespace(explain=lambda slots: taken, gain=lambda *_: 0.5)
     expansion = SimpleNamespace(layout=SimpleNamespace(slots=()), cross=lambda *_: cross)
     monkeypatch.setattr(proposals, "prove", lambda *_: SimpleNamespace(holds=True))
+    monkeypatch.setattr(proposals, "left_beside_a_refit", lambda *_: beside_a_refit)
     monkeypatch.setattr(proposals, "declare", lambda *_: declared)
     monkeypatch.setattr(proposals, "in_words", lambda *_: "a law")
     monkeypatch.setattr(proposals, "replace", lambda of, **_: of)

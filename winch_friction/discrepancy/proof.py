@@ -60,6 +60,10 @@ def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> 
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
         return Proof(f"{named} {why}")
+    share = left_beside_a_refit(refit, repaired)
+    if share > LIMITS.left_beside_a_refit:
+        kept = f"{100 * share:.0f} % of the square above the noise that a mere refit leaves"
+        return Proof(f"{named} leaves {kept}: it is not what shows there")
     chance = chance_of_no_gain(*_common(refit, repaired), rng)
     if chance > LIMITS.proof_p:
         return Proof(f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})")
@@ -109,10 +113,23 @@ def fits_only_its_own(train: Side, locked: Side) -> str:
     return f"fits the runs that it was chosen on ({of:.3g} left) and not the locked ones ({kept:.3g} left)"
 
 
+def left_beside_a_refit(refit: Side, repaired: Side) -> float:
+    """Share of the square above the noise that a mere refit leaves of the locked runs, which names or an equation leave
+    as well; 0 where what these leave is noise."""
+    floor = repaired.floor
+    if repaired.size_after.value <= LIMITS.several_leave * floor:
+        return 0.0
+    return _excess(repaired, floor) / max(_excess(refit, floor), 1e-12)
+
+
+def _excess(side: Side, floor: float) -> float:
+    """Square of what is left, above that of a floor."""
+    return max(side.size_after.value**2 - floor**2, 0.0)
+
+
 def _left(side: Side, which: str, most: float) -> str:
     floor, before, after = side.floor, side.size_before.value, side.size_after
-    excess = max(before**2 - floor**2, 1e-12)
-    share = max(after.value**2 - floor**2, 0.0) / excess
+    share = _excess(side, floor) / max(before**2 - floor**2, 1e-12)
     if after.value <= LIMITS.far_off_the_floor * floor or share <= most:
         return ""
     kept = f"is left ({before:.3g} to {after.value:.3g})"

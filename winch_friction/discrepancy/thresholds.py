@@ -133,6 +133,9 @@ class Thresholds:
     # of what any balance closes, that a name must take off the locked gap of a refit that is at its floor: a null,
     # whose thermal zero "bent" by a third of its deviation, gained 0.034 bar
     beside_a_refit: float = 0.5
+    # share of the excess of a mere refit of the locked runs, that names may leave where it is more than noise:
+    # right ones under laws that are not theirs leave up to a half, a wrong one of a log at 10 Hz left 0.96
+    left_beside_a_refit: float = 0.7
     worse_p: float = 0.005  # chance that a locked run which seems worse is not, shared among the runs
     worse: float = 1.1  # times its former gap: a run that grows by less is as before
     at_the_floor: float = (

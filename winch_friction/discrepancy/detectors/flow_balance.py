@@ -35,6 +35,7 @@ STEADY_COMMAND = 1.0  # rad/s^2
 # rad/s^2 up to which a command is followed where there are too few plateaus: faster, what is late is more than a lag
 SLOW_COMMAND = 30.0
 SEGMENT = 5.0  # s
+# of these, and runs that hold them: two runs say little of how runs differ, which is part of every deviation here
 FEWEST_SEGMENTS, FEWEST_RUNS = 20, 3
 FEWEST_TO_FLIP = 6  # segments; of five, all with the same sign, one flip in 32 is as good
 # speed that leakage may cost at 150 bar, 40 degC and full displacement before it is more than ordinary and left to the

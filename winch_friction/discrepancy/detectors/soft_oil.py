@@ -14,10 +14,17 @@ from scipy.ndimage import gaussian_filter1d
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate, Untestable
-from winch_friction.discrepancy.detectors.flow_balance import REFERENCE, sign_flip_p_value
+from winch_friction.discrepancy.detectors.flow_balance import (
+    FEWEST_RUNS,
+    FEWEST_SEGMENTS,
+    REFERENCE,
+    SEGMENT,
+    sign_flip_p_value,
+)
 from winch_friction.discrepancy.preparation.grid import lagged
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import GROUP_CHANNELS
 from winch_friction.physics.fluid import LEAKAGE_LAWS, air_compressed, leakage_per_coefficient, path_of_high_side
 from winch_friction.physics.friction.correction import DECLARED, Correction
 from winch_friction.physics.signals import FloatArray, Run
@@ -29,8 +36,6 @@ COMPENSATION = (0.3, 1.0)  # s, lags with which a pump's command may follow the 
 EDGE = 3.0  # s at either end of a record where lags and filters have not settled
 SHORTEST = 20.0  # s of a record without a gap in its log
 HOLE = 0.5  # s between two samples
-SEGMENT = 5.0  # s
-FEWEST_SEGMENTS = 20
 STEADY_DISPLACEMENT = 0.05  # relative; a motor that swivels follows its command by its displacement, not by its flow
 # with every law of leakage taken out, on 30 data sets without air (drawn cranes, causes of every kind) the estimate was
 # at most 2.7 deviations above nothing and explained 0.2 %; below nothing, where a zero of a transducer takes it, 12
@@ -88,7 +93,7 @@ def free_air(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> FreeAir | 
     """The estimate; None without a command, a hydraulic drive of steady displacement, or enough of a record."""
     sums = _all_sums(runs, prepared)
     numbers = np.unique(sums[:, 0])
-    if len(sums) < FEWEST_SEGMENTS or len(numbers) < 3:
+    if len(sums) < FEWEST_SEGMENTS or len(numbers) < FEWEST_RUNS:
         return None
     estimates = np.array([_estimate(sums[sums[:, 0] == k]) for k in numbers])
     volume, std = _common(estimates)
@@ -129,7 +134,7 @@ def _sums(run: Run, prepared: PreparedRun, number: int, piece: slice) -> FloatAr
     without what the linear rest explains of them.
     """
     driving, count = next(((group.name, group.count) for group in prepared.groups if group.balances), ("", 0))
-    needed = ["motor_speed", *(f"{driving}.{channel}" for channel in ("pressure_a", "pressure_b", "displacement"))]
+    needed = ["motor_speed", *(f"{driving}.{channel}" for channel in GROUP_CHANNELS)]
     if not driving or not all(name in run for name in needed):
         return np.empty((0, 5))
     time = run.time[piece]

@@ -22,9 +22,9 @@ from winch_friction.discrepancy.preparation.grid import (
     uniform,
 )
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import hydraulic_torque
+from winch_friction.physics.winch.crane import driving_group, hydraulic_torque
 
 # -- how the shaft moves
 CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder
@@ -171,9 +171,8 @@ def travel_of(angle: FloatArray, least: float) -> tuple[FloatArray, FloatArray, 
 
 # -- what the motors' signals make
 SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
+# of the crane's largest displacement; a motor that is swung in further would need twenty times the usual pressure
 MIN_DISPLACEMENT_SHARE = 0.05
-BALANCING = ("active", "main")  # the groups that close the balance where they run
-CHANNELS = ("pressure_a", "pressure_b", "displacement")
 
 
 @dataclass(frozen=True)
@@ -239,14 +238,14 @@ def measured_groups(columns: Mapping[str, FloatArray], run: Run, crane: Crane, w
     names = run.groups
     if not names:
         raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
-    balancing = next((name for name in BALANCING if name in names), names[0])
+    balancing = driving_group(names)
     return tuple(_measured(columns, run, crane, name, name == balancing, window) for name in names)
 
 
 def _measured(
     columns: Mapping[str, FloatArray], run: Run, crane: Crane, name: str, balances: bool, window: int
 ) -> GroupSignals:
-    for channel in CHANNELS:
+    for channel in GROUP_CHANNELS:
         if f"{name}.{channel}" not in columns:
             raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
     a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]

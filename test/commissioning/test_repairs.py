@@ -86,7 +86,7 @@ def test_a_size_without_a_sign_takes_it_from_a_channel_that_has_one():
 
 
 def test_the_sign_of_a_heave_is_that_of_all_that_it_tells():
-    found = mistakes._heave_times(-1.0)(
+    found = mistakes._heave_turned(
         view(heave=ONE, heave_acceleration=2.0 * ONE, rates={"heave_velocity": ONE, "shaft_angle": ONE})
     )
     assert (found.heave[0], found.heave_acceleration[0]) == (-1.0, -2.0)

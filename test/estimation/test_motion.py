@@ -62,6 +62,16 @@ def test_the_heave_of_a_step_is_that_of_its_middle(crane, seed):
     assert step.duration == pytest.approx(0.02)
 
 
+def test_the_drives_torque_of_a_step_is_that_of_its_middle(crane, seed):
+    each = FrictionEstimator(crane, seed)
+    each.step(sample(0.0))
+    last, now = accepted(sample(0.0), crane), accepted(sample(0.02), crane)
+    theta = each._parameters.theta(each._filter.phi)
+    more = last._replace(drive=last.drive + 100.0), now._replace(drive=now.drive + 300.0)
+    plain, changed = (each._intervals.between(*ends, sample(0.02), theta, 0.0)[0] for ends in ((last, now), more))
+    assert changed.torque - plain.torque == pytest.approx(200.0)
+
+
 def test_an_encoders_rounding_is_even_within_its_step():
     config = EstimatorConfig(speed_step=0.3)
     within = 0.3 * (np.arange(1000) + 0.5) / 1000.0

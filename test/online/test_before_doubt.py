@@ -8,6 +8,7 @@ import pytest
 from sea import CRANE, SEED, TOPICS
 
 from winch_friction.estimation import FrictionEstimator
+from winch_friction.estimation.dynamics import LOAD
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
@@ -110,5 +111,7 @@ def test_taking_back_keeps_shaft_wire_and_load_and_the_seeds_sigma_again(sea: tu
     assert law.status()["seed"] == "holds"
     assert law.drum_torque == load
     assert law.counts == counts
+    # what friction that is not believed made of the load is as uncertain as a load that begins
+    assert law._filter.P[LOAD, LOAD] == pytest.approx((law.config.load_std * load / CRANE.gear_ratio) ** 2)
     assert law.step(samples[-1]).accepted
     assert law.drum_torque == pytest.approx(load, rel=law.config.load_std)

@@ -149,7 +149,7 @@ def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> I
         yield Mistake("sign", "motor_speed", said, SIGN, _signed)
     if any(view.heave is not None for view in views):
         said = "the sign of heave_velocity is flipped: positive must mean the crane tip rises"
-        yield Mistake("sign", "heave_velocity", said, SIGN, _heave_times(-1.0), -1.0)
+        yield Mistake("sign", "heave_velocity", said, SIGN, _heave_turned, -1.0)
     for channel in crane.drive.channels:
         said = f"the sign of {channel} is flipped: positive must hold the load"
         yield Mistake("sign", channel, said, SIGN, motor_torque_times(-1.0), -1.0)
@@ -199,15 +199,11 @@ def _signed(view: RunView) -> RunView:
     return replace(view, speed=speed, acceleration=np.gradient(speed, view.time))
 
 
-def _heave_times(factor: float) -> Repair:
-    def undo(view: RunView) -> RunView:
-        if view.heave is None:
-            return view
-        rates = {name: (v * factor if name == "heave_velocity" else v) for name, v in view.rates.items()}
-        changed = view.heave_acceleration * factor
-        return replace(view, heave=view.heave * factor, heave_acceleration=changed, rates=rates)
-
-    return undo
+def _heave_turned(view: RunView) -> RunView:
+    if view.heave is None:
+        return view
+    rates = {name: (-v if name == "heave_velocity" else v) for name, v in view.rates.items()}
+    return replace(view, heave=-view.heave, heave_acceleration=-view.heave_acceleration, rates=rates)
 
 
 def _swaps(views: Sequence[RunView], groups: tuple[str, ...]) -> Iterator[Mistake]:

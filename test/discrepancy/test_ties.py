@@ -12,7 +12,9 @@ from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.families import literature
+from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.prepare import prepare
@@ -24,9 +26,10 @@ from winch_friction.discrepancy.ties import (
     _partner,
     company,
     e_D,
-    member_candidate,
+    unsought,
 )
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -41,8 +44,14 @@ def _prepared():
     return [prepare(run, crane, model) for run in runs_with(4060, "paper")], model
 
 
+def _candidate(name, model):
+    """What no search looks for, else the catalogue's, else a term's."""
+    known = {each.name: each for each in (*unsought(model), *all_candidates()) if not each.law_name}
+    return known[name] if name in known else friction_candidate(term_named(name))
+
+
 def _column(member, runs, run, model):
-    candidate = member_candidate(member, model)
+    candidate = _candidate(member.name, model)
     shape = next(each for each in candidate.shapes(runs) if each.label.startswith(member.label))
     columns = candidate.columns(run, shape.values)[run.used]
     return columns[:, np.argmax(np.abs(columns).sum(axis=0))]

@@ -46,12 +46,14 @@ def test_the_five_values_share_the_swing_that_is_told_without_the_first_estimate
     given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=(prepared(np.full(len(TIME), 2.0)),))
     shape = Shape("late", {"ahead": SIZE, "behind": 0.0, "late": SPEED})
     suspect = Slot(delay.DELAY, "late", (0,), origin=(None, shape))
-    (found,) = delay.without_delay(
-        given, [Candidate(delay.DELAY, shapes=lambda _: [])], suspect, None, SimpleNamespace(slots=())
-    )
+    own = Candidate(delay.DELAY, columns=lambda run, values: values["ahead"] * run.gap[:, None], shapes=lambda _: [])
+    (found,) = delay.without_delay(given, [own], suspect, None, SimpleNamespace(slots=()))
     assert asked[0] == ("told", pytest.approx(SIZE))
     assert [mode for mode, _ in asked[1:]] == [MODE] * 4
     assert sorted(value / SIZE for _, value in asked) == pytest.approx(sorted(delay.AROUND))
-    for own in found.shapes([]):  # what a delay of one second would leave
-        np.testing.assert_allclose(found.columns(given.prepared[0], own.values), 1.0)
+    for each in found.shapes([]):  # what a delay of one second would leave
+        np.testing.assert_allclose(found.columns(given.prepared[0], each.values), 1.0)
     assert len(found.shapes([])) == 5
+    # shapes of other sizes are the first derivative's
+    small = found.columns(given.prepared[0], {"ahead": 0.01, "behind": 0.0, "late": SPEED})
+    np.testing.assert_allclose(small, 0.01 * 2.0)

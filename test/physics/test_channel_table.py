@@ -11,7 +11,6 @@ from winch_friction.physics.channels import (
     SLOW_INPUTS,
     channel_of,
     column_unit,
-    columns_of,
     display_unit,
     limits_of,
     plausible,
@@ -72,7 +71,3 @@ def test_the_operating_point_takes_its_channels_by_name():
     assert (at["speed_magnitude"], at["wire_out"], at["oil_temperature"]) == (3.0, 70.0, 40.0)
     with pytest.raises(TypeError, match="wire_length"):
         operating_point(direction=1.0, speed=-3.0, drum_torque=5.0, motor_total=4, wire_length=70.0)
-
-
-def test_columns_of_groups():
-    assert {"time", "passive.pressure_b", "rope_force_simulated"} <= set(columns_of(("active", "passive")))

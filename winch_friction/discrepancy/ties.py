@@ -22,8 +22,6 @@ from winch_friction.discrepancy.candidates.candidate import (
     single_shape,
     spoken_of,
 )
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
-from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.candidates.geometry import hanging
 from winch_friction.discrepancy.candidates.signals import scale_columns
 from winch_friction.discrepancy.engine import FloatArray
@@ -36,7 +34,7 @@ from winch_friction.discrepancy.regressors import build_problem, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import quotient_unit
-from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.friction.term import Parameter
 
@@ -134,16 +132,8 @@ class Partner:
         )
 
 
-def member_candidate(member: Member, model: FrictionModel) -> Candidate:
-    """The candidate whose columns a side of a tie has: the catalogue's, a term's, or one that no search looks for."""
-    own = {each.name: each for each in _unsought(model)}
-    if member.name in own:
-        return own[member.name]
-    known = {each.name: each for each in all_candidates() if not each.law_name}
-    return known[member.name] if member.name in known else friction_candidate(term_named(member.name))
-
-
-def _unsought(model: FrictionModel) -> tuple[Candidate, ...]:
+def unsought(model: FrictionModel) -> tuple[Candidate, ...]:
+    """The sides of ties that no search looks for."""
     return (
         Candidate(
             "displacement_scale", r"e_D\,(\sum_g n_g D_g\,\Delta p_g - D\,\partial T/\partial D)", (e_D,),
@@ -201,7 +191,7 @@ def company(search: Search, found: Finding) -> Company:
     model, slots = search.expansion.model, (found.slot, *found.rivals)
     names = tuple(slot.name for slot in found.rivals)
     runs = [run for run in search.expansion.runs if run.name in search.train]
-    ours = {each.name: each for each in _unsought(model)}
+    ours = {each.name: each for each in unsought(model)}
     pairs = {
         tie.second.name: (k, tie)
         for tie in TIES for k, slot in reversed(list(enumerate(slots)))

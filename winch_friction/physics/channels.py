@@ -126,30 +126,19 @@ def display_unit(column: str) -> str | None:
     return channel.display if channel else None
 
 
-def limits_of(column: str) -> tuple[float, float]:
-    """Smallest and largest value that a sensor can mean, SI; by column or by a group channel's short name."""
-    channel = channel_of(column) or OF_GROUP.get(column)
-    return channel.limits if channel else UNBOUNDED
-
-
-def columns_of(groups: tuple[str, ...]) -> tuple[str, ...]:
-    """Every column that a run with these motor groups may have, in the table's order."""
-    return (*WINCH, *(f"{group}.{name}" for group in groups for name in OF_GROUP))
-
-
 # -- what a sensor can say at all
 LIMITS = {each.name: each.limits for each in CHANNELS}  # channel, without its group -> smallest and largest value, SI
 
 
 def plausible(channel: str, value: float) -> bool:
     """Whether a value of this channel (a run's column or its short name) is a number that a sensor can mean."""
-    lower, upper = limits(channel)
+    lower, upper = limits_of(channel)
     return lower <= value <= upper  # false for NaN too
 
 
 @lru_cache(maxsize=1024)
-def limits(channel: str) -> tuple[float, float]:
-    """Smallest and largest value of a channel, SI."""
+def limits_of(channel: str) -> tuple[float, float]:
+    """Smallest and largest value of a channel (a run's column or its short name), SI."""
     return LIMITS.get(channel.rpartition(".")[2], UNBOUNDED)
 
 

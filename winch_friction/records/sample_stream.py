@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, limits, plausible
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, limits_of, plausible
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
@@ -46,7 +46,7 @@ class InputHold:
     def put(self, column: str, time: float, value: float) -> bool:
         """Take a value with its stamp in s; False when it is implausible or older than what is held, and so ignored."""
         held = self._held.get(column)
-        lower, upper = limits(column)
+        lower, upper = limits_of(column)
         if not (lower <= value <= upper and math.isfinite(time)) or (held and time < held[-1][0]):
             return False
         if held is None:
@@ -143,7 +143,8 @@ def _without_holes(run: Run) -> bool:
     """Whether every channel of a run that is there says something plausible at every row: nothing is held then."""
     names = [name for name in SAMPLE_SCALARS if name in run] + [c for g in run.groups for c in group_columns(g)]
     return all(
-        name in run and bool(((run[name] >= limits(name)[0]) & (run[name] <= limits(name)[1])).all()) for name in names
+        name in run and bool(((run[name] >= limits_of(name)[0]) & (run[name] <= limits_of(name)[1])).all())
+        for name in names
     )
 
 

@@ -5,7 +5,6 @@ standstill is left out.
 """
 
 import re
-from collections.abc import Iterable
 from functools import lru_cache
 from html import escape
 
@@ -136,11 +135,3 @@ def _fenced(text: str) -> str:
 
 def _plain(name: str) -> str:
     return name.replace("\\", "")
-
-
-def law_html(names: Iterable[str]) -> str:
-    """The formulas of several terms, each with its table."""
-    from winch_friction.physics.friction import registered_terms
-
-    known = registered_terms()
-    return "".join(term_html(known[name]) for name in names if name in known)

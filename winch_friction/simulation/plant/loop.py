@@ -38,8 +38,6 @@ from winch_friction.simulation.plant.state import (
     WANTED_SPEED,
 )
 
-_OIL_REFERENCE = 40.0  # degC
-
 
 @compiled
 def walther_viscosity(celsius):

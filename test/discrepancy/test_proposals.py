@@ -163,7 +163,7 @@ def test_a_law_for_its_own_runs_alone_or_that_a_refit_nearly_replaces_is_not_pro
     taken = SimpleNamespace(slots=[None])
     cross = SimpleNamespace(explain=lambda slots: taken, gain=lambda *_: 0.5)
     expansion = SimpleNamespace(layout=SimpleNamespace(slots=()), cross=lambda *_: cross)
-    monkeypatch.setattr(proposals, "prove", lambda *_: SimpleNamespace(holds=True))
+    monkeypatch.setattr(proposals, "unproven", lambda *_: "")
     monkeypatch.setattr(proposals, "left_beside_a_refit", lambda *_: beside_a_refit)
     monkeypatch.setattr(proposals, "declare", lambda *_: declared)
     monkeypatch.setattr(proposals, "in_words", lambda *_: "a law")

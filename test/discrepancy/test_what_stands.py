@@ -12,7 +12,6 @@ from winch_friction.discrepancy.assembly import Trial
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import Finding, Selection
-from winch_friction.discrepancy.proof import Proof
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RNG = np.random.default_rng(0)
@@ -139,7 +138,7 @@ def test_what_shows_just_after_reversals_makes_no_locked_run_worse(monkeypatch, 
 
 @pytest.mark.parametrize(("late", "stands"), [(0.007, False), (0.014, True)])
 def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypatch, late, stands):
-    monkeypatch.setattr(module, "prove", lambda *_: Proof())
+    monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
     search, own = searched(Slot("signal_delay", "", (0,))), side()
     own.runs = (SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02))
@@ -152,7 +151,7 @@ def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypa
 
 @pytest.mark.parametrize(("free", "stands"), [(False, True), (True, False)])
 def test_a_curve_that_leaves_much_of_the_training_runs_does_not_stand_by_the_locked_ones(monkeypatch, free, stands):
-    monkeypatch.setattr(module, "prove", lambda *_: Proof())
+    monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
     search = searched(replace(SLOTS[0], free=free), verdict=Verdict(UNEXPLAINED, "it leaves much", leaves=True))
 

@@ -6,7 +6,6 @@ nobody logged a temperature.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import stdtr
@@ -29,48 +28,38 @@ def read_back(model: FrictionModel) -> FrictionModel:
     return model_from_text(model_to_text(model), f"repaired model of '{model.name}'")
 
 
-@dataclass(frozen=True)
-class Proof:
-    """What the locked runs say of a repaired file; `why` is empty where they bear it out."""
+def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> str:
+    """Why the locked runs do not bear names out; empty where they do.
 
-    why: str = ""
-
-    @property
-    def holds(self) -> bool:
-        """Whether the names stand."""
-        return not self.why
-
-
-def prove(named: str, refit: Side, repaired: Side, rng: np.random.Generator) -> Proof:
-    """Names stand if the locked gap falls below the interval that it had, by an amount that a balance of a winch can
+    Names stand if the locked gap falls below the interval that it had, by an amount that a balance of a winch can
     tell at all and by more than a mere refit of the base takes off, and no locked run gets significantly worse. Both
     sides start from the same given model.
     """
     before, after = repaired.size_before, repaired.size_after
     if not after.value < before.interval[0]:
-        return Proof(f"{named}: the locked gap of {before.value:.3g} does not fall surely (to {after.value:.3g})")
+        return f"{named}: the locked gap of {before.value:.3g} does not fall surely (to {after.value:.3g})"
     # the noise as the names leave it: a late signal in a quick sea looks like noise as long as it is there
     if refit.size_after.value <= repaired.noise_floor:
-        return Proof(f"{named}: a mere refit of the model leaves the locked runs at their noise")
+        return f"{named}: a mere refit of the model leaves the locked runs at their noise"
     removed = float(np.sqrt(before.value**2 - after.value**2))
     if removed < repaired.least_noise:
-        return Proof(f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes")
+        return f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes"
     own = repaired.blocks
     beside = float(np.sqrt(max(refit.size_after.value**2 - after.value**2, 0.0)))
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
-        return Proof(f"{named} {why}")
+        return f"{named} {why}"
     share = left_beside_a_refit(refit, repaired)
     if share > LIMITS.left_beside_a_refit:
         kept = f"{100 * share:.0f} % of the square above the noise that a mere refit leaves"
-        return Proof(f"{named} leaves {kept}: it is not what shows there")
+        return f"{named} leaves {kept}: it is not what shows there"
     chance = chance_of_no_gain(*_common(refit, repaired), rng)
     if chance > LIMITS.proof_p:
-        return Proof(f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})")
+        return f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})"
     worse = worse_runs(repaired, rng)
     if worse:
-        return Proof(f"{named}: the gap of {', '.join(worse)} grows")
-    return Proof() if len(own.y) else Proof(f"{named}: the locked runs have no usable block")
+        return f"{named}: the gap of {', '.join(worse)} grows"
+    return "" if len(own.y) else f"{named}: the locked runs have no usable block"
 
 
 def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:

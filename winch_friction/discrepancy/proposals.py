@@ -20,7 +20,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.proof import fits_only_its_own, left_beside_a_refit, prove
+from winch_friction.discrepancy.proof import fits_only_its_own, left_beside_a_refit, unproven
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -264,7 +264,7 @@ def _proven(
         )
         trial = evaluate(own)
     held = trial.holdout
-    if not prove(declared.term.name, refit.holdout, held, rng).holds or fits_only_its_own(trial.train, held):
+    if unproven(declared.term.name, refit.holdout, held, rng) or fits_only_its_own(trial.train, held):
         return None
     if left_beside_a_refit(refit.holdout, held) > LIMITS.outdone:
         return None  # what the model's own parameters take off the gap, fitted anew, is not the equation's merit

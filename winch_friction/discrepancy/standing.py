@@ -24,7 +24,7 @@ from winch_friction.discrepancy.proof import (
     leaves_most,
     leaves_too_much,
     nobodys,
-    prove,
+    unproven,
     worse_runs,
 )
 from winch_friction.discrepancy.search import Search
@@ -132,9 +132,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
         why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
         return None, f"{names}: {why}, and of the others this takes hardly more"
-    proof = prove(names, refit.holdout, full.holdout, rng)
     why = (
-        proof.why
+        unproven(names, refit.holdout, full.holdout, rng)
         or leaves_too_much(full.holdout)
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)

@@ -23,7 +23,6 @@ from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
 _Known = TypeVar("_Known")
@@ -195,11 +194,7 @@ def widened(given: Given) -> Given:
     model = given.model
     assert model.covariance is not None
     factor = LIMITS.seed_reach / LIMITS.prior_bound
-    return replace(given, model=_with_covariance(model, model.covariance * factor**2))
-
-
-def _with_covariance(model: FrictionModel, covariance: FloatArray) -> FrictionModel:
-    return replace(model, covariance=covariance)
+    return replace(given, model=model.with_covariance(model.covariance * factor**2))
 
 
 def _wide(search: Search) -> CrossFit:

@@ -26,11 +26,11 @@ Values = Mapping[str, float]
 Columns = Callable[[PreparedRun, Values], FloatArray]
 Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
-# where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
-OF_WINCH = ("torque_offset", "direction_asymmetry")
-SOURCE, CUT = "winch-friction gap", "cut at its bound from"
+OF_WINCH = ("torque_offset", "direction_asymmetry")  # torques that grow with the number of motors as well
+SOURCE, CUT = "winch-friction gap", "cut at its bound from"  # what a correction's source says
+# where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow
 MOVING, REVERSALS, ANGLE, FLOW = "moving", "just after reversals", "angle", "flow"
 REFINEMENT = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0, 4.0 / 6.0, 5.0 / 6.0)  # of the way to the neighbour, in the logarithm
 

@@ -26,7 +26,7 @@ MOST_OF_STROKE = 0.5  # of a displacement, that an error may be of it: far more 
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent
 # least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
 SHOWS = 1.5
-FIXED_POINT_STEPS = 3
+FIXED_POINT_STEPS = 3  # the next ones change the predicted pressure by a millibar at most (16 runs of four winches)
 OPTIONAL = ("oil_temperature", "wire_layer", "wire_out")
 
 

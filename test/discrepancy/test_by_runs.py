@@ -61,12 +61,13 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     named, seen = trial(MISSING, FLOOR, FLOOR), []
     runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
     adequacy = SimpleNamespace(
-        of_wire=lambda *_: [],
+        
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda *_: [], of_prepared=lambda *_: [],
         of_swing=lambda *_: SimpleNamespace(met=True),
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
@@ -74,6 +75,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "standing", lambda *_: None)
     monkeypatch.setattr(workflow, "not_one_law", lambda *_: trial(first))
+    monkeypatch.setattr(workflow, "by_other_runs", lambda split, crane, options, trial, rng: (split, trial))
     for step in ("by_surfaces", "by_groups"):
         monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
     monkeypatch.setattr(workflow, "swings", lambda given: False)

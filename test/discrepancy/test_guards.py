@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import outdone as outdone_module
 from winch_friction.discrepancy import standing as standing_module
-from winch_friction.discrepancy import workflow as workflow_module
 from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.assembly import Trial, _concluded
@@ -40,6 +40,7 @@ from winch_friction.discrepancy.engine.selection import (
     with_fewer,
 )
 from winch_friction.discrepancy.next_experiment import supplying
+from winch_friction.discrepancy.outdone import _asked, _closed, outdone
 from winch_friction.discrepancy.proof import (
     _noise,
     adds,
@@ -52,7 +53,6 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.standing import _by_another_signal, _each_proven, _sets, several_leave_more_than_noise
 from winch_friction.discrepancy.ties import Company
-from winch_friction.discrepancy.workflow import _asked, _closed, outdone
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
 
@@ -845,10 +845,10 @@ def test_no_law_is_asked_where_a_curve_leaves_nothing_of_any_run(monkeypatch, tr
     search = _Tried(cross, Selection(cross.explain(()), final, (Finding(own, (), 0.0, 0.5, 1.0),)), Verdict(MISSING))
     sides = [side(3.0 * WAVE + noise(), kept * WAVE + noise(1)) for kept in (train, locked)]
     trial, said = Trial(search, None, *sides), []
-    monkeypatch.setattr(workflow_module, "_closed", lambda *_: True)
-    monkeypatch.setattr(workflow_module, "_asked", lambda *_: said.append("asked") or [])
+    monkeypatch.setattr(outdone_module, "_closed", lambda *_: True)
+    monkeypatch.setattr(outdone_module, "_asked", lambda *_: said.append("asked") or [])
     split = SimpleNamespace(train=())
-    assert workflow_module.not_one_law(split, None, None, trial, np.random.default_rng(0)) is trial
+    assert outdone_module.not_one_law(split, None, None, trial, np.random.default_rng(0)) is trial
     assert bool(said) is asked
 
 

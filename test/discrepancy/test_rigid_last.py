@@ -75,6 +75,7 @@ def answers(monkeypatch):
     monkeypatch.setattr(workflow, "search_runs", search_runs)
     monkeypatch.setattr(workflow, "standing", standing)
     monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(workflow, "by_other_runs", lambda split, crane, options, trial, rng: (split, trial))
     for step in ("by_surfaces", "by_groups"):
         monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
     monkeypatch.setattr(workflow, "as_rigid", lambda given: RIGID)
@@ -111,12 +112,12 @@ def surrounded(monkeypatch, met, told=True):
     split = SimpleNamespace(runs=runs, train=("run_0",), holdout=("run_1",))
     check = SimpleNamespace(met=told)
     adequacy = SimpleNamespace(
-        of_wire=lambda *_: [],
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
         of_swing=lambda crane, left: check,
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
     monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)

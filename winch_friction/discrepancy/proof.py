@@ -44,7 +44,6 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     removed = float(np.sqrt(before.value**2 - after.value**2))
     if removed < repaired.least_noise:
         return f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes"
-    own = repaired.blocks
     beside = float(np.sqrt(max(refit.size_after.value**2 - after.value**2, 0.0)))
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
@@ -56,10 +55,9 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     chance = chance_of_no_gain(*_common(refit, repaired), rng)
     if chance > LIMITS.proof_p:
         return f"{named} takes no more off the locked gap than a refit of the model does (p = {chance:.2g})"
-    worse = worse_runs(repaired, rng)
-    if worse:
+    if worse := worse_runs(repaired, rng):
         return f"{named}: the gap of {', '.join(worse)} grows"
-    return "" if len(own.y) else f"{named}: the locked runs have no usable block"
+    return "" if len(repaired.blocks.y) else f"{named}: the locked runs have no usable block"
 
 
 def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
@@ -98,17 +96,16 @@ def fits_only_its_own(train: Side, locked: Side) -> str:
     own, others = (side.size_after.value / side.floor for side in (train, locked))
     if others <= LIMITS.chosen_on * max(own, 1.0):
         return ""
-    kept, of = locked.size_after.value, train.size_after.value
-    return f"fits the runs that it was chosen on ({of:.3g} left) and not the locked ones ({kept:.3g} left)"
+    left = (f"({side.size_after.value:.3g} left)" for side in (train, locked))
+    return f"fits the runs that it was chosen on {next(left)} and not the locked ones {next(left)}"
 
 
 def left_beside_a_refit(refit: Side, repaired: Side) -> float:
     """Share of the square above the noise that a mere refit leaves of the locked runs, which names or an equation leave
     as well; 0 where what these leave is noise."""
-    floor = repaired.floor
-    if repaired.size_after.value <= LIMITS.several_leave * floor:
+    if repaired.size_after.value <= LIMITS.several_leave * repaired.floor:
         return 0.0
-    return _excess(repaired, floor) / max(_excess(refit, floor), 1e-12)
+    return _excess(repaired, repaired.floor) / max(_excess(refit, repaired.floor), 1e-12)
 
 
 def _excess(side: Side, floor: float) -> float:
@@ -164,8 +161,8 @@ def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.nda
     keys = [list(zip(s.blocks.run.tolist(), s.blocks.position.tolist(), strict=True)) for s in (refit, repaired)]
     places = {key: k for k, key in enumerate(keys[0])}
     pairs = np.array([(places[key], k) for k, key in enumerate(keys[1]) if key in places], int).reshape(-1, 2)
-    own = repaired.blocks
-    return refit.after[pairs[:, 0]], repaired.after[pairs[:, 1]], own.segment[pairs[:, 1]], own.run[pairs[:, 1]]
+    first, second, own = *pairs.T, repaired.blocks
+    return refit.after[first], repaired.after[second], own.segment[second], own.run[second]
 
 
 def rms(values: FloatArray) -> float:
@@ -197,8 +194,8 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
 
 def nothing_compared() -> Side:
     """Of runs that could not even be prepared."""
-    none, size = np.zeros(0), Size(0.0, (0.0, 0.0))
-    blocks = Blocks(none, np.zeros((0, 1)), np.zeros(0, int), np.zeros(0, int), none, {}, none, np.zeros(0, int))
+    none, number, size = np.zeros(0), np.zeros(0, int), Size(0.0, (0.0, 0.0))
+    blocks = Blocks(none, np.zeros((0, 1)), number, number, none, {}, none, number)
     return Side((), blocks, none, none, size, size, 0.0, 0.0, (0.0, 0.0))
 
 

@@ -1,10 +1,6 @@
-"""Locate, name, add, prove: the whole workflow on runs in memory.
+"""Locate, name, add, prove: the whole workflow on runs in memory."""
 
-Last it is asked whether one law of the grammar does by itself what names do: then they do not stand, however well they
-fit.
-"""
-
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -16,34 +12,26 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXP
 from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.catalogue import of_one_group
-from winch_friction.discrepancy.candidates.families import SURFACES, free_members, shapes_over
-from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.grammar import Factor, Scored
-from winch_friction.discrepancy.engine.selection import Selection
+from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Expansion, Given, Split, as_rigid, expand_around, meet, swings
 from winch_friction.discrepancy.next_experiment import of_wire
+from winch_friction.discrepancy.outdone import not_one_law
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
-from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys
-from winch_friction.discrepancy.proposals import Proposal, explained, near_laws, propose
+from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys, rms
+from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
 from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.standing import nameless, refused, standing, unexplained
+from winch_friction.discrepancy.standing import standing
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.runs import apart, without_broken
 
-# -- names that one law outdoes
 
-# signals of an equation by the proposals' word for them
-_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
-
-
+# -- once more, where nothing explains it
 def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
     """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
     it is where that does not end in a proven name that leaves surely less."""
@@ -85,6 +73,37 @@ def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: 
     return _closing(split, crane, options, search, trial, rng)
 
 
+def by_other_runs(
+    split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator
+) -> tuple[Split, Trial]:
+    """What the training runs show and the locked ones show nothing of, once more with some of the former locked: what
+    is not in a run proves no name. Split and trial as they are unless names stand, the former ones among them, that
+    bring these locked runs to their floor and all the others, in which the first ones are now, near theirs.
+    """
+    other = _locking_what_shows(split, trial) if at_the_floor(trial.holdout) else None
+    if other is None:
+        return split, trial
+    proven = _closing(other, crane, options, search_runs(other, trial.search.given, options, rng), trial, rng)
+    named, before = (set(each.search.explanation.names) for each in (proven, trial))
+    return (other, proven) if proven is not trial and before < named else (split, trial)
+
+
+def _locking_what_shows(split: Split, trial: Trial) -> Split | None:
+    """Every second of the training runs that show something, most first, locked in place of as many of the others; None
+    where fewer than two do."""
+    side = trial.train
+    left = {run.name: rms(side.after[side.blocks.run == k]) / side.floor for k, run in enumerate(side.runs)}
+    most_first = sorted(left, key=lambda name: -left[name])
+    showing = [name for name in most_first if left[name] > LIMITS.far_off_the_floor]
+    if len(showing) < 2:
+        return None
+    locked = set(showing[1::2][: len(split.holdout)])
+    locked |= set(split.holdout[: len(split.holdout) - len(locked)])
+    names = [run.name for run in split.runs]
+    train, holdout = (tuple(name for name in names if (name in locked) is own) for own in (False, True))
+    return replace(split, train=train, holdout=holdout)
+
+
 def _closing(
     split: Split, crane: Crane, options: GapOptions, search: Search, trial: Trial, rng: np.random.Generator
 ) -> Trial:
@@ -92,118 +111,6 @@ def _closing(
     other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
     return other if named and at_the_floor(other.holdout) and not far_off(other.train) else trial
-
-
-def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """The trial without its names where one law that is none of theirs does by itself what they do.
-
-    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
-    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves, and
-    where it leaves nothing that is anybody's of any run none.
-    """
-    search = trial.search
-    slots = on_their_own(search.explanation.slots)
-    left = search.cross.excess(search.explanation)
-    causes = {slot.name for slot in slots}
-    asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
-    asked = asked and not (len(causes) == 1 and nobodys(trial.train) and nobodys(trial.holdout))
-    closed = bool(asked) and len(causes) == 1 and _closed(trial, rng)
-    near = partial(near_laws, search, split.train, rng)
-    laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
-    why = outdone(laws, search.cross, search.selection, closed)
-    if not why:
-        return trial
-    refit = tried(split, crane, options, nameless(search), rng)
-    return replace(refit, search=unexplained(refit.search, why, rng))
-
-
-def _closed(trial: Trial, rng: np.random.Generator) -> bool:
-    """Whether names leave the locked runs at their floor, and of the training runs no more than the verdict allows.
-
-    A few locked runs do not vouch for what the many others refuse: a name whose company was dropped may leave in these
-    a third of the gap, for which it would never have been given by itself.
-    """
-    if not at_the_floor(trial.holdout):
-        return False
-    return not refused(trial, rng)
-
-
-def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:
-    """Why names do not stand beside a law of the grammar; empty where they do.
-
-    Several names, and a curve, fall where one law does as much; one name of a given law, or one that has `closed` the
-    locked gap down to its floor, only where the other takes half of what it leaves. A law that a name's own could be
-    speaks for it, if the first of the `laws` does not take half of what that one leaves.
-    """
-    named = selection.final
-    slots = on_their_own(named.slots)
-    if not laws or not slots:
-        return ""
-    law = laws[0]
-    one = len({slot.name for slot in slots}) == 1
-    given = one and not any(slot.free for slot in slots)
-    left, left_by_law = _above_floor(cross, named.loss), _above_floor(cross, law.loss)
-    if left_by_law >= LIMITS.outdone * left if given or closed else left_by_law > left:
-        return ""
-    if one:
-        rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
-        many = [slot for slot in rivals if _has_laws(slot, cross)]
-        own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
-        if own and left_by_law >= LIMITS.outdone * _above_floor(cross, min(own)):
-            return ""
-    names = " and ".join(dict.fromkeys(slot.name for slot in slots))
-    together = "" if one else "together "
-    return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
-
-
-def _above_floor(cross: CrossFit, loss: float) -> float:
-    """What a loss leaves above the noise; of nothing, nobody takes half."""
-    return max(loss - cross.floor, 0.0)
-
-
-def _asked(
-    near: Callable[[Sequence[str]], list[Scored]], cross: CrossFit, named: Explanation, closed: bool
-) -> list[Scored]:
-    """The laws that a set of names is held against, `near` gives them without some kinds of factors."""
-    laws = near(())
-    left = LIMITS.surely_outdone * _above_floor(cross, named.loss)
-    surely = laws and _above_floor(cross, laws[0].loss) < left
-    return near(PICKING) if closed and laws and not surely else laws
-
-
-def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
-    """Whether a law may be what a name's own term or correction draws: of signals that it reads, of their present
-    value, acting as it acts and bent the way in which its cause's curves may bend.
-
-    Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
-    """
-    law, candidate = scored.law, slot.origin[0]
-    own = {_SAME.get(name, name) for name in candidate.signals} if law.opposing == candidate.opposing else set()
-    unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
-    bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
-    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent
-
-
-def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
-    """Whether a factor rises or falls as a cause's curves over its signal may; of what the catalogue draws no curve of
-    there is nothing to say, nor of two factors that a negative amount belongs to.
-    """
-    names = (name for name, word in _SAME.items() if word == factor.signal)
-    shapes = set().union(*(shapes_over(cause, name) for name in (factor.signal, *names)))
-    turned = scored.amount < 0.0 and (len(scored.law.factors) == 1 or factor.kind == "about")
-    rises = (factor.kind in RISING) != turned
-    if not shapes or factor.kind not in (*RISING, *FALLING):
-        return True
-    if shapes == {"convex_rising"} and factor.kind == "root" and rises:
-        return False
-    return shapes != {"falling"} if rises else "falling" in shapes
-
-
-def _has_laws(slot: Slot, cross: CrossFit) -> bool:
-    """Whether its cause is known under more laws than one: viscous friction of another power is no viscous friction; an
-    error of signals or load has any."""
-    laws = {each.law for each in cross.problem.slots if each.name == slot.name}
-    return slot.free or slot.origin[0].term is None or len(laws) > 1
 
 
 # -- the order of the steps
@@ -244,6 +151,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if trial.search.verdict.kind == UNEXPLAINED and search.verdict.untold:
         names = adequacy.of_names(search.verdict.refused)
         return insufficient([*checks, names], notes, crane, model, (given, split))
+    if trial.search.verdict.kind != NOTHING and not options.candidates:
+        split, trial = by_other_runs(split, crane, options, trial, rng)
     if trial.search.verdict.kind == UNEXPLAINED and not options.candidates:
         trial = by_groups(split, crane, options, trial, rng)
     if trial.search.verdict.kind != NOTHING and not options.candidates:

@@ -1,0 +1,137 @@
+"""Names that do not stand beside one law of the grammar, which does by itself what they do, however well they fit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from winch_friction.discrepancy.adequacy import Split
+from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy.assembly import Trial, tried
+from winch_friction.discrepancy.candidates.families import shapes_over
+from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.grammar import Factor, Scored
+from winch_friction.discrepancy.engine.selection import Selection
+from winch_friction.discrepancy.proof import at_the_floor, nobodys
+from winch_friction.discrepancy.proposals import near_laws
+from winch_friction.discrepancy.standing import nameless, refused, unexplained
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
+from winch_friction.physics.winch import Crane
+
+# signals of an equation by the proposals' word for them
+_SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
+
+
+def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
+    """The trial without its names where one law that is none of theirs does by itself what they do.
+
+    Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
+    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves, and
+    where it leaves nothing that is anybody's of any run none.
+    """
+    search = trial.search
+    slots = on_their_own(search.explanation.slots)
+    left = search.cross.excess(search.explanation)
+    causes = {slot.name for slot in slots}
+    asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
+    asked = asked and not (len(causes) == 1 and nobodys(trial.train) and nobodys(trial.holdout))
+    closed = bool(asked) and len(causes) == 1 and _closed(trial, rng)
+    near = partial(near_laws, search, split.train, rng)
+    laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
+    why = outdone(laws, search.cross, search.selection, closed)
+    if not why:
+        return trial
+    refit = tried(split, crane, options, nameless(search), rng)
+    return replace(refit, search=unexplained(refit.search, why, rng))
+
+
+def _closed(trial: Trial, rng: np.random.Generator) -> bool:
+    """Whether names leave the locked runs at their floor, and of the training runs no more than the verdict allows.
+
+    A few locked runs do not vouch for what the many others refuse: a name whose company was dropped may leave in these
+    a third of the gap, for which it would never have been given by itself.
+    """
+    if not at_the_floor(trial.holdout):
+        return False
+    return not refused(trial, rng)
+
+
+def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:
+    """Why names do not stand beside a law of the grammar; empty where they do.
+
+    Several names, and a curve, fall where one law does as much; one name of a given law, or one that has `closed` the
+    locked gap down to its floor, only where the other takes half of what it leaves. A law that a name's own could be
+    speaks for it, if the first of the `laws` does not take half of what that one leaves.
+    """
+    named = selection.final
+    slots = on_their_own(named.slots)
+    if not laws or not slots:
+        return ""
+    law = laws[0]
+    one = len({slot.name for slot in slots}) == 1
+    given = one and not any(slot.free for slot in slots)
+    left, left_by_law = _above_floor(cross, named.loss), _above_floor(cross, law.loss)
+    if left_by_law >= LIMITS.outdone * left if given or closed else left_by_law > left:
+        return ""
+    if one:
+        rivals = [slot for found in selection.found for slot in (found.slot, *found.rivals)]
+        many = [slot for slot in rivals if _has_laws(slot, cross)]
+        own = [each.loss for each in laws if any(_could_be(each, slot, closed) for slot in many)]
+        if own and left_by_law >= LIMITS.outdone * _above_floor(cross, min(own)):
+            return ""
+    names = " and ".join(dict.fromkeys(slot.name for slot in slots))
+    together = "" if one else "together "
+    return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
+
+
+def _above_floor(cross: CrossFit, loss: float) -> float:
+    """What a loss leaves above the noise; of nothing, nobody takes half."""
+    return max(loss - cross.floor, 0.0)
+
+
+def _asked(
+    near: Callable[[Sequence[str]], list[Scored]], cross: CrossFit, named: Explanation, closed: bool
+) -> list[Scored]:
+    """The laws that a set of names is held against, `near` gives them without some kinds of factors."""
+    laws = near(())
+    left = LIMITS.surely_outdone * _above_floor(cross, named.loss)
+    surely = laws and _above_floor(cross, laws[0].loss) < left
+    return near(PICKING) if closed and laws and not surely else laws
+
+
+def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
+    """Whether a law may be what a name's own term or correction draws: of signals that it reads, of their present
+    value, acting as it acts and bent the way in which its cause's curves may bend.
+
+    Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
+    """
+    law, candidate = scored.law, slot.origin[0]
+    own = {_SAME.get(name, name) for name in candidate.signals} if law.opposing == candidate.opposing else set()
+    unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
+    bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
+    return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent
+
+
+def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
+    """Whether a factor rises or falls as a cause's curves over its signal may; of what the catalogue draws no curve of
+    there is nothing to say, nor of two factors that a negative amount belongs to.
+    """
+    names = (name for name, word in _SAME.items() if word == factor.signal)
+    shapes = set().union(*(shapes_over(cause, name) for name in (factor.signal, *names)))
+    turned = scored.amount < 0.0 and (len(scored.law.factors) == 1 or factor.kind == "about")
+    rises = (factor.kind in RISING) != turned
+    if not shapes or factor.kind not in (*RISING, *FALLING):
+        return True
+    if shapes == {"convex_rising"} and factor.kind == "root" and rises:
+        return False
+    return shapes != {"falling"} if rises else "falling" in shapes
+
+
+def _has_laws(slot: Slot, cross: CrossFit) -> bool:
+    """Whether its cause is known under more laws than one: viscous friction of another power is no viscous friction; an
+    error of signals or load has any."""
+    laws = {each.law for each in cross.problem.slots if each.name == slot.name}
+    return slot.free or slot.origin[0].term is None or len(laws) > 1

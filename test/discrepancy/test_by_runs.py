@@ -61,7 +61,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     named, seen = trial(MISSING, FLOOR, FLOOR), []
     runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
     adequacy = SimpleNamespace(
-        
+
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda *_: [], of_prepared=lambda *_: [],
         of_swing=lambda *_: SimpleNamespace(met=True),

@@ -1,11 +1,14 @@
 """The workflow on data of the campaign's generator: what is hidden is named, and nothing is named where nothing is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from gap_rig import gap_of, names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.workflow import find_gap
+from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text
 
@@ -97,3 +100,10 @@ def test_regions_say_where():
     assert {first.where.split()[-1], second.where.split()[-1]} == {"hoisting", "lowering"}
     assert first.mean_residual * second.mean_residual < 0.0
     assert first.share_of_gap + second.share_of_gap > 0.9
+
+
+def test_a_file_that_is_written_states_the_gear_ratio():
+    """A law over the load was written for a ratio of 1 where the given model did not state one: 62 times too large."""
+    crane, model = load_crane("crane_150t"), replace(load_model("a6vm215_crane2"), constants={})
+    result = find_gap([Run("short", {"time": np.arange(3.0), "motor_speed": np.ones(3)})], crane, model)
+    assert result.model.constants["gear_ratio"] == crane.gear_ratio

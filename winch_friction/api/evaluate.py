@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.friction.model import FrictionModel, completed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 
@@ -23,7 +23,7 @@ def torque(model: FrictionModel, run: Run, crane: Crane, *, load: float | None =
     >>> wf.torque(wf.load_model("emps_symmetric"), run, wf.load_crane("emps"), load=0.0).round(3)
     array([ 12803.507, -12809.837])
     """
-    at, time = _points(model, run, crane, load)
+    model, at, time = _points(model, run, crane, load)
     return np.array(np.broadcast_to(model.torque(at), (len(time),)), float)
 
 
@@ -37,7 +37,7 @@ def contributions(model: FrictionModel, run: Run, crane: Crane, *, load: float |
     """
     from winch_friction.physics.frames import library
 
-    at, time = _points(model, run, crane, load)
+    model, at, time = _points(model, run, crane, load)
     parts = model.contributions(at)
     frame = library("pandas", "desk").DataFrame(parts, index=time)
     frame.index.name = "time"
@@ -54,7 +54,8 @@ def jacobian(model: FrictionModel, run: Run, crane: Crane, *, load: float | None
     array([[  1.  ,  62.83,   1.  ],
            [ -1.  , -62.83,   1.  ]])
     """
-    return model.jacobian(_points(model, run, crane, load)[0])
+    model, at, _ = _points(model, run, crane, load)
+    return model.jacobian(at)
 
 
 def friction_curve(
@@ -88,8 +89,8 @@ def friction_curve(
     return frame
 
 
-def _points(model: FrictionModel, run: Run, crane: Crane, load: float | None) -> tuple[Any, FloatArray]:
-    """Operating points and times of the run without the errors that the model knows of."""
+def _points(model: FrictionModel, run: Run, crane: Crane, load: float | None) -> tuple[FrictionModel, Any, FloatArray]:
+    """The model as it is on this crane, operating points and times of the run without the errors that it knows of."""
     from winch_friction.physics.corrections import corrected
     from winch_friction.physics.winch.crane import run_drum_torque
     from winch_friction.physics.winch.operating_point import run_operating_points
@@ -98,4 +99,4 @@ def _points(model: FrictionModel, run: Run, crane: Crane, load: float | None) ->
         raise InputError(f"{run.name}: no column 'hook_load'; give load= in kg, the whole hanging mass")
     right, machine = corrected(run, crane, model)
     drum_torque = run_drum_torque(right, machine, float("nan") if load is None else float(load))
-    return run_operating_points(right, machine, drum_torque=drum_torque), right.time
+    return completed(model, crane), run_operating_points(right, machine, drum_torque=drum_torque), right.time

@@ -86,7 +86,7 @@ def read_inputs(
 
 def machine_of(crane: str, model: str, paths: Sequence[Path], problems: Problems) -> tuple[Any, Any]:
     """The crane and the model (None without a name); what is wrong with them, or speaks against both, is gathered."""
-    from winch_friction.physics.friction.model import refuse_other_crane
+    from winch_friction.physics.friction.model import completed, refuse_other_crane
     from winch_friction.records.model_file import load_model
 
     seed, winch = None, None
@@ -98,6 +98,7 @@ def machine_of(crane: str, model: str, paths: Sequence[Path], problems: Problems
     with problems:
         if seed is not None and winch is not None:
             refuse_other_crane(seed, winch)
+            seed = completed(seed, winch)
     return winch, seed
 
 

@@ -10,7 +10,7 @@ from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.model import refuse_other_crane
+from winch_friction.physics.friction.model import completed, refuse_other_crane
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, at_its_speeds
@@ -78,8 +78,8 @@ class FeedforwardCompensator:
     ) -> None:  # fmt: skip
         config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
         check_gains(config.gains)
-        self.crane, self.seed, self.config = crane, seed_model, config
-        self._seed_law = FrictionLaw(seed_model, config.gains)
+        self.crane, self.seed, self.config = crane, completed(seed_model, crane), config
+        self._seed_law = FrictionLaw(self.seed, config.gains)
         self._law = self._seed_law
         self._since = since  # s, the latest sample's stamp
         self._correct = SampleCorrector(crane, seed_model, since=since)
@@ -144,7 +144,7 @@ class FeedforwardCompensator:
         """
         try:
             correct = SampleCorrector(self.crane, model, since=self._since)
-            law = FrictionLaw(model, self.config.gains)
+            law = FrictionLaw(completed(model, self.crane), self.config.gains)
             refuse_other_crane(model, self.crane)
             refuse_outside_seed(model, self.seed, self.config.seed_range)
         except InputError:

@@ -26,6 +26,7 @@ from winch_friction.discrepancy.search import Search, search_runs
 from winch_friction.discrepancy.standing import standing
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.model import completed
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.runs import apart, without_broken
@@ -120,7 +121,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     Raises `InputError` for runs that lack what the torque balance needs, for two runs of one name and for no run at
     all.
     """
-    options = options or GapOptions()
+    options, model = options or GapOptions(), completed(model, crane)
     refuse(runs, options.holdout, options.seed)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))

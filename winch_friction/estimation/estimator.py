@@ -22,7 +22,7 @@ from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.model import with_stated_std
+from winch_friction.physics.friction.model import completed, with_stated_std
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
@@ -75,7 +75,7 @@ class FrictionEstimator:
         self._correct = SampleCorrector(crane, seed_model, since=since)
         self.crane = self._correct.crane
         self.config = at_its_size(config or EstimatorConfig(), self.crane)
-        self.seed, self.assumed = with_stated_std(seed_model, self.config.default_std)
+        self.seed, self.assumed = with_stated_std(completed(seed_model, crane), self.config.default_std)
         self._ranges, self._needed = ChannelRanges(self.crane), needed(self.seed.terms)
         self._enabled = True
         self.reset()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.friction.model import FrictionModel, completed
 from winch_friction.physics.signals import FloatArray, GroupSample, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.assembly import (
@@ -61,6 +61,7 @@ class Simulator:
         plant: PlantFile | None = None,
     ) -> None:
         plant = plant or load_plant(scenario.plant)
+        model = completed(model, crane)
         self.scenario, self.crane, self.model, self.seed = scenario, crane, model, seed
         self.period = scenario.control_period
         self.periods = int(round(scenario.duration / self.period))

@@ -240,6 +240,14 @@ def refuse_other_crane(model: FrictionModel, crane: Crane) -> None:
         )
 
 
+def completed(model: FrictionModel, crane: Crane) -> FrictionModel:
+    """The model with the constants of the machine that its file does not state, from the crane that it serves: a term
+    that reads the gear ratio would else be taken at a ratio of 1."""
+    own = {"gear_ratio": crane.gear_ratio, "max_displacement": crane.max_displacement}
+    missing = {name: value for name, value in own.items() if value > 0.0 and name not in model.constants}
+    return replace(model, constants={**model.constants, **missing}) if missing else model
+
+
 def refuse_other_motor(motor: FrictionModel, crane: Crane) -> None:
     """`refuse_other_crane` for the motors alone, which may have served another winch: what counts is their size."""
     own = {name: value for name, value in motor.constants.items() if name == "max_displacement"}

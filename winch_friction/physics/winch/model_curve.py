@@ -9,7 +9,7 @@ from winch_friction.physics.channels import BAR, FASTEST_ROPE, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected_crane
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.compiled import group_point, operating_point
-from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.friction.model import FrictionModel, completed
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
@@ -65,7 +65,7 @@ def model_curve(
     `speed` in rad/s, default hoisting, 5 ... 2000 rpm or as far as the crane can run (`usual_speeds`); the group that
     drives is `main`, or the crane's first. Raises `InputError` for a load, setting or speed that cannot be.
     """
-    crane = corrected_crane(crane, model.corrections)
+    model, crane = completed(model, crane), corrected_crane(crane, model.corrections)
     setting = crane.max_displacement if displacement is None else float(displacement)
     if load < 0.0 or not np.isfinite(load):
         raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")

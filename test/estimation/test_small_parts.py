@@ -45,9 +45,11 @@ def test_an_electric_drive_is_at_its_limit_braking_as_well_as_driving(way):
 def test_errors_of_displacement_and_pressure_add_up_and_scale_the_torque_that_is_measured():
     """T = n D dp: either gain makes the same of it; an offset of the port is a torque of its own."""
     errors = SensorErrors(CRANE, SEED, EstimatorConfig(pressure_offset_std=1e5, pressure_scale_std=0.02))
-    assert errors.std[0] == pytest.approx(math.hypot(CONFIG.displacement_scale_std, 0.02))
-    assert errors.std[1] == 1e5
-    by_gain, by_offset = errors.by(sample(), 700.0)
+    assert errors.std[0] == CONFIG.speed_delay_std
+    assert errors.std[1] == pytest.approx(math.hypot(CONFIG.displacement_scale_std, 0.02))
+    assert errors.std[2] == 1e5
+    by_lateness, by_gain, by_offset = errors.by(sample(), 700.0, 40.0)
+    assert by_lateness == -40.0
     assert by_gain == -700.0
     assert by_offset == pytest.approx(-CRANE.motor_count("active") * CRANE.max_displacement)
 

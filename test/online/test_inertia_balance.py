@@ -111,6 +111,17 @@ def test_a_clock_that_is_set_makes_no_gain_true_again(by):
     assert "displacement or pressures" in service.contradiction
 
 
+def test_what_the_filter_rejects_for_it_tells_the_gain_all_the_same():
+    """It looked at what the filter took in alone: the reversals lacked, and 20 % were 26 %, said after 47 s."""
+    service, first = EstimatorService(CRANE, SEED, TOPICS), math.nan
+    for sample in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)):
+        service.take_row(sample)
+        if service.contradiction and math.isnan(first):
+            first = sample.time
+    assert first < CHANGE_AT + 35.0
+    assert service.gain_change == pytest.approx(-0.2, abs=0.02)
+
+
 @pytest.mark.parametrize("friction", [same, stepped(1.3), stepped(0.7), lambda time: 1.0 - 0.3 * time / SECONDS])
 def test_friction_that_changes_is_no_gain(friction):
     first, largest, _ = said(sailed(friction, same))

@@ -22,6 +22,10 @@ class EstimatorConfig:
 
     # noise of the inputs and of the measurement
     speed_noise: float = option(0.02, lower=0.0, upper=50.0, unit="rad/s", doc="white noise of the measured speed")
+    speed_delay: float = option(
+        0.0, lower=0.0, upper=0.5, unit="s",
+        doc="how late the measured speed is: half a scan where a PLC takes the difference of two encoder angles",
+    )  # fmt: skip
     speed_step: float = option(2.9 * RPM, lower=0.0, upper=50.0, unit="rad/s", doc="quantisation of the speed")
     pressure_noise: float = option(0.3 * BAR, lower=0.0, upper=50 * BAR, unit="Pa", doc="noise of one pressure")
     displacement_noise: float = option(0.0005, lower=0.0, upper=0.2, doc="relative noise of a displacement")
@@ -33,6 +37,9 @@ class EstimatorConfig:
     pressure_scale_std: float = option(0.0, lower=0.0, upper=0.2, doc="relative error of the pressures")
     pressure_offset_std: float = option(
         0.0, lower=0.0, upper=50 * BAR, unit="Pa", doc="offset between the two lines of the driving group"
+    )
+    speed_delay_std: float = option(
+        0.15, lower=0.0, upper=2.0, doc="what speed_delay may be off by, as a share of the time between two samples"
     )
     # what the model does not know
     disturbance_std: float = option(10.0, lower=0.0, upper=1e5, unit="N*m", doc="torque that no term explains")

@@ -136,7 +136,7 @@ class FrictionEstimator:
         self._friction.advance(point, theta, len(sample.groups), dt)
         if not reason:
             self._conflict.step(self._filter, dt)
-        self._accept(now, dt, reason)
+        self._accept(now.after(last), dt, reason)
         if not step.stick:
             self._judge(innovation * innovation / variance, dt)
         return self._estimate(sample, True, innovation, variance, step.friction)

@@ -15,6 +15,10 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 # the friction of a step is taken at its middle; between samples that are far apart its mean is anywhere within plus and
 # minus what it changes by, whichever way drive and shaft went from one to the other: of that change squared
 WITHIN = 1.0 / 3.0
+# its drive torque is taken on a straight line from one sample to the next; where it bends the mean is anywhere within
+# plus and minus half of the second difference, of which squared: a pump's pressure swings against the oil and the load
+# faster than a slow PLC looks
+BENT = 1.0 / 12.0
 
 Point = tuple[float, ...]  # an operating point in the order of `compiled.layout`
 
@@ -94,17 +98,18 @@ class Intervals:
         measured_load = self._load.shaft_torque(now.layer)
         point = self.point(sample, 0.5 * (last.speed + now.speed), last.speed, measured_load, extra)
         friction, gradient = self._friction.at(point, theta, len(sample.groups))
-        drive = 0.5 * (last.drive + now.drive)
+        drive, heave = last.means(now, config.speed_delay)
         stick = min(abs(last.speed), abs(now.speed)) < config.stick_speed
         unknown = 0.0
         if stick:
             unknown = (STICK_IGNORANCE * self._friction.magnitude(point, theta, len(sample.groups))) ** 2
         elif abs(now.speed - last.speed) > config.stick_speed:
             unknown = WITHIN * self._change(point, last.speed, now.speed, theta, len(sample.groups)) ** 2
+        unknown += BENT * last.bend(now) ** 2
+        errors = self._errors.by(sample, drive, now.drive - last.drive)
         step = Step(
-            drive - measured_load, torque_variance(sample, self._crane, config), unknown, friction, gradient,
-            self._errors.by(sample, drive), self._wire(sample, extra, duration), 0.5 * (last.heave + now.heave),
-            duration, stick, self._load.doubted,
+            drive - measured_load, torque_variance(sample, self._crane, config), unknown, friction, gradient, errors,
+            self._wire(sample, extra, duration), heave, duration, stick, self._load.doubted,
         )  # fmt: skip
         return step, point
 

@@ -11,15 +11,42 @@ from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, driving_group, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
+# steps of lengths within this factor of each other tell how a torque bends from one to the next
+ALIKE_STEPS = 2.0
+
 
 class Accepted(NamedTuple):
-    """Time s, drive torque N m, measured speed rad/s, heave velocity m/s, wire layer (NaN: not measured)."""
+    """Time s, drive torque N m, measured speed rad/s, heave velocity m/s, wire layer (NaN: not measured); by how much
+    the drive torque changed on the way here, N m, and in how many s (NaN: nothing came before)."""
 
     time: float
     drive: float
     speed: float
     heave: float
     layer: float
+    change: float = math.nan
+    duration: float = math.nan
+
+    def after(self, last: "Accepted") -> "Accepted":
+        """The same, with what it was accepted after."""
+        return self._replace(change=self.drive - last.drive, duration=self.time - last.time)
+
+    def bend(self, now: "Accepted") -> float:
+        """The second difference of the drive torque up to the next sample, N m; 0 where the steps are too unlike."""
+        ratio = (now.time - self.time) / self.duration  # NaN where nothing came before
+        if not 1.0 / ALIKE_STEPS <= ratio <= ALIKE_STEPS:
+            return 0.0
+        return now.drive - self.drive - ratio * self.change
+
+    def means(self, now: "Accepted", delay: float) -> tuple[float, float]:
+        """Mean drive torque, N m, and heave velocity, m/s, from `delay` s before this sample to `delay` s before the
+        next one, on straight lines: what acted while a speed that is late by so much went from one to the other."""
+        drive, heave = 0.5 * (self.drive + now.drive), 0.5 * (self.heave + now.heave)
+        if delay == 0.0:
+            return drive, heave
+        share = min(1.0, delay / (now.time - self.time))  # a longer one would be guessed from a single step
+        drive -= share * (now.drive - self.drive - 0.5 * share * self.bend(now))
+        return drive, heave - share * (now.heave - self.heave)
 
 
 def accepted(sample: Sample, crane: Crane) -> Accepted:
@@ -86,8 +113,9 @@ class SensorErrors:
 
     The drive torque is n D dp, so that a relative error of the displacements and one of the pressures are the same
     thing, which friction cannot be told from; an offset between the two pressure lines of the driving group is a
-    constant torque. `std`: standard deviations of what there is, relative and Pa: from the seed's corrections where it
-    has them, else from the configuration.
+    constant torque. A speed that is late sees the torque of before, by a share of what it changes by from one sample to
+    the next. `std`: standard deviations of what there is, relative, Pa and of a sample: from the seed's corrections
+    where it has them, else from the configuration.
     """
 
     def __init__(self, crane: Crane, seed: FrictionModel, config: EstimatorConfig) -> None:
@@ -103,15 +131,19 @@ class SensorErrors:
         )
         offset = known.get("pressure_offset", config.pressure_offset_std)
         self._scale, self._offset = (scale, offset) if crane.drive.hydraulic else (0.0, 0.0)
-        self.std: Sequence[float] = tuple(each for each in (self._scale, self._offset) if each > 0.0)
+        self._late = config.speed_delay_std
+        self.std: Sequence[float] = tuple(each for each in (self._late, self._scale, self._offset) if each > 0.0)
 
-    def by(self, sample: Sample, drive: float) -> Sequence[float]:
-        """Derivatives of the true drive torque by the errors, where `drive` N m is measured."""
-        if not self._offset:
-            return (-drive,) if self._scale else ()
-        name = driving_group(tuple(sample.groups))
-        by_offset = -self._crane.motor_count(name) * sample.groups[name].displacement
-        return (-drive, by_offset) if self._scale else (by_offset,)
+    def by(self, sample: Sample, drive: float, change: float = 0.0) -> Sequence[float]:
+        """Derivatives of the true drive torque by the errors, where `drive` N m is measured, `change` N m more than at
+        the sample before."""
+        found: tuple[float, ...] = (-change,) if self._late else ()
+        if self._scale:
+            found += (-drive,)
+        if self._offset:
+            name = driving_group(tuple(sample.groups))
+            found += (-self._crane.motor_count(name) * sample.groups[name].displacement,)
+        return found
 
 
 class HangingLoad:

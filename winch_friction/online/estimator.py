@@ -76,16 +76,19 @@ class EstimatorService:
             *standing,
         )
         self.last = self.law.step(sample)
-        self._doubt(sample, self.last.accepted)
+        self._doubt(sample, self.last)
         return self.last
 
-    def _doubt(self, sample: Sample, accepted: bool) -> None:
-        """A load that is far off is seen without the filter, which would take in none of its samples."""
+    def _doubt(self, sample: Sample, learned: Estimate) -> None:
+        """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain
+        that changed, which makes the filter reject what tells it."""
         passed = span(self._seen, sample.time)
         lost = self._load.contradiction(sample, passed) or self._still.contradiction(sample, passed)
         self._seen = sample.time
-        if accepted:
+        gain = ""
+        if learned.accepted or math.isfinite(learned.innovation):
             gain = self._gain.contradiction(sample)
+        if learned.accepted:
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
         if (lost or self._slow) and not self.contradiction:
             self.law.take_back(self._before.believed.content)

@@ -17,7 +17,7 @@ from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drum
-from winch_friction.records.checkpoint import SCHEMA, read_checkpoint, set_aside, write_checkpoint
+from winch_friction.records.checkpoint import LARGEST, SCHEMA, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 
@@ -210,3 +210,12 @@ def test_a_pipe_is_no_checkpoint_and_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "pipe.json")
     with pytest.raises(InputError, match="nor a file at all"):
         read_checkpoint(tmp_path / "pipe.json")
+
+
+def test_a_recording_given_as_the_checkpoint_is_not_read_into_memory(tmp_path):
+    """3 GB were: a MemoryError and its traceback on a small computer."""
+    path = tmp_path / "log.mcap"
+    with path.open("wb") as stream:
+        stream.truncate(LARGEST + 1)  # no disk is taken
+    with pytest.raises(InputError, match="log.mcap: not a checkpoint: 16 MB; name another file"):
+        read_checkpoint(path)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from winch_friction.compensation import CompensatorConfig
 from winch_friction.physics.errors import InputError
 from winch_friction.records.input_mapping import bag_options_of
 from winch_friction.replay.settings import settings_from_file
@@ -45,3 +46,11 @@ def test_a_parameter_file_of_one_node_will_do(tmp_path, node):
     params = tmp_path / "params.yaml"
     params.write_text(f"{node}:\n  ros__parameters: {{max_age: 0.3}}\n")
     assert settings_from_file(params)
+
+
+def test_age_limits_that_a_file_does_not_name_are_the_nodes(tmp_path):
+    """A node keeps its defaults beside the one that is set; in a replay the others fell to max_age."""
+    params = tmp_path / "params.yaml"
+    params.write_text("compensator: {ros__parameters: {max_ages: {hook_load: 3.0}}}\n")
+    ages = settings_from_file(params).phases[0].config.max_ages
+    assert ages == {**CompensatorConfig().max_ages, "hook_load": 3.0}

@@ -29,6 +29,7 @@ from winch_friction.records.model_file import load_model
 FORWARD_JUMP = 5.0  # s; a simulated clock that leaps further was restarted or skipped a piece of the recording
 OK, WARN, ERROR = 0, 1, 2
 URGENT_PERIOD = 0.2  # s; how often it is looked whether something must be said before the next report is due
+SELDOM_SAID = 1.0  # s between two lines of the log that say the same
 LAST_WORD = 0.05  # s that the last message gets before its publisher goes
 
 
@@ -261,7 +262,11 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
     # -- time and diagnostics
     def _on_clock_jump(self, jump: Any) -> None:
         try:
-            self.get_logger().info("time jumped: starting anew")
+            # two senders of /clock make fifty jumps a second, and must not fill the disk
+            self.get_logger().info(
+                "time jumped: starting anew", throttle_duration_sec=SELDOM_SAID,
+                throttle_time_source_type=self.steady_clock,
+            )  # fmt: skip
             self.forget()
         except Exception:
             self.report_defect("jump of the clock")

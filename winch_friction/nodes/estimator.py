@@ -53,6 +53,7 @@ class EstimatorNode(WinchNode):
     def __init__(self, **node_arguments: Any) -> None:
         self._config = OptionParameters(EstimatorConfig, fixed=EstimatorConfig.__dataclass_fields__)
         self._own = OptionParameters(EstimatorNodeOptions, fixed=("checkpoint",))
+        self._unkept = ""  # why the last checkpoint was not written
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("estimator", self._config, self._own, **node_arguments)
 
@@ -78,7 +79,8 @@ class EstimatorNode(WinchNode):
         self.trigger("save", self._save)
 
     def start(self) -> None:
-        """Let the inputs in."""
+        """Let the inputs in; whether anything can be kept is known before they have taught anything."""
+        self.save()
         self.inputs.open()
         self.every(URGENT_PERIOD, self._poll)
         if self.own.checkpoint:
@@ -99,8 +101,10 @@ class EstimatorNode(WinchNode):
             return
         try:
             write_checkpoint(self.own.checkpoint, self.service.snapshot())
+            self._unkept = ""
         except (InputError, OSError) as error:
-            self.get_logger().error(f"checkpoint not written: {error}")
+            self._unkept = f"checkpoint not written: {error}"
+            self.get_logger().error(self._unkept)
 
     # -- callbacks
     def _answer(self, estimate: Estimate) -> None:
@@ -128,6 +132,7 @@ class EstimatorNode(WinchNode):
         if not self.own.checkpoint:
             raise InputError("parameter 'checkpoint' is empty: name a file")
         write_checkpoint(self.own.checkpoint, self.service.snapshot())
+        self._unkept = ""
         return f"saved to {self.own.checkpoint}"
 
     # -- outputs
@@ -189,6 +194,8 @@ class EstimatorNode(WinchNode):
         said = f"{state}{why.get(state, '')}"
         if suspicion := str(status["suspicion"]):
             level, said = max(level, WARN), f"{said}; {suspicion}"
+        if self._unkept:
+            level, said = max(level, WARN), f"{said}; {self._unkept}"
         return Health("filter", level, said, status)
 
     def _parameter_health(self) -> Health:

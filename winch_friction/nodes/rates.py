@@ -8,6 +8,7 @@ from typing import Any
 from winch_friction.nodes.base import ERROR, OK, WARN, Health
 from winch_friction.nodes.inputs import Inputs
 from winch_friction.online.inputs import Arrivals, InputGate
+from winch_friction.records.topics import FLOAT64
 
 SELDOM = 0.5  # s
 MISMATCH = "publishers do not match its quality of service"
@@ -46,6 +47,9 @@ class InputHealth:
             if arrivals.reason:
                 values[f"{topic} reason"] = arrivals.reason
             problems += self._problems(topic, arrivals, topic in needed, (matched, publishers), refused, now)
+            if publishers > matched:
+                unlike = self._mismatch(topic, subscriptions.get(topic), publishers - matched, publishers)
+                problems.append((ERROR if topic in needed else WARN, unlike))
             self._messages[topic], self._refused[topic] = arrivals.messages, arrivals.refused
         values |= {f"{column} age": age for column, age in self._gate.ages().items()}
         self._time = now
@@ -62,13 +66,6 @@ class InputHealth:
         self, topic: str, arrivals: Arrivals, needed: bool, senders: tuple[int, int], refused: int, now: float
     ) -> list[tuple[int, str]]:
         problems, (matched, publishers) = [], senders
-        if publishers > matched:
-            problems.append(
-                (
-                    ERROR if needed else WARN,
-                    f"{topic}: {publishers - matched} of {publishers} publishers do not match its quality of service",
-                )
-            )
         if arrivals.messages == 0 and needed:
             problems.append((ERROR if self._gate_was_heard() else WARN, f"{topic}: never heard, {matched} publishers"))
         elif arrivals.messages and now - arrivals.arrived > self._limit(topic, needed):
@@ -80,6 +77,16 @@ class InputHealth:
         if publishers > 1:
             problems.append((ERROR if needed else WARN, f"{topic}: {publishers} publishers"))
         return problems
+
+    def _mismatch(self, topic: str, subscription: Any, unlike: int, publishers: int) -> str:
+        """Why publishers are not heard: another type, which a plain bridge sends, or another quality of service."""
+        source = self._gate.topics.inputs[topic]
+        infos = self._inputs.node.get_publishers_info_by_topic(subscription.topic_name)
+        others = sorted({each.topic_type for each in infos} - {source.type_name})
+        if not others:
+            return f"{topic}: {unlike} of {publishers} {MISMATCH}"
+        hint = f"; or name '{source.channels[0]}' in float64_inputs" if FLOAT64 in others and source.stamped else ""
+        return f"{topic}: {unlike} of {publishers} publishers send {', '.join(others)}, not {source.type_name}{hint}"
 
     def _lag(self, topic: str) -> float:
         """s by which what a topic says is too old by its stamps, although it comes; 0 when it is young enough."""

@@ -156,7 +156,8 @@ def _converted(each: "Field[Any]", value: Any, where: str) -> Any:
     if isinstance(default, dict):
         if not isinstance(value, Mapping):
             raise InputError(f"{where} must be a mapping, found {value!r}")
-        return {str(key): _number(item, f"{where}.{key}") for key, item in value.items()}
+        own = {str(key): _number(item, f"{where}.{key}") for key, item in value.items()}
+        return {**default, **own}  # as a node's parameters: what is not said keeps its default
     return value
 
 

@@ -13,6 +13,7 @@ from winch_friction.records.atomic import remove_stale, write_text
 
 SCHEMA = "winch_friction.checkpoint/1"
 OTHERS = re.compile(rb"schema\W+(winch_friction\.(?!checkpoint)\w+/\d+)")
+LARGEST = 16_000_000  # bytes; a filter of 60 states has 100 thousand: a recording is not read into memory to be refused
 HEAD = 4096  # bytes of a file, within which it says its schema
 
 
@@ -30,6 +31,8 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
         return None
     if not path.is_file():  # a pipe would be waited for, and no signal heard
         raise InputError(f"{path}: not a checkpoint, nor a file at all; delete it to start over")
+    if path.stat().st_size > LARGEST:
+        raise InputError(f"{path}: not a checkpoint: {path.stat().st_size / 1e6:.0f} MB; name another file")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
@@ -52,7 +55,8 @@ def set_aside(path: Path | str) -> Path:
     path = Path(path)
     if not path.is_file():
         raise InputError(f"{path}: not a file: no checkpoint can be written there")
-    other = OTHERS.search(path.read_bytes()[:HEAD])
+    with path.open("rb") as stream:
+        other = OTHERS.search(stream.read(HEAD))
     if other is not None:
         raise InputError(f"{path}: a file of schema '{other[1].decode()}', not a checkpoint: name another")
     names = (path.with_name(f"{path.name}.refused{number}") for number in itertools.chain(("",), itertools.count(2)))

@@ -1,5 +1,7 @@
 """Which stamps are believed: one case for every way in which a sender's clock goes wrong."""
 
+import random
+
 import pytest
 from sea import TOPICS, Fed, swell
 
@@ -59,6 +61,18 @@ def test_a_clock_that_was_set_is_believed_once_messages_agree(shift):
     refused = Stamp.AHEAD if shift > 0 else Stamp.BACK
     assert worths == [refused] * (CONFIRMED_BY - 1) + [Stamp.JUMP]
     assert watch.judge(stamp + shift + 6 * PERIOD, now + 6 * PERIOD) is Stamp.GOOD
+
+
+@pytest.mark.parametrize("rate", [20.0, 50.0, 100.0, 200.0])
+@pytest.mark.parametrize("shift", [-3600.0, 2.0])
+def test_which_message_sets_the_clock_does_not_hang_on_how_late_it_came(rate, shift):
+    """At 50 Hz the fifth or the sixth, as they came: a replay faded in a period apart from the node, by 2 % for 1 s."""
+    rng, counted = random.Random(int(rate)), set()
+    for _ in range(200):
+        watch, stamp, now = watch_at_work()
+        worths = [watch.judge(stamp + shift + k / rate, now + k / rate + rng.uniform(0.0, 0.006)) for k in range(1, 40)]
+        counted.add(worths.index(Stamp.JUMP))
+    assert len(counted) == 1
 
 
 def test_late_by_less_than_a_jump_is_late():

@@ -20,7 +20,10 @@ from winch_friction.records.topics import Input, stamp_time
 SLOWEST = 0.1  # of the clock's pace; stamps that advance less than this stand still
 LONGEST_CATCH_UP = 1.0  # s of a pause that such stamps must make up for
 BACKWARD_JUMP = 1.0  # s; what falls back by less is late or repeated
-CONFIRMED_BY, CONFIRMED_AFTER = 5, 0.08  # messages, s: then another time is a clock that was set, not a stray stamp
+# messages, s by their stamps: then another time is a clock that was set, not a stray stamp. Which message it is a replay
+# must find again, so that how late each came counts only against a burst: they came over CAME_OVER s, too
+CONFIRMED_BY, CONFIRMED_AFTER, CAME_OVER = 5, 0.08, 0.05
+ROUNDING = 1e-6  # s; a Unix time has 2e-7 s
 ALIKE = 0.25  # s between offsets that show the same other clock
 
 
@@ -77,7 +80,8 @@ class StampWatch:
         if others and not (stamp > others[-1][0] and abs((now - stamp) - (others[0][1] - others[0][0])) < ALIKE):
             others.clear()
         others.append((stamp, now))
-        if len(others) >= CONFIRMED_BY and now - others[0][1] >= CONFIRMED_AFTER:
+        advanced, came = stamp - others[0][0], now - others[0][1]
+        if len(others) >= CONFIRMED_BY and advanced >= CONFIRMED_AFTER - ROUNDING and came >= CAME_OVER:
             return self._believe(stamp, now, Stamp.JUMP)
         return worth
 

@@ -12,6 +12,7 @@ from std_msgs.msg import Float64
 
 from winch_friction.nodes.inputs import ROS, clock_message
 from winch_friction.nodes.qos import OUTPUT
+from winch_friction.physics.signals import Sample
 from winch_friction.records.topics import crane_topics
 
 PLAIN = "winch/active/pressure_a"
@@ -66,3 +67,23 @@ def test_two_clocks_do_not_fill_the_disk(bench: Bench) -> None:
         clock.publish(clock_message(1000.0 + 0.02 * k - 20.0 * (k % 2)))
         bench.spin(0.02)
     assert 1 <= bench.log("compensator").count("time jumped") <= 5
+
+
+def test_a_speed_that_is_published_before_the_rest_of_its_instant_is_said(bench: Bench) -> None:
+    """Each sample held the inputs of the one before, or not, as they came: two nodes differed by 60 N m."""
+    bench.start("compensator")
+    seen = bench.listen("/diagnostics", DiagnosticArray, 10)
+    bench.announce()
+    said = lambda: diagnostics(seen, "compensator: inputs").get("message", "")
+    bench.drive(3.2)
+    assert "publish the speed last" not in said()
+
+    def speed_first(sample: Sample) -> None:
+        messages = crane_topics(CRANE).encode(sample, ROS)
+        for topic, message in (messages[-1], *messages[:-1]):
+            bench.publisher(topic).publish(message)
+            bench.spin(0.002)
+
+    bench.publish = lambda sample, namespace="": speed_first(sample)  # type: ignore[method-assign]
+    bench.drive(3.2)
+    assert "winch/reference: comes after the speed of its own instant" in said()

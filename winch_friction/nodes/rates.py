@@ -11,6 +11,8 @@ from winch_friction.online.inputs import Arrivals, InputGate
 from winch_friction.records.topics import FLOAT64
 
 SELDOM = 0.5  # s
+MOST_AFTER = 0.5  # of a topic's messages: a network now and then lets one overtake another
+BEHIND = "comes after the speed of its own instant, so that each sample holds the one before: publish the speed last"
 MISMATCH = "publishers do not match its quality of service"
 
 
@@ -27,6 +29,7 @@ class InputHealth:
         self._gate, self._inputs, self._needed, self._now, self._patience = gate, inputs, needed, now, patience
         self._messages: Counter[str] = Counter()
         self._refused: Counter[str] = Counter()
+        self._after: Counter[str] = Counter()
         self._time = now()
 
     def report(self) -> Health:
@@ -50,7 +53,11 @@ class InputHealth:
             if publishers > matched:
                 unlike = self._mismatch(topic, subscriptions.get(topic), publishers - matched, publishers)
                 problems.append((ERROR if topic in needed else WARN, unlike))
+            after, came = arrivals.after - self._after[topic], arrivals.messages - self._messages[topic]
+            if after > MOST_AFTER * came:
+                problems.append((WARN, f"{topic}: {BEHIND}"))
             self._messages[topic], self._refused[topic] = arrivals.messages, arrivals.refused
+            self._after[topic] = arrivals.after
         values |= {f"{column} age": age for column, age in self._gate.ages().items()}
         self._time = now
         level = max((each for each, _ in problems), default=OK)

@@ -20,8 +20,8 @@ from winch_friction.records.topics import Input, stamp_time
 SLOWEST = 0.1  # of the clock's pace; stamps that advance less than this stand still
 LONGEST_CATCH_UP = 1.0  # s of a pause that such stamps must make up for
 BACKWARD_JUMP = 1.0  # s; what falls back by less is late or repeated
-# messages, s by their stamps: then another time is a clock that was set, not a stray stamp. Which message it is a replay
-# must find again, so that how late each came counts only against a burst: they came over CAME_OVER s, too
+# messages, s by their stamps: then another time is a clock that was set, not a stray stamp. Which message sets it must
+# be found again by a replay, so that how late each came counts only against a burst: they came over CAME_OVER s, too
 CONFIRMED_BY, CONFIRMED_AFTER, CAME_OVER = 5, 0.08, 0.05
 ROUNDING = 1e-6  # s; a Unix time has 2e-7 s
 ALIKE = 0.25  # s between offsets that show the same other clock

@@ -15,7 +15,7 @@ from winch_friction.physics.errors import check, option
 from winch_friction.physics.signals import NAN, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import Change, ChannelRanges
-from winch_friction.records.sample_stream import InputHold, SampleStream
+from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, SampleStream
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- how time is judged
@@ -114,6 +114,7 @@ class Arrivals:
     refused: int = 0
     arrived: float = -math.inf  # steady s, the last message
     believed: float = -math.inf  # steady s, the last message that was not refused
+    after: int = 0  # messages that came when the speed of their own instant had been answered
     reason: str = ""
     reasons: Counter[str] = field(default_factory=Counter)
 
@@ -168,6 +169,7 @@ class InputGate:
             self._refuse(arrivals, Stamp.AHEAD.value)
         elif self._stream.put(source, stamp, message):
             arrivals.believed = now
+            arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS
         else:
             self._refuse(arrivals, self._refusal or UNREADABLE)
         return None

@@ -10,8 +10,10 @@ from own_term_files import forgotten, own_model, own_terms
 from winch_friction.cli import main
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.online.compensator import read_mark
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
+from winch_friction.records.bag_file import open_reader
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.model_file import load_model, model_to_text
 from winch_friction.records.runs import read_run, write_run
@@ -176,6 +178,36 @@ def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
         remap={"winch/joint_states": "/compensator/friction_torque"},
     )
     np.testing.assert_array_equal(written["motor_torque"], replayed.compensator["friction_torque"])
+
+
+def test_a_bag_of_outputs_says_what_is_valid_and_what_a_silence_was_answered_by(
+    tmp_path, run, crane_150t, crane2_model
+):
+    """A consumer that is tried on it must see a ramp to zero as one; it had no mark, and the ramps were not there."""
+    gap = tmp_path / "gap"
+    hole = run.time[len(run) // 2]
+    with BagWriter(gap) as writer:
+        for sample in run.samples():
+            if not hole < sample.time < hole + 0.5:
+                for topic, message in crane_topics(crane_150t, run.groups).encode(sample, MESSAGES):
+                    writer.write(f"/{topic}", message, sample.time)
+    replayed = replay_recording(gap, crane_150t, crane2_model, SETTINGS)
+    assert len(replayed.watchdog) > 5
+    out = write_outputs(tmp_path / "o", replayed.compensator, replayed.estimator, replayed.model, replayed.watchdog)
+    said = {
+        "/compensator/friction_torque": [],
+        "/compensator/pressure_feedforward": [],
+        "/estimator/friction_torque": [],
+    }
+    with open_reader(out) as (reader, types):
+        for connection, _, raw in reader.messages():
+            if connection.topic in said:
+                text = types.deserialize_cdr(raw, connection.msgtype).header.frame_id
+                said[connection.topic].append(read_mark(text))
+    torque, pressure, learned = said.values()
+    assert [number for _, number in torque] == list(range(1, len(torque) + 1)) == [number for _, number in pressure]
+    assert len(torque) == len(replayed.compensator) + len(replayed.watchdog)
+    assert {valid for valid, _ in torque} == {valid for valid, _ in learned} == {True, False}
 
 
 def test_a_run_from_before_its_zero_makes_a_table_and_no_bag(tmp_path, run, capsys):

@@ -90,7 +90,7 @@ def command(
         from winch_friction.replay.outputs import write_outputs
 
         said = replace(result.model, provenance={**result.model.provenance, **forced})
-        write_outputs(out, replace(result.compensator, metadata=forced), result.estimator, said)
+        write_outputs(out, replace(result.compensator, metadata=forced), result.estimator, said, result.watchdog)
     if picture is not None:
         said_of = {**provenance_of([recording], winch.name, model), "learned": learn, **forced}
         _draw(picture, result, seed, said_of)

@@ -33,6 +33,7 @@ class FeedforwardRecord:
 
     def __init__(self) -> None:
         self._rows, self._states = array("d"), list[str]()
+        self._valid, self._numbers = bytearray(), array("q")
 
     def __len__(self) -> int:
         return len(self._states)
@@ -41,9 +42,12 @@ class FeedforwardRecord:
         """Add one."""
         self._rows.extend(_numbers(given))
         self._states.append(given.state)
+        self._valid.append(given.valid)
+        self._numbers.append(given.sequence)
 
     def run(self, name: str) -> Run:
         """All of them as columns over time."""
         table = np.array(self._rows).reshape(-1, 1 + len(COLUMNS))
         columns = {column: table[:, k].copy() for k, column in enumerate(("time", *COLUMNS))}
-        return Run(name=name, columns=columns, aside={"state": np.array(self._states, dtype=object)})
+        said = {"valid": np.array(self._valid, dtype=bool), "number": np.array(self._numbers)}
+        return Run(name=name, columns=columns, aside={"state": np.array(self._states, dtype=object), **said})

@@ -37,6 +37,7 @@ class EstimateRecord:
     def __init__(self, estimator: FrictionEstimator, period: float = PARAMETER_PERIOD) -> None:
         self._estimator, self._period = estimator, period
         self._rows, self._states = array("d"), list[str]()
+        self._valid = bytearray()
         self._looks: list[tuple[FloatArray, FloatArray]] = []  # values and sigmas
         self._look_of_row = array("q")
         self._looked_at = -math.inf
@@ -48,6 +49,7 @@ class EstimateRecord:
             self._looked_at = estimate.time
         self._rows.extend(_numbers(estimate))
         self._states.append(estimate.state)
+        self._valid.append(estimate.accepted and math.isfinite(estimate.friction_torque))
         self._look_of_row.append(len(self._looks) - 1)
 
     def _look(self) -> tuple[FloatArray, FloatArray]:
@@ -59,7 +61,8 @@ class EstimateRecord:
         table = np.array(self._rows).reshape(-1, 1 + len(COLUMNS))
         columns = {column: table[:, k].copy() for k, column in enumerate(("time", *COLUMNS))}
         columns |= self._parameter_columns()
-        return Run(name=name, columns=columns, aside={"state": np.array(self._states, dtype=object)})
+        said = {"state": np.array(self._states, dtype=object), "valid": np.array(self._valid, dtype=bool)}
+        return Run(name=name, columns=columns, aside=said)
 
     def _parameter_columns(self) -> dict[str, FloatArray]:
         values, sigmas = (np.array(each) for each in zip(*self._looks, self._look(), strict=True))

@@ -83,7 +83,19 @@ def test_typical_sizes_are_those_of_the_machine():
     assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
     assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)
     assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical
-    assert machine_sizes([SimpleNamespace(constants=(), groups=[])]) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "one", "whole"), [(2053.0, 2.0, 1.0), (22600.0, 22.0, 2.0), (300.0, 1.0, 1.0), (None, 1.0, 1.0)]
+)
+def test_an_electric_drive_that_carries_like_several_motors_may_lose_as_much(given, one, whole):
+    """A motor of 215 cm3 gives 1027 N m at 300 bar; a small drive is not held to less than that motor's sizes."""
+    gap, used = np.full(400, (given or 0.0) / 4.0), np.full(400, given is not None)
+    run = SimpleNamespace(constants=(), groups=[], gap=gap, predicted=3.0 * gap, used=used)
+    sizes = machine_sizes([run])
+    assert set(sizes) == {"N*m", "N*m*s/rad", "torque_offset", "direction_asymmetry"}
+    assert sizes["N*m"] == sizes["N*m*s/rad"] == pytest.approx(one, rel=0.01)
+    assert sizes["torque_offset"] == pytest.approx(whole, rel=0.01)
 
 
 def test_a_creeping_zero_is_there_after_its_time():

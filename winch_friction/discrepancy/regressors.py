@@ -10,6 +10,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     REFERENCE_LIFT,
     REFERENCE_MOTOR,
     REFERENCE_MOTORS,
+    REFERENCE_PRESSURE,
     Candidate,
 )
 from winch_friction.discrepancy.candidates.families import bending
@@ -48,14 +49,16 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
     motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
     winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
-    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Empty
-    where no run shows motors.
+    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Of a
+    drive without pressures its torques with the largest that it gave, where that is more than one of those motors has.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
     motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
     if not swept or not motors:
-        return {}
+        given = max((float(np.quantile(np.abs(drive), TOP)) for drive in map(_drive, runs) if len(drive)), default=0.0)
+        one = max(given / (REFERENCE_MOTOR * REFERENCE_PRESSURE), 1.0)
+        return {**dict.fromkeys(("N*m", "N*m*s/rad"), one), **dict.fromkeys(OF_WINCH, max(one / REFERENCE_MOTORS, 1.0))}
     one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
     lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
     torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
@@ -63,6 +66,11 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
     stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole)}
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
+
+
+def _drive(run: PreparedRun) -> FloatArray:
+    """What the drive gave, N m at the shaft."""
+    return (run.gap + run.predicted)[run.used]
 
 
 def base_of(

@@ -28,6 +28,7 @@ Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
+REFERENCE_PRESSURE = 300e5  # Pa that its motors work at
 OF_WINCH = ("torque_offset", "direction_asymmetry")  # torques that grow with the number of motors as well
 SOURCE, CUT = "winch-friction gap", "cut at its bound from"  # what a correction's source says
 # where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow

@@ -166,7 +166,7 @@ def test_published_schemas_are_the_readers(tmp_path):
 def test_a_file_where_a_folder_is_needed_is_said(arguments, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("taken").write_text("kept")
-    assert run(["init", *arguments, "--force"]) == 2
+    assert run(["init", *arguments, "--overwrite"]) == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1
     assert said[0].startswith("winch-friction: --out taken/")
@@ -209,3 +209,16 @@ def test_a_figure_in_another_unit_is_not_written_down(option, value, said, tmp_p
     assert run(["init", "crane", *arguments]) == 2
     assert said in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("option", ["--overwrite", "--force"])
+def test_a_file_is_replaced_by_the_option_of_the_other_verbs(option, tmp_path, capsys):
+    """It was `--force` here alone, which elsewhere goes on with data that contradict the crane."""
+    out = tmp_path / "plant.yaml"
+    out.write_text("kept")
+    arguments = ["init", "plant", "--crane", "crane_150t", "--out", str(out)]
+    assert run(arguments) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert out.read_text() == "kept"
+    assert run([*arguments, option]) == 0
+    assert out.read_text() != "kept"

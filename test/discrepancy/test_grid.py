@@ -9,6 +9,7 @@ from winch_friction.discrepancy.preparation.grid import (
     MAX_WIDENING,
     SMOOTHING_TIME,
     SPIKE_MARGIN,
+    dilated,
     lagged,
     noise_level,
     samples_of,
@@ -124,3 +125,9 @@ def test_a_lag_begins_settled():
     """A winch at work has a memory from before the log."""
     found = lagged(np.array([5.0, 5.0, 5.0, 6.0]), 0.5, 2.0)
     assert found == pytest.approx([5.0, 5.0, 5.0, 5.0 + 1.0 - np.exp(-0.25)])
+
+
+def test_a_margin_wider_than_the_record_covers_it_and_no_more():
+    mask = np.array([False, True, False, False])
+    assert dilated(mask, 1).tolist() == [True, True, True, False]
+    assert dilated(mask, 6).tolist() == [True] * 4

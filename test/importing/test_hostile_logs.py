@@ -131,3 +131,11 @@ def test_names_in_an_encoding_that_is_not_told_are_noted(tmp_path, names, encodi
     rows = [names, *(f"{0.02 * k:.2f};{k};{100 + k}" for k in range(50))]
     (tmp_path / "log.csv").write_bytes("\n".join(rows).encode(encoding))
     assert any("save it as UTF-8" in each for each in read_log(tmp_path / "log.csv").notes) == noted
+
+
+@pytest.mark.parametrize("rows", [2, 3, 9])
+def test_a_log_of_few_rows_is_no_defect(tmp_path, crane_150t, rows):
+    """Fewer rows than the speed is smoothed over: `np.gradient` met a record of another length."""
+    log = write_text(tmp_path / "log.csv", rows_of(example("test_02"))[: rows + 1])
+    found = propose([log], crane_150t, "crane_150t")
+    assert "motor_speed" in found.log_map.columns

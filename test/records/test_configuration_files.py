@@ -215,3 +215,29 @@ def test_a_layer_that_does_not_exist(crane_150t):
     with pytest.raises(InputError, match="layers 1 ... 6"):
         crane_150t.drum.radius(7)
     assert crane_150t.drum.radius(float("nan")) == pytest.approx(1.136)
+
+
+@pytest.mark.parametrize(
+    ("written", "read"), [("014", 12), ("1:14", 74), ("-1:14.5", -74.5), ("0x14", 20), ("0b11", 3)]
+)
+def test_a_number_to_another_base_than_ten_is_refused(written, read):
+    """YAML 1.1 takes 014 for 12 without a word."""
+    with pytest.raises(InputError, match=f"line 2: {written} is {read} to YAML"):
+        parse_yaml(f"a: 1\nb: {written}\n", "model.yaml")
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [("0", 0), ("0.14", 0.14), ("14", 14), ("1_000", 1000), ("1e3", "1e3"), ("'014'", "014"), ("1.5e+3", 1500.0)],
+)
+def test_a_number_to_the_base_ten_is_what_it_says(written, read):
+    assert parse_yaml(f"a: {written}\n", "model.yaml") == {"a": read}
+
+
+def test_what_a_file_may_have_is_among_the_known_keys():
+    """A section that this file does not have was missing from the list: `corrections` looked forbidden."""
+    text = yaml.safe_dump({**content(), "foo": 1})
+    with pytest.raises(InputError, match="unknown key 'foo'") as caught:
+        model_from_text(text)
+    known = set(str(caught.value).partition("known keys are ")[2].split(", "))
+    assert {"corrections", "tables"} <= known

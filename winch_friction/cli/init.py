@@ -16,7 +16,7 @@ app = typer.Typer(
 )
 
 Out = Annotated[OptionalPath, typer.Option(help="File to write; NAME.yaml without it.")]
-Force = Annotated[bool, typer.Option(help="Overwrite a file that exists.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", "--force", help="Replace a file that exists.")]
 OfCrane = Annotated[
     str, typer.Option(help="Crane file or shipped name that it belongs to.", autocompletion=complete_crane)
 ]
@@ -39,7 +39,7 @@ def crane(
         OptionalFloat, typer.Option(help="Inertia at the motor shaft, kg m^2; estimated if absent.")
     ] = None,
     out: Out = None,
-    force: Force = False,
+    overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> None:
     """A crane file.
@@ -61,11 +61,13 @@ def crane(
         "wire": (wire, float, "wire diameter, mm"),
     }
     facts = CraneFacts(**_answered(asked), inertia=inertia)
-    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), force, as_json)
+    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), overwrite, as_json)
 
 
 @app.command()
-def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
+def plant(
+    crane: OfCrane, name: FileName = "", out: Out = None, overwrite: Overwrite = False, as_json: Json = False
+) -> None:
     """A plant file (pump, loop, accumulator), sized for a crane.
 
     Example: winch-friction init plant --crane crane_50t.yaml
@@ -74,11 +76,13 @@ def plant(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = F
 
     known = _hydraulic(crane)
     name = name or f"plant_{known.name}"
-    _write(out or Path(f"{name}.yaml"), plant_text(known, name), force, as_json)
+    _write(out or Path(f"{name}.yaml"), plant_text(known, name), overwrite, as_json)
 
 
 @app.command()
-def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
+def model(
+    crane: OfCrane, name: FileName = "", out: Out = None, overwrite: Overwrite = False, as_json: Json = False
+) -> None:
     """A rough seed model, scaled from paper 2's cranes to this one; identify replaces it.
 
     Example: winch-friction init model --crane crane_50t.yaml
@@ -87,7 +91,7 @@ def model(crane: OfCrane, name: FileName = "", out: Out = None, force: Force = F
 
     known = _hydraulic(crane)
     name = name or f"seed_{known.name}"
-    _write(out or Path(f"{name}.yaml"), model_text(known, name), force, as_json)
+    _write(out or Path(f"{name}.yaml"), model_text(known, name), overwrite, as_json)
 
 
 @app.command()
@@ -100,7 +104,7 @@ def scenario(
     ] = None,
     name: FileName = "",
     out: Out = None,
-    force: Force = False,
+    overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> None:
     """A scenario for the simulator, for a crane and its plant.
@@ -116,11 +120,11 @@ def scenario(
         raise InputError(f"--mode ahc: crane '{known.name}' has no groups active and passive; use --mode normal")
     name = name or f"{mode}_{known.name}"
     text = scenario_text(known, name, plant or f"plant_{known.name}.yaml", mode, load)
-    _write(out or Path(f"{name}.yaml"), text, force, as_json)
+    _write(out or Path(f"{name}.yaml"), text, overwrite, as_json)
 
 
 @app.command("map")
-def map_(crane: OfCrane = "", out: Out = None, force: Force = False, as_json: Json = False) -> None:
+def map_(crane: OfCrane = "", out: Out = None, overwrite: Overwrite = False, as_json: Json = False) -> None:
     """A map for `import`, to be filled in by hand; better: let `import LOG --propose` write it from the log.
 
     Example: winch-friction init map --crane crane_50t.yaml --out log_map.yaml
@@ -128,13 +132,13 @@ def map_(crane: OfCrane = "", out: Out = None, force: Force = False, as_json: Js
     from winch_friction.cli.init_texts import map_text
 
     known = _hydraulic(crane) if crane else None
-    _write(out or Path("log_map.yaml"), map_text(known), force, as_json)
+    _write(out or Path("log_map.yaml"), map_text(known), overwrite, as_json)
 
 
 @app.command()
 def schemas(
     out: Annotated[Path, typer.Option(help="Folder for the JSON Schemas.")] = Path("schemas"),
-    force: Force = False,
+    overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> None:
     """The JSON Schemas of all files, for an editor's completion.
@@ -146,7 +150,7 @@ def schemas(
     from winch_friction.simulation.file_schemas import all_schemas
 
     texts = {out / f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in all_schemas().items()}
-    _write_all(texts, force, as_json)
+    _write_all(texts, overwrite, as_json)
 
 
 def _answered(asked: dict[str, tuple[Any, type, str]]) -> dict[str, Any]:
@@ -171,17 +175,17 @@ def _hydraulic(name: str) -> Any:
     return crane
 
 
-def _write(path: Path, text: str, force: bool, as_json: bool) -> None:
-    _write_all({path: text}, force, as_json)
+def _write(path: Path, text: str, overwrite: bool, as_json: bool) -> None:
+    _write_all({path: text}, overwrite, as_json)
 
 
-def _write_all(texts: dict[Path, str], force: bool, as_json: bool) -> None:
+def _write_all(texts: dict[Path, str], overwrite: bool, as_json: bool) -> None:
     """All files or, when one of them exists, none."""
     from winch_friction.records.atomic import write_text
 
     there = [str(path) for path in texts if path.exists()]
-    if there and not force:
-        raise InputError(f"{', '.join(there)}: exists already; give another --out, or --force to overwrite it")
+    if there and not overwrite:
+        raise InputError(f"{', '.join(there)}: exists already; give another --out, or --overwrite to replace it")
     refuse_unwritable(*texts)
     written = [str(write_text(path, text)) for path, text in texts.items()]
     if as_json:

@@ -131,6 +131,7 @@ def opposes_motion(columns: Columns, crane: Crane) -> float:
     step = max(1, len(rest) // _MOST)
     speed, time = columns["motor_speed"], columns["time"]
     width = max(1, int(0.2 / max(float(np.nanmedian(np.diff(time))), 1e-4)))
+    width = min(width, len(speed))  # of a log of few rows all of them
     kernel = np.ones(width) / width
     smooth = np.convolve(np.nan_to_num(speed), kernel, mode="same")
     change = np.gradient(smooth, np.maximum(time - time[0], 0.0) + 1e-9 * np.arange(len(time)))

@@ -43,6 +43,7 @@ class Section:
         self._asked: set[str] = set()
 
     def __contains__(self, key: str) -> bool:
+        self._asked.add(key)  # one that may be there is known
         return key in self.content
 
     def get(self, key: str, default: Any = None) -> Any:
@@ -135,12 +136,24 @@ def utf_8_text(path: Path) -> str:
     return text
 
 
+# what YAML 1.1 reads to the base 8, 60, 2 or 16: nobody who writes 014 or 1:14 means 12 or 74
+_OTHER_BASE = re.compile(r"[-+]?(0[0-7_]+|0[box].*|.*:.*)")
+
+
 class _Loader(yaml.SafeLoader):
-    """YAML's safe types; a key that stands twice in one mapping, of which YAML takes the last, is gathered."""
+    """YAML's safe types. What YAML takes without a word is gathered: a key that stands twice in one mapping, of which
+    it takes the last, and numbers to another base than ten."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self.repeated: list[tuple[int, str, int]] = []  # line, key, the line on which it stood first; lines from 1
+        self.other_base: list[tuple[int, str, Any]] = []  # line, what is written, the number that YAML makes of it
+
+    def number(self, node: Any, value: Any) -> Any:
+        """A number as YAML reads it, gathered where people read it otherwise."""
+        if _OTHER_BASE.fullmatch(node.value):
+            self.other_base.append((node.start_mark.line + 1, node.value, value))
+        return value
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         """As YAML has it; what `<<` merges in may repeat a key, and gives way to it."""
@@ -153,8 +166,16 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+for _kind in ("int", "float"):
+    _plain = getattr(yaml.SafeLoader, f"construct_yaml_{_kind}")
+    _Loader.add_constructor(
+        f"tag:yaml.org,2002:{_kind}", lambda loader, node, read=_plain: loader.number(node, read(loader, node))
+    )
+
+
 def parse_yaml(text: str, where: str) -> Any:
-    """The content of a YAML text; a key that stands twice in one mapping is refused."""
+    """The content of a YAML text; a key that stands twice in one mapping is refused, and so is a number such as 014,
+    which is 12 to YAML."""
     try:
         loader = _Loader(text)
         content = loader.get_single_data()
@@ -166,13 +187,16 @@ def parse_yaml(text: str, where: str) -> Any:
         raise InputError(
             f"{where}{line}: not valid YAML ({getattr(error, 'problem', None) or 'syntax error'})"
         ) from error
-    if loader.repeated:
-        raise InputError(
-            *(
-                f"{where} line {line}: key '{key}' stands on line {before} already; keep one of them"
-                for line, key, before in loader.repeated
-            )
-        )
+    said = [
+        (line, f"key '{key}' stands on line {before} already; keep one of them")
+        for line, key, before in loader.repeated
+    ]
+    said += [
+        (line, f"{written} is {value} to YAML; write the number that is meant to the base ten, a name between quotes")
+        for line, written, value in loader.other_base
+    ]
+    if said:
+        raise InputError(*(f"{where} line {line}: {text}" for line, text in said))
     return content
 
 

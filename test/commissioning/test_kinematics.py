@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.diagnose import _Bench
-from winch_friction.commissioning.kinematics import LATE, MOST, _top, agreements, score_of
+from winch_friction.commissioning.kinematics import LATE, MOST, SURE, _top, agreements, score_of, ways
 from winch_friction.commissioning.mistakes import delayed
 from winch_friction.commissioning.view import view_of
 from winch_friction.simulation import load_scenario, simulate
@@ -15,10 +16,11 @@ from winch_friction.simulation import load_scenario, simulate
 TIME = np.arange(300) * 0.2
 SPEED = 100.0 * np.sin(0.8 * TIME) + 40.0 * np.sin(2.1 * TIME + 1.0)
 LEVER = 0.004
+GEAR = 160.0
 
 
 def score(channel, rate, must_follow=()):
-    view = SimpleNamespace(speed=SPEED, lever=LEVER, rates={channel: rate})
+    view = SimpleNamespace(speed=SPEED, lever=LEVER, gear_ratio=GEAR, rates={channel: rate})
     found = agreements(view, must_follow)
     return (found[0].ratio, found[0].score) if found else None
 
@@ -26,6 +28,7 @@ def score(channel, rate, must_follow=()):
 def test_a_channel_that_tells_the_same_speed_costs_nothing():
     assert score("shaft_angle", SPEED) == pytest.approx((1.0, 0.0))
     assert score("wire_out", LEVER * SPEED) == pytest.approx((1.0, 0.0))
+    assert score("drum_speed", SPEED / GEAR) == pytest.approx((1.0, 0.0))
 
 
 def test_the_opposite_sign_is_a_flat_contradiction():
@@ -36,6 +39,7 @@ def test_another_size_counts_in_ordinary_errors_of_the_channel():
     assert score("shaft_angle", 1.03 * SPEED)[1] == pytest.approx(1.0, rel=0.05)
     assert score("speed_reference", 1.12 * SPEED)[1] == pytest.approx(1.0, rel=0.15)
     assert score("shaft_angle", 60.0 * SPEED)[1] == MOST
+    assert score("drum_speed", SPEED / (0.75 * GEAR))[1] > SURE
 
 
 @pytest.mark.parametrize("lag", [3, -3])
@@ -80,3 +84,30 @@ def test_the_top_of_a_channel_is_numpys_percentile_to_the_last_digit():
         values = np.concatenate([draw.normal(size=size), [np.nan, np.inf]])
         assert _top(values) == np.percentile(np.abs(values[:size]), 99)
     assert _top(np.array([np.nan])) == 0.0
+
+
+def test_a_drum_speed_beside_the_motors_is_held_against_the_gear(crane_150t, crane2_model):
+    """It was kept and compared with nothing: a crane file with another gear ratio passed."""
+    run = simulate(load_scenario("normal_joystick"), crane_150t, crane2_model, seed=1).run
+    drum = run["motor_speed"] / crane_150t.gear_ratio
+    for factor, said in ((1.0, 0), (1.4, 1), (-1.0, 1)):
+        both = replace(run, columns={**run.columns, "drum_speed": factor * drum})
+        found = [each for each in quick_check([both], crane_150t, crane2_model) if each.channel == "drum_speed"]
+        assert len(found) == said
+    turned = {name: -run[name] for name in ("motor_speed", "speed_reference", "shaft_angle") if name in run}
+    flipped = replace(run, columns={**run.columns, **turned, "drum_speed": -drum})
+    assert quick_check([flipped], crane_150t, crane2_model)[0].cause == "sign"
+
+
+def test_the_way_of_a_coarse_wire_tells_a_clock_a_thousand_times_too_slow(crane_150t, crane2_model):
+    """A log in ms under [s] whose wire is counted in centimetres was plausible."""
+    run = simulate(load_scenario("normal_joystick"), crane_150t, crane2_model, seed=1).run
+    wire = np.round(run["wire_out"], 2)
+    columns = {name: run[name] for name in run.columns if name not in ("shaft_angle", "speed_reference")}
+    late = replace(run, columns={**columns, "wire_out": wire, "time": 1e3 * run.time})
+    assert ways(replace(late, columns={**late.columns, "time": run.time}), crane_150t)["wire_out"] == pytest.approx(
+        1.0, abs=0.2
+    )
+    found = quick_check([late], crane_150t, crane2_model)[0]
+    assert (found.contradicts, found.channel) == (True, "time")
+    assert "ms under [s]" in found.sentence

@@ -48,3 +48,17 @@ def test_oil_in_another_unit_is_named(oil, severity, unit):
 def test_check_says_each_of_them_once():
     hot = replace(RUN, columns={**RUN.columns, "oil_temperature": np.full(len(RUN), 104.0)})
     assert sum("degF" in each.sentence for each in check([hot], CRANE).findings) == 1
+
+
+@pytest.mark.parametrize(
+    ("layer", "logged", "told"), [(6, 5, True), (6, 6, False), (3, 2, True), (5, 6, False), (6, 4, False)]
+)
+def test_layers_counted_from_zero_without_a_zero_are_told_by_the_wire(layer, logged, told):
+    """No value is wrong by itself, and 6 % of the load's torque are ordinary to the balance."""
+    turned = np.cumsum(RUN["motor_speed"] * np.diff(RUN.time, prepend=RUN.time[0]))
+    wire = np.round(60.0 - turned * CRANE.drum.radius(layer) / CRANE.gear_ratio, 2)
+    found = [text for severity, text in said(wire_layer=logged, wire_out=wire) if text.startswith("wire_layer")]
+    assert bool(found) == told
+    if told:
+        assert found[0].startswith(f"wire_layer is {logged}, whose radius")
+        assert f"moves as on layer {layer}" in found[0]

@@ -165,3 +165,21 @@ def test_a_wire_whose_length_is_not_told_may_be_the_gap(stiffness, silent, said)
     notes = of_wire(SimpleNamespace(crane=SimpleNamespace(wire_stiffness=stiffness), prepared=runs))
     assert len(notes) == bool(said)
     assert "".join(notes).startswith(said)
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.2, False), (0.8, True)])
+def test_a_run_whose_pressure_is_lost_in_most_rows_at_random_is_left_out(share, kept):
+    """What lies between was drawn straight and had no noise: a floor of a thousandth of a bar, a verdict of chance."""
+    rows = np.random.default_rng(5).random(3000) < share
+    columns = {"time": 0.02 * np.arange(3000), "motor_speed": np.ones(3000)}
+    found, notes = long_enough([Run("lost", {**columns, "main.pressure_a": np.where(rows, 1e7, np.nan)})])
+    assert bool(found) == kept
+    if not kept:
+        assert notes[0].startswith("lost left out: main.pressure_a has a value in 20")
+        assert notes[0].endswith("log it in every row")
+
+
+def test_a_run_whose_pressure_was_dead_for_most_of_it_tells_what_it_has():
+    columns = {"time": 0.02 * np.arange(3000), "motor_speed": np.ones(3000)}
+    dead = np.where(np.arange(3000) < 600, 1e7, np.nan)
+    assert long_enough([Run("dead", {**columns, "main.pressure_a": dead})])[0]

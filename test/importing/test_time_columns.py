@@ -6,6 +6,7 @@ from importing.logs import example, rows_of, write_text
 
 from winch_friction.cli.main import run
 from winch_friction.importing.log import LogColumn
+from winch_friction.importing.propose import propose
 from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
 from winch_friction.importing.time_numbers import clock_of_numbers, counts_rows, is_clock, seconds_of_one
 from winch_friction.physics.errors import InputError
@@ -128,3 +129,44 @@ def test_two_recordings_in_the_wrong_order_are_told_by_their_line(typed):
     assert status == 2
     assert "'Time' goes back by" in said.err
     assert f"at line {typed.count - half + 2}:" in said.err
+
+
+def two_clocks(tmp_path, second, name):
+    """A log with another clock beside its own: what `second` makes of the seconds since the first row."""
+    run = example("test_02")
+    told = [name, *(second(each) for each in run.time - run.time[0])]
+    return write_text(
+        tmp_path / "log.csv", [[*row, each] for row, each in zip(rows_of(run, decimal="."), told, strict=True)]
+    )
+
+
+@pytest.mark.parametrize(
+    ("second", "name"),
+    [
+        (lambda s: f"{5.0 + 1.02 * s:.3f}", "time_plc [s]"),
+        (lambda s: f"{1500.0 * s:.0f}", "PLC-Zeit [ms]"),
+    ],
+)
+def test_two_times_that_differ_are_asked_about(second, name, tmp_path, crane_150t):
+    """One of them was taken without a word: accelerations and delays by the other clock."""
+    log = two_clocks(tmp_path, second, name)
+    found = propose([log], crane_150t, "crane_150t")
+    (asked,) = [each for each in found.problems if "tell two times" in each]
+    assert name in asked
+    assert "--set time.from=COLUMN" in asked
+    answered = propose([log], crane_150t, "crane_150t", ("time.from=Zeit",))
+    assert not [each for each in answered.problems if "tell two times" in each]
+
+
+@pytest.mark.parametrize(
+    ("second", "name"),
+    [
+        (lambda s: f"{7000 + 1000 * s:.0f}", "PLC-Zeit [ms]"),
+        (lambda s: f"{np.floor(0.04 + s):.0f}", "time_plc [s]"),
+        (lambda s: f"{1.0 + 1.0001 * s:.6f}", "time_plc [s]"),
+    ],
+)
+def test_two_times_that_agree_are_one(second, name, tmp_path, crane_150t):
+    """Another origin, whole seconds, a quartz that is a tenth of a per mille off."""
+    found = propose([two_clocks(tmp_path, second, name)], crane_150t, "crane_150t")
+    assert not [each for each in found.problems if "tell two times" in each]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.commissioning.kinematics import ways
 from winch_friction.commissioning.view import BROKEN_SHARE, broken_cells, usable
 from winch_friction.physics.channels import display_unit
 from winch_friction.physics.errors import counted
@@ -205,12 +206,14 @@ def read_as(column: str, value: float, of_size: bool = False) -> str:
 OIL = (-20.0, 95.0)
 FREEZING = 273.15  # K
 COUNTED = "counted"  # cause of layers counted from 0, which no drum has
+NEARER = 3.0  # times: a counter of the wire is right within a per cent or two, a layer's radius is 5 to 8 % larger
 
 
 def reading_findings(runs: Sequence[Run], crane: Crane) -> Iterator[Finding]:
     """What is wrong with the layers and the oil of runs, by the crane's drum and by what oil is."""
     for run in runs:
         yield from _of_layers(run, crane)
+        yield from _one_layer_up(run, crane)
         yield from _of_oil(run)
 
 
@@ -229,6 +232,27 @@ def _of_layers(run: Run, crane: Crane) -> Iterator[Finding]:
     # few cells are a counter that was not set yet
     severity, cause = "error" if off > BROKEN_SHARE else "warning", COUNTED if from_zero else "range"
     yield Finding(severity, cause, said, "wire_layer", (run.name,), {"share": off})
+
+
+def _one_layer_up(run: Run, crane: Crane) -> Iterator[Finding]:
+    """A log that counts layers from 0 and never comes to the innermost: its wire moves as on the next layer."""
+    layers = _sane(run, "wire_layer")
+    if (
+        not len(layers)
+        or layers.min() != layers.max()
+        or not (crane.drum.has(layers[0]) and crane.drum.has(layers[0] + 1))
+    ):
+        return
+    own, radii = round(float(layers[0])), np.array(crane.drum.layer_radii)
+    told = ways(run, crane).get("wire_out", 0.0) * float(np.mean(radii))
+    off = np.abs(told - radii)
+    if NEARER * off[own] < off[own - 1]:
+        said = (
+            f"{run.name}: wire_layer is {own}, whose radius is {radii[own - 1]:.4g} m, and wire_out moves as on layer "
+            f"{own + 1} ({told:.4g} m by the speed, {radii[own]:.4g} m by the crane file): where the log counts the "
+            "innermost as 0, add 1"
+        )
+        yield Finding("warning", "layer", said, "wire_layer", (run.name,), {"told_radius": told})
 
 
 def _of_oil(run: Run) -> Iterator[Finding]:

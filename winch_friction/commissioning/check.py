@@ -23,7 +23,7 @@ from winch_friction.commissioning.channels import (
     told_slow_clock,
 )
 from winch_friction.commissioning.diagnose import diagnose
-from winch_friction.commissioning.kinematics import Fit, agreements, fit_of
+from winch_friction.commissioning.kinematics import Fit, agreements, fit_of, ways
 from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.view import RunView, views_of
@@ -202,7 +202,7 @@ def diagnosed(
     fit = fit_of(views, model)
     diagnosis = diagnose(fit, views, crane, model, known) if ranked or fit.doubted else None
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
-    slow = [each for run, ratios in zip(usable, told, strict=True) for each in told_slow_clock(run, ratios)]
+    slow = [w for run, rates in zip(usable, told, strict=True) for w in told_slow_clock(run, rates | ways(run, crane))]
     readings = [*reading_findings(runs, crane)]
     findings = [
         *_named_crane(runs, crane, others),

@@ -10,11 +10,13 @@ import numpy as np
 from winch_friction.commissioning.balance import Closure, closure, static_torque
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
 
 # channel -> relative error that is ordinary, 1 sigma: an encoder counts, a wire lies on a layer or slips, a sea drifts
-ORDINARY = {"shaft_angle": 0.03, "speed_reference": 0.12, "wire_out": 0.12, "heave_velocity": 0.15}
+ORDINARY = {
+    "shaft_angle": 0.03, "drum_speed": 0.03, "speed_reference": 0.12, "wire_out": 0.12, "heave_velocity": 0.15,
+}  # fmt: skip
 IN_METRES = ("wire_out", "heave_velocity")  # these tell the wire's speed
 FOLLOWS = 0.8  # correlation below which a channel does not tell the speed (heave with the compensation off)
 MOST = 150.0  # score of one channel in one run: one flat contradiction suffices
@@ -40,8 +42,8 @@ def agreements(view: RunView, must_follow: Sequence[str] = ()) -> list[Agreement
     Those that `must_follow` count as contradictions when they do not.
     """
     found = []
-    for channel, rate in view.rates.items():
-        told = rate / view.lever if channel in IN_METRES else rate
+    for channel in view.rates:
+        told = at_shaft(view, channel)
         ratio, correlation = _compared(view.speed, told)
         if abs(correlation) >= FOLLOWS:
             late = LATE if _is_late(view.speed, told, correlation) else 0.0
@@ -49,6 +51,14 @@ def agreements(view: RunView, must_follow: Sequence[str] = ()) -> list[Agreement
         elif channel in must_follow:
             found.append(Agreement(channel, ratio, correlation, MOST))
     return found
+
+
+def at_shaft(view: RunView, channel: str) -> FloatArray:
+    """What a channel tells of the speed of the motor shaft, rad/s, by this crane's gear and drum."""
+    rate = view.rates[channel]
+    if channel == "drum_speed":
+        return rate * view.gear_ratio
+    return rate / view.lever if channel in IN_METRES else rate
 
 
 def _is_late(speed: FloatArray, told: FloatArray, correlation: float) -> bool:
@@ -60,6 +70,25 @@ def _is_late(speed: FloatArray, told: FloatArray, correlation: float) -> bool:
     back = (_compared(speed[:-lag], told[lag:])[1] for lag in LAGS)
     best = max((abs(each) for each in (*shifted, *back)), default=0.0)
     return 1.0 - best < SHARPER * misfit
+
+
+def ways(run: Run, crane: Crane) -> dict[str, float]:
+    """By channel that counts turns or wire: the way that it goes over the way that the speed goes in the run's time.
+
+    The rate of a channel of coarse steps drowns in them where a clock is a thousand times too slow; its sum does not.
+    """
+    if "motor_speed" not in run:
+        return {}
+    turned = np.cumsum(np.nan_to_num(run["motor_speed"]) * np.diff(run.time, prepend=run.time[0]))
+    lever = float(np.mean(crane.drum.layer_radii)) / crane.gear_ratio
+    counted = {name: run[name] / per for name, per in (("shaft_angle", 1.0), ("wire_out", -lever)) if name in run}
+    found = {name: _compared(_apart(turned), _apart(way)) for name, way in counted.items()}
+    return {name: ratio for name, (ratio, correlation) in found.items() if abs(correlation) >= FOLLOWS}
+
+
+def _apart(way: FloatArray) -> FloatArray:
+    known = way[np.isfinite(way)]
+    return way - float(np.mean(known)) if known.size else way
 
 
 def _compared(speed: FloatArray, told: FloatArray) -> tuple[float, float]:

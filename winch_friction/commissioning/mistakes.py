@@ -142,7 +142,7 @@ def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> I
     yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
     if any(view.rates for view in views):
         said = "the sign of motor_speed, speed_reference and shaft_angle is flipped: positive must mean hoisting"
-        undo = speeds_times(-1.0, "speed_reference", "shaft_angle")
+        undo = speeds_times(-1.0, "speed_reference", "shaft_angle", "drum_speed")
         yield Mistake("sign", "motor_speed", said, SIGN + 1.0, undo, -1.0)
     if any(_told_direction(view) is not None for view in views):
         said = "motor_speed has no sign: lowering must be negative"

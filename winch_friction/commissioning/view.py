@@ -38,8 +38,9 @@ class RunView:
     """A run as the crane explains it, in blocks; SI.
 
     `load` is NaN where it is not logged; `load_torque` N m at the shaft stands in for it where it is measured. `rates`
-    are other channels' words on the speed: shaft speed rad/s (`shaft_angle`, `speed_reference`) or wire speed m/s, up
-    positive (`wire_out`, `heave_velocity`). `wire` is the weight of the wire paid out, N; None where it is not known.
+    are other channels' words on the speed: shaft speed rad/s (`shaft_angle`, `speed_reference`), the drum's rad/s
+    (`drum_speed`) or wire speed m/s, up positive (`wire_out`, `heave_velocity`). `wire` is the weight of the wire paid
+    out, N; None where it is not known.
     `bounce` is the frequency rad/s at which the load swings on its wire; 0 where crane file or log do not tell.
     """
 
@@ -245,6 +246,8 @@ def _rates(blocks: _Blocks, heave: FloatArray | None) -> dict[str, FloatArray]:
         rates["speed_reference"] = blocks.mean("speed_reference")
     if "shaft_angle" in run and np.ptp(usable("shaft_angle", run["shaft_angle"])) > WRAPS:
         rates["shaft_angle"] = _slope(blocks.mean("shaft_angle"), blocks.time)
+    if "drum_speed" in run:  # beside the motor's, which alone is used
+        rates["drum_speed"] = blocks.mean("drum_speed")
     if "wire_out" in run:
         rates["wire_out"] = -_slope(blocks.mean("wire_out"), blocks.time)
     if heave is not None:

@@ -11,6 +11,7 @@ from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_S
 from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.preparation.wire_mode import settling_time
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.channels import GROUP_CHANNELS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -21,6 +22,8 @@ TELLING = "runs that tell more effects apart"
 HEAVE = "runs of heave compensation that log heave_velocity, without which the crane is taken to stand still"
 MOVED = 0.5  # of a gap's variance, left where the load is taken to hang still: then the crane has moved
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
+SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer no noise can be told, and no balance made
+OF_BALANCE = (*GROUP_CHANNELS, "motor_speed", "motor_torque", "motor_current", "mechanical_power")
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
 
@@ -76,9 +79,25 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             notes.append(f"{run.name} left out: it lasts {told_apart(lasts, needed)} s, needed {needed:g} s")
         elif rate < IN_TIME * LIMITS.lowest_rate and not _steady(run):
             notes.append(f"{run.name} left out: logged at {rate:.3g} Hz, needed {LIMITS.lowest_rate:g} Hz")
+        elif scattered := _scattered(run):
+            notes.append(f"{run.name} left out: {scattered}")
         else:
             kept.append(run)
     return kept, notes
+
+
+def _scattered(run: Run) -> str:
+    """Which channel of the balance has values that stand alone between rows without one: not a slower channel, whose
+    values come in a rhythm (`slow_columns` has filled it), but cells lost at random. Nothing of a sound run."""
+    for name in (each for each in run.columns if each.rpartition(".")[2] in OF_BALANCE):
+        known = np.isfinite(run[name])
+        followed = np.count_nonzero(known[1:] & known[:-1]) / max(np.count_nonzero(known), 1)
+        if followed < SCATTERED and known.any():
+            share = float(np.mean(known))
+            return (
+                f"{name} has a value in {100.0 * share:.3g} % of the rows, and those stand alone: log it in every row"
+            )
+    return ""
 
 
 def _steady(run: Run) -> bool:

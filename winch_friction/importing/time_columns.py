@@ -13,9 +13,14 @@ from winch_friction.importing.ticks import fraction_unit
 from winch_friction.importing.time_base import TimeGuess, guess_form, guess_time, to_seconds
 from winch_friction.importing.time_numbers import counts_rows
 from winch_friction.importing.units import fitting_si_unit, header_readings
+from winch_friction.physics.signals import FloatArray
 
 _DATED = 0.3  # a date beside the clock: worth more than the order of day and month, if open, makes it unsure
 _PARTS = 3  # columns of a time whose parts stand apart, at least; their names have said what they are
+_CLOCKS = (
+    2e-3  # by which two clocks may differ: a quartz is a tenth of it off, no sensor tells so small an error of a rate
+)
+_STEPS = 2.0  # a clock of whole seconds begins and ends within a step of another
 _SURE = 0.5  # how well a name says a time, from which it is one and nothing else
 
 
@@ -49,6 +54,7 @@ def settle_time(draft: Draft) -> None:
     )  # fmt: skip
     if guess.question:
         draft.questions.append(f"time: {guess.question}")
+    draft.questions += _rivals(draft.logs[0], columns, guess)
     first = columns[0]
     if (
         len(columns) == 1
@@ -60,6 +66,30 @@ def settle_time(draft: Draft) -> None:
             f"time: '{first.name}' rises by 1 from row to row: does it count rows? say the time from one to the next, "
             "--set 'time.unit=20 ms' for 50 rows a second; --set time.unit=s if it counts seconds"
         )
+
+
+def _rivals(log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess) -> list[str]:
+    """What to ask where another column of the name of a time says that the log lasts longer, or less long."""
+    taken = to_seconds(columns, guess.base, "time", log.place, strict=False)
+    for other in log.columns:
+        rival = None if other in columns or not _is_named(other) else guess_time([other], _time_reading(other)[1])
+        if rival is None:
+            continue
+        told = to_seconds([other], rival.base, "time", log.place, strict=False)
+        both = np.isfinite(taken) & np.isfinite(told)
+        own, its = (np.ptp(each[both]) if both.any() else 0.0 for each in (taken, told))
+        if abs(own - its) > _CLOCKS * own + _STEPS * max(_step(taken[both]), _step(told[both])):
+            names = " + ".join(c.name for c in columns)
+            return [
+                f"time: '{names}' and '{other.name}' tell two times, {own:.6g} s and {its:.6g} s from the first row to "
+                "the last: which is it? --set time.from=COLUMN"
+            ]
+    return []
+
+
+def _step(seconds: FloatArray) -> float:
+    steps = np.diff(seconds)
+    return float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
 
 
 def _why_none(log: Log) -> str:

@@ -222,3 +222,11 @@ def test_a_file_is_replaced_by_the_option_of_the_other_verbs(option, tmp_path, c
     assert out.read_text() == "kept"
     assert run([*arguments, option]) == 0
     assert out.read_text() != "kept"
+
+
+@pytest.mark.parametrize("name", ["../elsewhere", "/tmp/elsewhere", "a/b"])
+def test_a_name_is_no_path(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "crane", *CRANE, "--name", name]) == 2
+    assert "--out says where" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

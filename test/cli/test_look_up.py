@@ -155,3 +155,10 @@ def test_a_slip_is_one_line_that_says_what_was_meant(words, said, tmp_path, monk
     assert said in error
     assert len(error.splitlines()) == 1
     assert sorted(each.name for each in tmp_path.iterdir()) == ["files", "logs"]
+
+
+@pytest.mark.parametrize("name", ["crane_150t", "churning", "ahc_55t_215"])
+@pytest.mark.parametrize("option", [["--load", "100"], ["--crane", "crane_150t"]])
+def test_an_option_of_a_models_curve_is_not_ignored_elsewhere(name, option, capsys):
+    assert run(["show", name, *option]) == 2
+    assert "--load and --crane are for the curve of a model" in capsys.readouterr().err

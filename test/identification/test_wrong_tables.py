@@ -113,3 +113,14 @@ def test_a_spreadsheet_is_told_as_one(tmp_path):
     (tmp_path / "table.xlsx").write_bytes(b"PK\3\4\xff")
     with pytest.raises(InputError, match=r"a spreadsheet; save it as \.csv"):
         read_supplier_table(tmp_path / "table.xlsx")
+
+
+def test_wrong_axes_and_a_wrong_efficiency_are_told_together(tmp_path):
+    rows = [f"{n},{p},{d},90" for n, p, d in ROWS]
+    rows[3], rows[5] = rows[3].replace(",90", ",101"), rows[5].replace(",350,", ",-350,")
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join([f"{AXES},efficiency [%]", *rows]))
+    with pytest.raises(InputError) as caught:
+        read_supplier_table(path)
+    assert ["row 7" in each for each in caught.value.problems] == [True, False]
+    assert "row 5: column 'efficiency'" in caught.value.problems[1]

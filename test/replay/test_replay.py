@@ -299,3 +299,17 @@ def test_a_log_too_slow_to_be_replayed_is_said_by_its_step(tmp_path, run, capsys
     said = capsys.readouterr().err.splitlines()[-1]
     assert "slow.csv: column 'time': a sample every 20 s is too slow for a replay, which takes one every 4 s" in said
     assert "max_age" not in said
+
+
+@pytest.mark.parametrize(
+    "option",
+    [["--pressure-reference", "absolute"], ["--joint", "winch"], ["--remap", "a=b"], ["--namespace", "winch_2"]],
+)
+def test_an_option_of_bags_is_not_ignored_with_a_run_file(option, tmp_path, capsys):
+    """Absolute pressures of a CSV were taken for gauge all the same."""
+    from winch_friction.cli.main import run
+
+    path = tmp_path / "run.csv"
+    path.write_text("time [s]\n0\n1\n")
+    assert run(["replay", str(path), "--model", "a6vm215_crane2", *option]) == 2
+    assert f"{option[0]}: of a bag's topics alone" in capsys.readouterr().err

@@ -61,7 +61,7 @@ def crane(
         "wire": (wire, float, "wire diameter, mm"),
     }
     facts = CraneFacts(**_answered(asked), inertia=inertia)
-    _write(out or Path(f"{facts.name}.yaml"), crane_text(facts), overwrite, as_json)
+    _write(out or _file_of(facts.name), crane_text(facts), overwrite, as_json)
 
 
 @app.command()
@@ -76,7 +76,7 @@ def plant(
 
     known = _hydraulic(crane)
     name = name or f"plant_{known.name}"
-    _write(out or Path(f"{name}.yaml"), plant_text(known, name), overwrite, as_json)
+    _write(out or _file_of(name), plant_text(known, name), overwrite, as_json)
 
 
 @app.command()
@@ -91,7 +91,7 @@ def model(
 
     known = _hydraulic(crane)
     name = name or f"seed_{known.name}"
-    _write(out or Path(f"{name}.yaml"), model_text(known, name), overwrite, as_json)
+    _write(out or _file_of(name), model_text(known, name), overwrite, as_json)
 
 
 @app.command()
@@ -120,7 +120,7 @@ def scenario(
         raise InputError(f"--mode ahc: crane '{known.name}' has no groups active and passive; use --mode normal")
     name = name or f"{mode}_{known.name}"
     text = scenario_text(known, name, plant or f"plant_{known.name}.yaml", mode, load)
-    _write(out or Path(f"{name}.yaml"), text, overwrite, as_json)
+    _write(out or _file_of(name), text, overwrite, as_json)
 
 
 @app.command("map")
@@ -173,6 +173,13 @@ def _hydraulic(name: str) -> Any:
             f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; templates are for hydraulic ones"
         )
     return crane
+
+
+def _file_of(name: str) -> Path:
+    """The file of a name, here; raises `InputError` for a name that would lead elsewhere."""
+    if Path(name).name != name:
+        raise InputError(f"--name {name}: a name without '/', which stands in the file; --out says where that goes")
+    return Path(f"{name}.yaml")
 
 
 def _write(path: Path, text: str, overwrite: bool, as_json: bool) -> None:

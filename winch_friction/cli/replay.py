@@ -70,7 +70,10 @@ def command(
     refuse_existing(overwrite, out, picture)
     if out is not None:
         refuse_unknown_kind(out)
-    options = bag_options_of(params_file) | bag_options(remap or [], joint, pressure_reference, namespace)
+    asked = bag_options(remap or [], joint, pressure_reference, namespace)
+    _refuse_bag_options(recording, {"remap": remap, "joint": joint, "pressure-reference": pressure_reference,
+                                    "namespace": namespace})  # fmt: skip
+    options = bag_options_of(params_file) | asked
     load_terms(terms_file)
     settings = settings_from_file(params_file) if params_file else None
     problems = Problems()
@@ -101,6 +104,19 @@ def command(
         show_json(content)
         return
     _show(content)
+
+
+def _refuse_bag_options(recording: Path, given: Mapping[str, Any]) -> None:
+    """Raise `InputError` for options of a bag with a run file, whose header alone says what its columns are."""
+    from winch_friction.physics.errors import InputError
+    from winch_friction.records.runs import is_bag
+
+    said = ", ".join(f"--{name}" for name, value in given.items() if value)
+    if said and recording.is_file() and not is_bag(recording):
+        raise InputError(
+            f"{recording}: {said}: of a bag's topics alone; a run file says in its header what its columns are, such "
+            "as 'main.pressure_a [bara]' for absolute pressures: leave it out"
+        )
 
 
 def _run_of(recording: Path, crane: Any, options: dict[str, Any]) -> Any:

@@ -46,6 +46,8 @@ def command(
         raise InputError(f"show: --kind '{what}' is none of {', '.join(SHOWN)}")
     if out is not None and what not in ("model", "term", "effect"):
         raise InputError(f"show: a page is drawn of models, terms and effects, not of a {what}; leave out --out")
+    if what != "model" and (load is not None or crane):
+        raise InputError(f"show: --load and --crane are for the curve of a model, not for a {what}; leave them out")
     if what == "model":
         _model(name, crane, load, out, as_json)
     elif what in ("effect", "term"):

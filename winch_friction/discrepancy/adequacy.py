@@ -91,8 +91,8 @@ def _scattered(run: Run) -> str:
     values come in a rhythm (`slow_columns` has filled it), but cells lost at random. Nothing of a sound run."""
     for name in (each for each in run.columns if each.rpartition(".")[2] in OF_BALANCE):
         known = np.isfinite(run[name])
-        followed = np.count_nonzero(known[1:] & known[:-1]) / max(np.count_nonzero(known), 1)
-        if followed < SCATTERED and known.any():
+        followed, of_all = float(np.sum(known[1:] & known[:-1])), float(np.sum(known))
+        if followed < SCATTERED * of_all:
             share = float(np.mean(known))
             return (
                 f"{name} has a value in {100.0 * share:.3g} % of the rows, and those stand alone: log it in every row"

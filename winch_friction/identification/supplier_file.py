@@ -37,9 +37,11 @@ def read_supplier_table(path: str | Path, max_displacement: float | None = None)
     for name, unit in _AXES.items():
         with problems:
             axes[name] = _positive(table, name, unit)
-    with problems:
-        for name in _LOSSES:
-            if name in table:
+    for name in _LOSSES:
+        with problems:
+            if name == "efficiency" and name in table:
+                _efficiency(table)
+            elif name in table:
                 table.column(name, _UNITS[name])
     problems.say()
     displacement = axes["displacement"]

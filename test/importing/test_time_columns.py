@@ -154,6 +154,7 @@ def test_two_times_that_differ_are_asked_about(second, name, tmp_path, crane_150
     (asked,) = [each for each in found.problems if "tell two times" in each]
     assert name in asked
     assert "--set time.from=COLUMN" in asked
+    assert "two tables side by side" in asked
     answered = propose([log], crane_150t, "crane_150t", ("time.from=Zeit",))
     assert not [each for each in answered.problems if "tell two times" in each]
 

@@ -82,7 +82,8 @@ def _rivals(log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess) -> list[
             names = " + ".join(c.name for c in columns)
             return [
                 f"time: '{names}' and '{other.name}' tell two times, {own:.6g} s and {its:.6g} s from the first row to "
-                "the last: which is it? --set time.from=COLUMN"
+                "the last: which is it? --set time.from=COLUMN; where each belongs to the columns beside it (two "
+                "tables side by side), bring them to one time first"
             ]
     return []
 

@@ -109,3 +109,22 @@ def test_a_bag_is_never_replaced_and_nobody_is_told_that_it_could_be(short, tmp_
 def test_effects_are_listed(capsys):
     assert run(["simulate", "--effects", "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)) == 27
+
+
+def test_an_interrupted_set_is_told_to_be_no_whole_one(tmp_path, monkeypatch, capsys):
+    """Six of twelve runs lay in the folder, and nothing had said that they are not all."""
+    from winch_friction.cli import simulate
+
+    def ended(path, scenario, crane, model, seed, hidden, truth):
+        if path.name.startswith("run_03"):
+            raise KeyboardInterrupt
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+        return {"run": str(path)}
+
+    monkeypatch.setattr(simulate, "_simulate_to", ended)
+    out = tmp_path / "runs"
+    assert run(["simulate", "gap_campaign", "--out", str(out)]) == 130
+    assert f"{out}: 2 of 12 runs were written, which is not the whole set" in capsys.readouterr().err
+    assert run(["simulate", "gap_campaign", "--out", str(out)]) == 2
+    assert "and 1 more of 12: exists already" in capsys.readouterr().err

@@ -57,7 +57,7 @@ def command(
 
       winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
     """
-    from winch_friction.cli.console import progress, refuse_unwritable, show_json, show_table
+    from winch_friction.cli.console import progress, refuse_unwritable, show_json, show_table, show_warnings
     from winch_friction.cli.inputs import machine_of
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
@@ -82,9 +82,14 @@ def command(
         plan = [(chosen.override({"plant": plant}), run_seed, path) for chosen, run_seed, path in plan]
     for chosen, _, _ in plan:
         refuse_other_plant(chosen, load_plant(chosen.plant), winch)
-    rows = []
-    for chosen, run_seed, path in progress(plan, "simulating", len(plan)):
-        rows.append(_simulate_to(path, chosen, winch, friction, run_seed, hidden, truth))
+    rows: list[dict[str, Any]] = []
+    try:
+        for chosen, run_seed, path in progress(plan, "simulating", len(plan)):
+            rows.append(_simulate_to(path, chosen, winch, friction, run_seed, hidden, truth))
+    except (KeyboardInterrupt, InputError):
+        if rows:  # whoever finds the folder would take it for the set
+            show_warnings([f"{out}: {len(rows)} of {len(plan)} runs were written, which is not the whole set"])
+        raise
     if as_json:
         show_json({"runs": rows, "hidden": dict(hidden), "seed": seed})
     else:
@@ -140,11 +145,13 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
 def _refuse_overwriting(paths: list[Path], overwrite: bool) -> None:
     from winch_friction.records.runs import BAG_SUFFIXES
 
-    for path in paths:
-        if path.exists() and path.suffix in BAG_SUFFIXES:
+    there = [path for path in paths if path.exists()]
+    more = f" and {len(there) - 1} more of {len(paths)}" if len(there) > 1 else ""
+    for path in there:
+        if path.suffix in BAG_SUFFIXES:
             raise InputError(f"{path}: exists already, and a bag is never replaced; give another --out, or remove it")
-        if path.exists() and not overwrite:
-            raise InputError(f"{path}: exists already; give another --out, or --overwrite to replace it")
+        if not overwrite:
+            raise InputError(f"{path}{more}: exists already; give another --out, or --overwrite to replace it")
 
 
 def _simulate_to(

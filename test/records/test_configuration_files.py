@@ -241,3 +241,15 @@ def test_what_a_file_may_have_is_among_the_known_keys():
         model_from_text(text)
     known = set(str(caught.value).partition("known keys are ")[2].split(", "))
     assert {"corrections", "tables"} <= known
+
+
+def test_every_number_of_a_crane_that_cannot_be_is_told_at_once(tmp_path):
+    """The reader stopped at its first, and the schema knows neither units nor what is finite."""
+    given = {**content("crane_150t", "cranes"), "gear_ratio": -160, "absolute_torque_limit": {"value": float("nan")}}
+    given |= {"max_displacement": {"value": 215, "unit": "cm^3"}, "drum": {"layer_radii": [0.8, 0.7]}}
+    path = tmp_path / "crane.yaml"
+    path.write_text(yaml.safe_dump(given))
+    with pytest.raises(InputError) as caught:
+        load_crane(path)
+    for key in ("gear_ratio", "layer_radii", "max_displacement", "absolute_torque_limit"):
+        assert sum(key in each for each in caught.value.problems) == 1

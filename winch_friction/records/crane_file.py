@@ -2,8 +2,9 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,22 +35,27 @@ def crane_from_content(content: Any, where: str) -> Crane:
     if top.text("schema") != SCHEMA:
         raise InputError(f"{where}: schema '{top.text('schema')}' is not '{SCHEMA}'")
     drive = _drive(top)
-    crane = Crane(
-        name=top.text("name"),
-        drive=drive,
-        gear_ratio=_positive(top, "gear_ratio", "1"),
-        drum=_drum(top),
-        groups=_groups(top, drive),
-        inertia=_positive(top, "inertia", "kg*m^2"),
-        max_displacement=_positive(top, "max_displacement", "m^3/rad") if drive.hydraulic else 0.0,
-        wire_mass=top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
-        wire_stiffness=_positive(top, "wire_stiffness", "N") if "wire_stiffness" in top else float("inf"),
-        absolute_torque_limit=_positive(top, "absolute_torque_limit", "N*m"),
-        **{key: _positive(top, key, unit) for key, unit in RATINGS.items() if key in top},
-    )
+    readers: dict[str, Callable[[], Any]] = {
+        "name": lambda: top.text("name"),
+        "gear_ratio": lambda: _positive(top, "gear_ratio", "1"),
+        "drum": lambda: _drum(top),
+        "groups": lambda: _groups(top, drive),
+        "inertia": lambda: _positive(top, "inertia", "kg*m^2"),
+        "max_displacement": lambda: _positive(top, "max_displacement", "m^3/rad") if drive.hydraulic else 0.0,
+        "wire_mass": lambda: top.quantity("wire_mass", "kg/m") if "wire_mass" in top else 0.0,
+        "wire_stiffness": lambda: _positive(top, "wire_stiffness", "N") if "wire_stiffness" in top else float("inf"),
+        "absolute_torque_limit": lambda: _positive(top, "absolute_torque_limit", "N*m"),
+    }
+    readers |= {key: partial(_positive, top, key, unit) for key, unit in RATINGS.items() if key in top}
+    problems, read = Problems(), {}
+    for key, reader in readers.items():
+        with problems:
+            read[key] = reader()
     top.get("description")
-    top.close()
-    return check_ranges(crane, where)
+    with problems:
+        top.close()
+    problems.say()
+    return check_ranges(Crane(drive=drive, **read), where)
 
 
 def _drive(top: Section) -> Drive:

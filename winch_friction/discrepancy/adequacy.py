@@ -11,19 +11,16 @@ from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_S
 from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.preparation.wire_mode import settling_time
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.channels import GROUP_CHANNELS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.records.runs import NO_RECORD, refuse_same_names
+from winch_friction.records.runs import NO_RECORD, refuse_same_names, scattered
 
 SWING = "longest record, of a load whose swing on its wire is not told"
 TELLING = "runs that tell more effects apart"
 HEAVE = "runs of heave compensation that log heave_velocity, without which the crane is taken to stand still"
 MOVED = 0.5  # of a gap's variance, left where the load is taken to hang still: then the crane has moved
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
-SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer no noise can be told, and no balance made
-OF_BALANCE = (*GROUP_CHANNELS, "motor_speed", "motor_torque", "motor_current", "mechanical_power")
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
 
@@ -79,25 +76,11 @@ def long_enough(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             notes.append(f"{run.name} left out: it lasts {told_apart(lasts, needed)} s, needed {needed:g} s")
         elif rate < IN_TIME * LIMITS.lowest_rate and not _steady(run):
             notes.append(f"{run.name} left out: logged at {rate:.3g} Hz, needed {LIMITS.lowest_rate:g} Hz")
-        elif scattered := _scattered(run):
-            notes.append(f"{run.name} left out: {scattered}")
+        elif stands_alone := scattered(run):
+            notes.append(f"{run.name} left out: {stands_alone}")
         else:
             kept.append(run)
     return kept, notes
-
-
-def _scattered(run: Run) -> str:
-    """Which channel of the balance has values that stand alone between rows without one: not a slower channel, whose
-    values come in a rhythm (`slow_columns` has filled it), but cells lost at random. Nothing of a sound run."""
-    for name in (each for each in run.columns if each.rpartition(".")[2] in OF_BALANCE):
-        known = np.isfinite(run[name])
-        followed, of_all = float(np.sum(known[1:] & known[:-1])), float(np.sum(known))
-        if followed < SCATTERED * of_all:
-            share = float(np.mean(known))
-            return (
-                f"{name} has a value in {100.0 * share:.3g} % of the rows, and those stand alone: log it in every row"
-            )
-    return ""
 
 
 def _steady(run: Run) -> bool:
@@ -107,13 +90,10 @@ def _steady(run: Run) -> bool:
 
 def of_records(runs: Sequence[Run], kept: Sequence[Run]) -> list[Check]:
     """What can be said before the balance is closed."""
-    lengths = [float(run.time[-1] - run.time[0]) for run in runs]
-    rates = [_rate(run.time) for run in runs]
-    usable = sum(float(run.time[-1] - run.time[0]) for run in kept)
     return [
-        _at_least("longest record", max(lengths), LIMITS.shortest_record, "s"),
-        _at_least("fastest log", max(rates) / IN_TIME, LIMITS.lowest_rate, "Hz"),
-        _at_least("records that can be used", usable, LIMITS.least_usable, "s"),
+        _at_least("longest record", max(np.ptp(run.time) for run in runs), LIMITS.shortest_record, "s"),
+        _at_least("fastest log", max(_rate(run.time) for run in runs) / IN_TIME, LIMITS.lowest_rate, "Hz"),
+        _at_least("records that can be used", sum(np.ptp(run.time) for run in kept), LIMITS.least_usable, "s"),
     ]
 
 

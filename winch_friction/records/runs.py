@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.channels import SLOW_INPUTS
+from winch_friction.physics.channels import GROUP_CHANNELS, SLOW_INPUTS
 from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane, held
@@ -107,6 +107,8 @@ RHYTHM = 10  # values from which on a rhythm is one
 LONGEST = 5.0  # usual steps between values that are held; beyond them there is a hole
 SPEED = "motor_speed"
 HELD = (*SLOW_INPUTS, "displacement")  # all others follow the motion
+SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer no noise can be told, and no balance made
+OF_BALANCE = (*GROUP_CHANNELS, "motor_speed", "motor_torque", "motor_current", "mechanical_power")
 
 
 def rows_between(values: FloatArray) -> float:
@@ -118,6 +120,20 @@ def rows_between(values: FloatArray) -> float:
     usual = float(np.median(steps))
     ends = max(known[0], len(values) - 1 - known[-1])
     return 0.0 if max(steps.max(), ends) > LONGEST * usual else usual  # holes, not a slower channel
+
+
+def scattered(run: Run) -> str:
+    """Which channel of the balance has values that stand alone between rows without one: not a slower channel, whose
+    values come in a rhythm (`filled`), but cells lost at random. Nothing of a sound run."""
+    for name in (each for each in run.columns if each.rpartition(".")[2] in OF_BALANCE):
+        known = np.isfinite(run[name])
+        followed, of_all = float(np.sum(known[1:] & known[:-1])), float(np.sum(known))
+        if followed < SCATTERED * of_all:
+            share = float(np.mean(known))
+            return (
+                f"{name} has a value in {100.0 * share:.3g} % of the rows, and those stand alone: log it in every row"
+            )
+    return ""
 
 
 def filled(run: Run) -> tuple[Run, list[str]]:

@@ -8,10 +8,22 @@ from winch_friction.physics.fluid import (
     LEAKAGE_LAWS,
     REFERENCE_PRESSURE,
     air_compressed,
+    kinematic_viscosity,
     leakage_per_coefficient,
+    relative_viscosity,
     relaxed_compression,
 )
+from winch_friction.physics.friction import term_named
+from winch_friction.physics.friction.symbols import oil_temperature, w
 from winch_friction.physics.winch.operating_point import PredictedSpeed, time_to_reversal
+
+
+def test_the_oil_is_as_thick_as_it_is_stated_and_terms_follow_it():
+    np.testing.assert_allclose(kinematic_viscosity(np.array([20.0, 60.0])), [134.0, 21.0])
+    term = term_named("viscosity_temperature")
+    for celsius in (-10.0, 40.0, 80.0):
+        values = {term.parameters[0].symbol: 1.0, w: 1.0, oil_temperature: celsius}
+        assert float(term.equation.subs(values)) == pytest.approx(relative_viscosity(celsius) - 1.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("law", LEAKAGE_LAWS)

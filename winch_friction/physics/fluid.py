@@ -6,6 +6,7 @@ Viscosity is Walther's law (ASTM D341), log10 log10(nu + 0.7) = A - B log10 T, t
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +20,14 @@ SLOPE = (_LOG_20 - _LOG_60) / (math.log10(333.15) - math.log10(293.15))
 LEVEL = _LOG_20 + SLOPE * math.log10(293.15)
 
 
+def walther(celsius: Any, log10: Callable[[Any], Any]) -> Any:
+    """Kinematic viscosity in cSt at temperatures in degC: of arrays, or of a symbol, by their own logarithm."""
+    return 10**10 ** (LEVEL - SLOPE * log10(celsius + 273.15)) - 0.7
+
+
 def kinematic_viscosity(celsius: FloatArray | float) -> FloatArray:
     """Kinematic viscosity in cSt at temperatures in degC."""
-    return np.asarray(10.0**10.0 ** (LEVEL - SLOPE * np.log10(np.asarray(celsius) + 273.15)) - 0.7)
+    return np.asarray(walther(np.asarray(celsius), np.log10))
 
 
 def relative_viscosity(celsius: FloatArray | float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from winch_friction.physics.fluid import LEVEL, SLOPE
+from winch_friction.physics.fluid import REFERENCE, walther
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, oil_temperature, s, shaft_angle, time, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
 
@@ -22,17 +22,17 @@ b_r = Parameter("b_r", "1", 0.01, lower=-0.2, upper=0.2, doc="cosine amplitude o
 k_r = Parameter("k_r", "1", 1.0, lower=1e-3, upper=100.0, shape=True, doc="periods per revolution of the motor shaft")
 
 
-def walther(celsius: sp.Expr | float) -> sp.Expr:
-    """Kinematic viscosity in cSt at a temperature in degC: log10 log10(nu + 0.7) = A - B log10 T (ASTM D341)."""
-    return sp.Pow(10, sp.Pow(10, LEVEL - SLOPE * sp.log(celsius + 273.15) / sp.log(10))) - 0.7
+def viscosity(celsius: sp.Expr | float) -> sp.Expr:
+    """Kinematic viscosity in cSt at a temperature in degC."""
+    return walther(celsius, lambda kelvin: sp.log(kelvin) / sp.log(10))
 
 
-_NU_40 = float(walther(40.0))
+NU_40 = float(viscosity(REFERENCE))
 _CATALOGUE = "docs/discrepancy.md"
 
 viscosity_temperature = register(
     Term(
-        "viscosity_temperature", K_v.symbol * (walther(oil_temperature) / _NU_40 - 1) * w, (K_v,), Scope.SYSTEM,
+        "viscosity_temperature", K_v.symbol * (viscosity(oil_temperature) / NU_40 - 1) * w, (K_v,), Scope.SYSTEM,
         "Walther, ASTM D341", "fluid",
     )
 )  # fmt: skip

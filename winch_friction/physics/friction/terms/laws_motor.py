@@ -19,7 +19,7 @@ from winch_friction.physics.friction.symbols import (
     w,
 )
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
-from winch_friction.physics.friction.terms.effects_winch import walther
+from winch_friction.physics.friction.terms.effects_winch import NU_40, viscosity
 
 # -- the oil
 POLE = 95.0  # degC below zero of the Vogel-Fulcher-Tammann equation, usual for mineral oils
@@ -59,7 +59,7 @@ def _declare(name: str, equation: sp.Expr, parameters: tuple[Parameter, ...], so
 
 
 viscosity_reference = _declare(
-    "viscosity_reference", K_vw.symbol * (walther(oil_temperature) / walther(T_vw.symbol) - 1) * w, (K_vw, T_vw),
+    "viscosity_reference", K_vw.symbol * (viscosity(oil_temperature) / viscosity(T_vw.symbol) - 1) * w, (K_vw, T_vw),
     "Walther, ASTM D341, with a reference temperature of its own",
 )  # fmt: skip
 viscosity_vogel = _declare(
@@ -88,7 +88,6 @@ viscosity_each_way = _declare(
 FULL_SPEED, FULL_PRESSURE = 2000.0 * RPM, 200.0 * BAR  # normalise powers: a factor keeps one unit for every exponent
 FULL_FLOW = 0.02  # m^3/s, of one group of motors at speed
 _TINY = 1e-6
-_NU_40 = float(walther(40.0))
 
 c_lp = Parameter("c_lp", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement")
 a_lp = Parameter("a_lp", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="exponent of the pressure")
@@ -165,10 +164,10 @@ port_one_way = _motor(
 )  # fmt: skip
 # the number stands outside the root: which of the two a number inside goes to differs between versions of SymPy
 _SMALL = sp.Rational(1, 4)
-_AT_40 = float(_NU_40**-_SMALL)
+_AT_40 = float(NU_40**-_SMALL)
 churning_viscous = _motor(
     "churning_viscous",
-    _AT_40 * T_cv.symbol * _w**n_cv.symbol * walther(oil_temperature) ** _SMALL,
+    _AT_40 * T_cv.symbol * _w**n_cv.symbol * viscosity(oil_temperature) ** _SMALL,
     (T_cv, n_cv), "Changenet and Velex 2007: churning grows with a small power of the viscosity",
 )  # fmt: skip
 churning_one_way = _motor(

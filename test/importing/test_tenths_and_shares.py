@@ -1,10 +1,14 @@
 """Numbers that are tenths or shares: a controller's bar in tenths was taken for psi, a speed in % could not be said."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from importing.logs import EXAMPLES, GERMAN, example, rows_of, same, write_text
 
 from winch_friction.cli.main import run
+from winch_friction.importing import orientation
+from winch_friction.importing.carry_out import _default_share
 from winch_friction.importing.units import conversion, fitting_si_unit, is_share
 from winch_friction.physics.errors import InputError
 from winch_friction.records.crane_file import load_crane
@@ -96,3 +100,19 @@ def test_a_fans_speed_in_percent_is_no_channel(imported):
     assert read_run(written, load_crane("crane_150t"))["motor_speed"] == pytest.approx(
         example("test_02")["motor_speed"], abs=0.05
     )
+
+
+def test_a_share_is_by_itself_of_the_cranes_largest_displacement_alone():
+    crane = load_crane("crane_150t")
+    assert _default_share("displacement", crane) == crane.max_displacement
+    assert np.isnan([_default_share("motor_speed", crane), _default_share("displacement", None)]).all()
+
+
+@pytest.mark.parametrize(("after", "turned"), [(4.9, True), (5.1, False)])
+def test_a_negative_displacement_is_turned_where_that_halves_the_misfit(monkeypatch, after, turned):
+    misfits = iter([10.0, after])
+    monkeypatch.setattr(orientation, "_mean_mismatch", lambda _: next(misfits))
+    draft = SimpleNamespace(log_map="as it was", converted=lambda: [SimpleNamespace(columns={"d": -np.ones(3)})])
+    draft.change = lambda name, sign, because: setattr(draft, "log_map", (name, sign))
+    orientation._settle_displacement(draft, "d")
+    assert draft.log_map == (("d", -1) if turned else "as it was")

@@ -10,8 +10,8 @@ from winch_friction.identification.one_group import run_as_main
 from winch_friction.identification.plateaus import find_plateaus
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
-from winch_friction.records.run_checks import checked_run
-from winch_friction.records.runs import apart, filled, read_run, rows_between
+from winch_friction.records.run_checks import checked_run, rows_between
+from winch_friction.records.runs import apart, filled, read_run
 
 EXAMPLES = Path(__file__).parents[2] / "config" / "examples" / "practice_150t"
 TIME = 0.02 * np.arange(600)

@@ -16,8 +16,7 @@ from winch_friction.physics.channels import limits_of
 from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane, held
-from winch_friction.records.run_checks import GAP, checked_run
-from winch_friction.records.runs import rows_between
+from winch_friction.records.run_checks import GAP, checked_run, rows_between
 from winch_friction.records.unit_names import conversion_to_si
 
 STRAY = 0.01  # share of cells that are no numbers, or that no sensor can give, up to which they are strays

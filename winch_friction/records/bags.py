@@ -16,7 +16,8 @@ from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, Float
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Bag, open_bag
 from winch_friction.records.bag_storage import lost_of
-from winch_friction.records.run_checks import Place, checked_run, own_metadata
+from winch_friction.records.plain import own_metadata
+from winch_friction.records.run_checks import Place, checked_run
 from winch_friction.records.sample_stream import InputHold, SampleStream
 
 METADATA_KEY = "winch_friction"

@@ -12,7 +12,8 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
 from winch_friction.records.csv_file import Header, header_text, read_headers, said_of_nameless
 from winch_friction.records.parquet_units import said_units
-from winch_friction.records.run_checks import Place, checked_run, own_metadata
+from winch_friction.records.plain import own_metadata
+from winch_friction.records.run_checks import Place, checked_run
 
 _METADATA = b"winch_friction"
 _DATES = ("timestamp", "duration")  # types of a column of dates, as pandas writes an index of times

@@ -7,7 +7,6 @@ shorter than a second, columns that are not of the contract (kept aside), and wh
 another unit by a column without one, which is SI.
 """
 
-import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -17,7 +16,6 @@ from winch_friction.physics.channels import plausible
 from winch_friction.physics.errors import InputError, Problems, counted, meant
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import ELECTRIC, HYDRAULIC, Crane, Drive
-from winch_friction.records.runs import rows_between
 
 # -- columns without a unit
 
@@ -56,18 +54,21 @@ def remarks_on_bare_columns(name: str, columns: Mapping[str, FloatArray], bare: 
     return said
 
 
-# -- what is kept beside the columns
+# -- columns that a slower logger writes in every n-th row only
+SPARSE = 0.67  # of the rows: what has a value in more of them has holes
+RHYTHM = 10  # values from which on a rhythm is one
+LONGEST = 5.0  # usual steps between values that are held; beyond them there is a hole
 
 
-def own_metadata(text: Any, name: str) -> tuple[dict[str, Any], list[str]]:
-    """What this package wrote about a run, from its JSON; nothing where it is none, and then a warning of the run."""
-    try:
-        found = json.loads(text)
-    except (TypeError, ValueError, RecursionError):
-        found = None
-    if isinstance(found, dict):
-        return found, []
-    return {}, [f"{name}: what it keeps of itself (crane, settings) is not the JSON that was written: left out"]
+def rows_between(values: FloatArray) -> float:
+    """The usual number of rows from one value to the next of a column written in every n-th row; 0 for any other."""
+    known = np.flatnonzero(np.isfinite(values))
+    if len(known) < RHYTHM or len(known) > SPARSE * len(values):
+        return 0.0
+    steps = np.diff(known)
+    usual = float(np.median(steps))
+    ends = max(known[0], len(values) - 1 - known[-1])
+    return 0.0 if max(steps.max(), ends) > LONGEST * usual else usual  # holes, not a slower channel
 
 
 # -- the checks

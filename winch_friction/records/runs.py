@@ -19,6 +19,7 @@ from winch_friction.physics.channels import GROUP_CHANNELS, SLOW_INPUTS
 from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane, held
+from winch_friction.records.run_checks import rows_between
 
 BAG_SUFFIXES = (".mcap", ".db3")
 KINDS = ".csv, .parquet, a rosbag2 folder, .mcap or .db3"
@@ -102,15 +103,13 @@ def refuse_unknown_kind(path: Path) -> Path:
 # a setting) is held at its latest value, as the nodes hold their inputs; what follows it (a pressure, a force) is taken
 # between its neighbours in time, for held ones come late. The speed alone says which rows are looked at: its change is
 # the acceleration.
-SPARSE = 0.67  # of the rows: what has a value in more of them has holes
-RHYTHM = 10  # values from which on a rhythm is one
-LONGEST = 5.0  # usual steps between values that are held; beyond them there is a hole
 SPEED = "motor_speed"
 HELD = (*SLOW_INPUTS, "displacement")  # all others follow the motion
 SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer no noise can be told, and no balance made
 OF_BALANCE = (*GROUP_CHANNELS, "motor_speed", "motor_torque", "motor_current", "mechanical_power")
 
 
+<<<<<<< HEAD
 def rows_between(values: FloatArray) -> float:
     """The usual number of rows from one value to the next of a column written in every n-th row; 0 for any other."""
     known = np.flatnonzero(np.isfinite(values))
@@ -136,6 +135,8 @@ def scattered(run: Run) -> str:
     return ""
 
 
+=======
+>>>>>>> 2ea3b66 (Say where it is checked how often a slow column is written, so that readers import one way)
 def filled(run: Run) -> tuple[Run, list[str]]:
     """A run whose slower columns have values in every row that has a speed, and what is said of it."""
     slow = {name: usual for name, values in run.columns.items() if (usual := rows_between(values))}

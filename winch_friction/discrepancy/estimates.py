@@ -40,8 +40,16 @@ def estimates_of(slot: Slot, value: FloatArray, std: FloatArray, cross: CrossFit
     if candidate.term is not None:
         units = {p.name: p.unit for p in candidate.term.parameters}
         for name, at in shape.values.items():
-            found[name] = ParameterEstimate(float(at), LIMITS.shape_std * abs(float(at)), units[name])
+            found[name] = ParameterEstimate(float(at), _shape_std(slot, name, float(at), cross), units[name])
     return found
+
+
+def _shape_std(slot: Slot, name: str, at: float, cross: CrossFit) -> float:
+    """Of one chosen from a grid: relative, or half the way to the next where the grid is narrower, as of dates."""
+    own = [each for each in cross.problem.slots if (each.name, each.law) == (slot.name, slot.law)]
+    away = [abs(step) for each in own if (step := each.origin[1].values.get(name, at) - at)]
+    relative = LIMITS.shape_std * abs(at)
+    return 0.5 * min(away) if away and max(away) < relative else relative
 
 
 def of_part(slot: Slot, slots: Sequence[Slot], found: Mapping[str, _Known]) -> Mapping[str, _Known]:

@@ -83,9 +83,8 @@ def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candid
 def _candidates(slot: Slot, state: State) -> list[Candidate]:
     candidate, shape = slot.origin
     if candidate.name == BRAKE:
-        return (
-            [_drag(BRAKE, state.windows, SOME_RUNS)] if state.law == SOME_RUNS else []
-        )  # since a date it is a sudden wear
+        # since a date it has a law of its own
+        return [_drag(BRAKE, state.windows, SOME_RUNS)] if state.law == SOME_RUNS else []
     own = replace(shape, label=f"{shape.label}, {state.label}")
     linear = candidate.linear + tuple(replace(p, name=p.name + THEN) for p in candidate.linear if state.both)
     return [

@@ -52,6 +52,7 @@ def literature() -> list[Candidate]:
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
         wear("wear_saturating", shapes=friction.lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
         wear("wear_sudden", shapes=friction.between_runs),
+        _of("brake_drag", "wear_sudden", presumes=COULOMB, shapes=friction.between_runs),  # that drags since a date
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("low_displacement_loss", "low_displacement_each_way", {"a_lu": (0.5, 1.0), "b_lu": (1.0, 2.0, 3.0)}),
@@ -107,8 +108,7 @@ def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Cand
     member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
     if cause == "viscosity_temperature":  # the term is a difference and has no sign, but thick oil never drags less
         member = replace(member, shapes=partial(_positive, member.shapes))
-    possible = POSSIBLE.get(cause)
-    if possible is not None:
+    if (possible := POSSIBLE.get(cause)) is not None:
         member = replace(member, possible=possible, shapes=partial(_possible, possible, member.shapes))
     return replace(member, name=cause)
 

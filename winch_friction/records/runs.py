@@ -109,18 +109,6 @@ SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer n
 OF_BALANCE = (*GROUP_CHANNELS, "motor_speed", "motor_torque", "motor_current", "mechanical_power")
 
 
-<<<<<<< HEAD
-def rows_between(values: FloatArray) -> float:
-    """The usual number of rows from one value to the next of a column written in every n-th row; 0 for any other."""
-    known = np.flatnonzero(np.isfinite(values))
-    if len(known) < RHYTHM or len(known) > SPARSE * len(values):
-        return 0.0
-    steps = np.diff(known)
-    usual = float(np.median(steps))
-    ends = max(known[0], len(values) - 1 - known[-1])
-    return 0.0 if max(steps.max(), ends) > LONGEST * usual else usual  # holes, not a slower channel
-
-
 def scattered(run: Run) -> str:
     """Which channel of the balance has values that stand alone between rows without one: not a slower channel, whose
     values come in a rhythm (`filled`), but cells lost at random. Nothing of a sound run."""
@@ -135,8 +123,6 @@ def scattered(run: Run) -> str:
     return ""
 
 
-=======
->>>>>>> 2ea3b66 (Say where it is checked how often a slow column is written, so that readers import one way)
 def filled(run: Run) -> tuple[Run, list[str]]:
     """A run whose slower columns have values in every row that has a speed, and what is said of it."""
     slow = {name: usual for name, values in run.columns.items() if (usual := rows_between(values))}

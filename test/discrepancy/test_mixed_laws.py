@@ -185,9 +185,10 @@ def test_a_bow_of_the_feedback_is_nothing_at_its_ends_and_taken_out(crane_150t, 
     np.testing.assert_allclose(right.columns["main.displacement"], true, atol=1e-6 * bow)
 
 
-def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0, noise=False):
+def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0, noise=False, length=None):
     """What a prepared run says of its wire."""
     return SimpleNamespace(
+        channels={} if length is None else {"wire_out": np.full(3, length)},
         groups=[None] * groups,
         wire_mode=mode,
         load=np.full(3, 5e4),
@@ -262,6 +263,50 @@ def test_a_transducer_of_one_group_and_the_feedback_of_another_are_two_causes(
     zero, stroke = named["pressure_offset"]["p_0"].value, named["swivel_offset"]["D_0"].value
     assert zero == pytest.approx(-3e5, abs=0.3e5)
     assert stroke == pytest.approx(2.0 * CM3_PER_REV, abs=0.1 * CM3_PER_REV)
+
+
+SHARP = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of a ratio of 0.05: what a load on a rope leaves
+LIKE_A_FILTER = (0.6, 0.5, 0.45, 0.42, 0.4, 0.38, 0.35, 0.32, 0.3, 0.3, 0.3)
+STIFF = 5e4 * 9.0 * 200.0  # N: 3 rad/s of 50 t on 200 m
+
+
+def ringing(off, ratio=0.05, left=SHARP, length=200.0):
+    """A run whose mode is so much off what the wire gives its load."""
+    return prepared(Mode(off * float(np.sqrt(STIFF / (5e4 * length))), ratio, True), left, length=length)
+
+
+@pytest.mark.parametrize(
+    ("rings", "expected"),
+    [
+        ([ringing(1.0), ringing(1.004, length=320.0)], 0.05),
+        ([ringing(1.0, 0.046), ringing(0.99, 0.054, length=90.0)], 0.05),
+        ([ringing(1.0)], 0.23),  # one alone may be chance
+        ([ringing(1.0), ringing(1.05)], 0.23),  # no wire has both
+        ([ringing(1.0, 0.035), ringing(1.0, 0.07)], 0.23),  # nor both dampers
+        ([ringing(1.0), ringing(1.0, left=LIKE_A_FILTER)], 0.23),  # any damping leaves as much
+        ([ringing(1.0), ringing(1.0, left=tuple(3.0 * each for each in SHARP[:5]) + (1.0,) * 6)], 0.05),
+        (
+            [ringing(1.0), ringing(1.0, left=tuple(6.0 * each for each in SHARP[:5]) + (2.0,) * 6)],
+            0.23,
+        ),  # nothing rings
+        ([prepared(Mode(3.0, 0.05, True), SHARP)] * 2, 0.23),  # whose length nobody logged
+        (
+            [*[ringing(1.0)] * 2, *[prepared(Mode(3.0, 0.0), RUNG, length=200.0)] * 2],
+            0.23,
+        ),  # as many say it does not give
+        ([*[ringing(1.0)] * 3, *[prepared(Mode(3.0, 0.0), RUNG, length=200.0)] * 2], 0.05),
+    ],
+)
+def test_runs_that_ring_tell_more_than_the_many_whose_sensors_seem_to(rings, expected):
+    """Six seas below the mode, whose motion sensor's filter looks like a wire damped by 0.23 and 6 % softer."""
+    seas = [ringing(0.94, 0.23, LIKE_A_FILTER, length) for length in (100.0, 150.0, 200.0, 250.0, 300.0, 350.0)]
+    modes = _agreed_modes([*seas, *rings])
+    assert {round(mode.damping, 2) for mode in modes} == {expected}
+    asked = [np.sqrt(STIFF / (5e4 * run.channels["wire_out"][0])) for run in seas]
+    off = np.array([mode.frequency for mode in modes[:6]]) / asked
+    assert off == pytest.approx(1.0 if expected == 0.05 else 0.94, abs=0.01)
+    for mode, run in zip(modes[6:], rings, strict=True):  # what rings keeps its own
+        assert mode.frequency == run.wire_mode[0]
 
 
 @pytest.mark.parametrize(("noise", "expected"), [(True, 0.06), (False, 0.0)])

@@ -117,6 +117,7 @@ def surrounded(monkeypatch, met, told=True):
         of_swing=lambda crane, left: check,
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
+    monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)

@@ -10,8 +10,8 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
+from winch_friction.discrepancy.preparation import suspended_load as wire
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
-from winch_friction.discrepancy.preparation.suspended_load import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.channels import GRAVITY
@@ -171,25 +171,26 @@ def _moved(one: Correction) -> tuple[float, Correction]:
 def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
-    All share what damps it. If most runs that can tell agree on that closely, it is that, unless most of heave
-    compensation denies it: friction at reversals blurs a swing there, but does not take it away. A run whose load is
-    too light to show a swing has no vote. If they do not, what swings in all of them together may tell. If it does not
-    either, heave compensation decides, which excites the mode throughout; and where a sparse log leaves those runs at
-    odds, the kicks of the others, which ring down, have a say.
+    All share what damps it: what two tell that ring as this wire makes their loads do; else what most that can tell
+    agree on closely, unless most of heave compensation denies it, where friction at reversals blurs a swing but does
+    not take it away (a load too light to show one has no vote); else what swings in all of them together. If none of
+    these tells, heave compensation decides, which excites the mode throughout, and where a sparse log leaves its runs
+    at odds the kicks of the others have a say.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
     modes, left = [(*run.wire_mode[:2], _mass(run)) for run in able], [_said(run) for run in able]
-    ratio = shared_damping(modes, left)
+    ringing = wire.ringing_damping(modes, left, [_length(run) for run in able])
+    ratio = ringing[0] if ringing else wire.shared_damping(modes, left)
     told = [run for run in compensating if _slow(run, TOLD)]
-    if ratio is not None and 2 * sum(_denied(run, ratio) for run in told) > len(told):
+    if ratio is not None and not ringing and 2 * sum(_denied(run, ratio) for run in told) > len(told):
         ratio = None
     if ratio is None:
-        ratio = pooled_damping(modes, left, [run.swing_variance for run in able])
+        ratio = wire.pooled_damping(modes, left, [run.swing_variance for run in able])
     swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
-        ratio = agreed_damping(swinging) or agreed_damping(every)
+        ratio = wire.agreed_damping(swinging) or wire.agreed_damping(every)
         if ratio is not None and _outvoted(able, ratio):
             ratio = None
     if ratio is None:
@@ -198,11 +199,22 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     follows = 2 * sum(said) >= len(said)  # as a spring's stiffness does, unless the runs that tell deny it
     return [
         Mode(
-            run.wire_mode[0], ratio(run.wire_mode[0], _mass(run)) if _slow(run) else 0.0,
+            at, ratio(at, _mass(run)) if _slow(run) else 0.0,
             run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows, _rings(run, ratio),
         )
-        for run in prepared
+        for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode[0]) for run in prepared)
     ]  # fmt: skip
+
+
+def _length(run: PreparedRun) -> float:
+    """Of the wire, m; nan where nobody logged it."""
+    return float(np.median(run.channels.get("wire_out", [NAN])))
+
+
+def _in_tune(run: PreparedRun, stiffness: float) -> float:
+    """The frequency of a run's mode, rad/s, unless it is off what the wire's stiffness times its length, N, gives."""
+    given, own = float(np.sqrt(stiffness / max(_mass(run) * _length(run), 1e-9))), run.wire_mode[0]
+    return given if own > 0.0 and abs(np.log(own / given)) > wire.IN_TUNE else own
 
 
 def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
@@ -214,13 +226,13 @@ def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     """Whether a run speaks against a load that swings so damped."""
-    return run.wire_mode[1] <= 0.0 and denies(_said(run), ratio(run.wire_mode[0], _mass(run)))
+    return run.wire_mode[1] <= 0.0 and wire.denies(_said(run), ratio(run.wire_mode[0], _mass(run)))
 
 
 def _rings(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     """Whether a computed wire would make its sensors' noise ring, and nothing that the motors feel."""
     tells = run.swing_noise and run.wire_mode[1] <= 0.0 and _slow(run)
-    return tells and denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
+    return tells and wire.denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
 
 
 def _said(run: PreparedRun) -> tuple[float, ...]:

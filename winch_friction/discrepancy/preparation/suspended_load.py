@@ -134,6 +134,9 @@ DENIED = 1.2
 # wrong and reversals all make them seem so, and which of them are alike is no chance: one in ten is within `ALIKE`
 MOST_ASTRAY = 0.5
 SWINGS_LEFT = 0.01  # of the swinging: what is left of it by less is told from nothing by nobody
+# a damping ratio that leaves so many times what a rope's leaves where a load rings on it: what is damped by a filter is
+# left alike by both. Relative: what half a percent of the length and of the load moves a frequency by, twice over
+BLUNT, SHARP, IN_TUNE = 0.3, 1.6, 0.02
 STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
 # of what a mode that is damped like a filter leaves of all runs together: winches whose motion sensor's noise was most
 # of it left 0.9 and more by any rope's damping, those whose load plainly swings 0.03 to 0.7
@@ -196,6 +199,34 @@ def shared_damping(
     # by chance many of twelve runs are alike in the one or the other: what all of them leave tells which it is
     known = [(mode, left) for mode, left in zip(modes, untold, strict=False) if len(left) and mode[0] > 0.0]
     return min(found, key=lambda pair: (_leaves(known, pair[0]), -pair[1]), default=(None, 0))[0]
+
+
+def ringing_damping(
+    modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], length: Sequence[float]
+) -> tuple[Callable[[float, float], float], float] | None:
+    """What damps the wire and its stiffness times its length, N, from runs that ring: a sharp resonance, of one damping
+    and at the frequencies that one wire gives their loads and lengths. None of fewer than two, or where as many runs
+    say that the wire does not give.
+
+    What an edge of the sensors or a motion sensor's noise looks like is damped more, fits anything alike, and moves
+    with neither load nor length. `modes` and `left` as in `shared_damping`, `length` of the wire in m (nan: unknown).
+    """
+    sharp = [k for k, own in enumerate(left) if len(own) and 0.0 < modes[k][1] < MOST_DAMPED / 2.0 and
+             min(own) <= LEAST_GAIN and _left_by(own, BLUNT) >= SHARP * min(own) and length[k] > 0.0]  # fmt: skip
+    if len(sharp) < 2:
+        return None
+    frequency, ratio, mass = np.array([modes[k] for k in sharp]).T
+    stiffness = frequency**2 * mass * np.array([length[k] for k in sharp])
+    off = np.abs(np.log(stiffness[:, None] / stiffness)) <= 2.0 * IN_TUNE
+    same = off & (np.abs(np.log(ratio[:, None] / ratio)) <= ALIKE)
+    alike = same[np.argmax(same.sum(axis=1))]
+    agreed = agreed_damping(np.array([modes[k] for k in sharp])[alike].tolist())
+    if alike.sum() < 2 or agreed is None:
+        return None
+    against = sum(
+        denies(own, agreed(mode[0], mode[2])) for mode, own in zip(modes, left, strict=True) if mode[1] <= 0.0
+    )
+    return (agreed, float(np.median(stiffness[alike]))) if alike.sum() > against else None
 
 
 def pooled_damping(

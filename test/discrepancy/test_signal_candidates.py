@@ -23,6 +23,7 @@ from winch_friction.discrepancy.candidates.signals import (
     creeping_columns,
     curved_columns,
     scale_columns,
+    signal_candidates,
     warm_columns,
 )
 from winch_friction.discrepancy.preparation.seen import GroupSignals
@@ -226,3 +227,40 @@ def test_a_delay_within_a_sample_is_how_the_log_was_made(rate, small):
 def labelled(runs):
     """The same with what every candidate asks of runs."""
     return [SimpleNamespace(**vars(run), present=frozenset(), groups=[1]) for run in runs]
+
+
+@pytest.mark.parametrize(
+    ("compensated", "law", "told"),
+    [
+        (5, "bows and shifts with the oil", False),  # three constants for the levels of five runs
+        (6, "bows and shifts with the oil", True),
+        (5, "bends at a pressure", False),  # two, and where it bends
+        (6, "bends at a pressure", True),
+        (2, "bows over the stroke", True),
+    ],
+)
+def test_a_law_of_many_constants_needs_runs_that_can_contradict_it(compensated, law, told):
+    """They sorted five runs of heave compensation, in which the load was another than the cell said."""
+    rng = np.random.default_rng(0)
+
+    def group(balances):
+        return SimpleNamespace(
+            balances=balances, pressure=rng.uniform(5e6, 3e7, 400), displacement=rng.uniform(2e-5, 3.4e-5, 400),
+            name="active" if balances else "passive", pressure_sum=rng.uniform(6e6, 4e7, 400),
+        )  # fmt: skip
+
+    runs = [
+        SimpleNamespace(
+            groups=[group(True), *([group(False)] if k < compensated else [])],
+            constants=(("max_displacement", 3.5e-5),),
+            used=np.ones(400, bool),
+            direction=np.ones(400),
+            time=np.arange(400.0),
+        )
+        for k in range(12)
+    ]
+    every = [*feedback_candidates(), *signal_candidates(), *bends_over(runs)]
+    candidate = next(each for each in every if each.law_name == law)
+    labels = [shape.label for shape in candidate.shapes(runs)]
+    assert any("passive" in label for label in labels) is told
+    assert any("driving" in label for label in labels)  # all twelve have it

@@ -23,6 +23,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     group_columns,
     group_shapes,
     groups_of,
+    spoken_of,
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -33,6 +34,7 @@ from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correc
 from winch_friction.physics.friction.term import Parameter
 
 DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
+RUNS_PER_CONSTANT = 2  # of a law of three constants or more: one decides, another can contradict
 SMALL = 0.8  # of the typical delay: the largest that the columns of a small one can be
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
 DELAY, ZERO = "signal_delay", "pressure_offset"
@@ -265,5 +267,17 @@ def in_groups(
     corrects: Corrects,
     **more: Any,
 ) -> Candidate:
-    """A candidate in the signals of motor groups."""
+    """A candidate in the signals of motor groups, of those that enough runs have for its constants."""
+    shapes = partial(_told_apart, shapes, len(linear))
     return Candidate(name, law, linear, columns, shapes, kind="signal", hydraulic=True, corrects=corrects, **more)
+
+
+def _told_apart(shapes: Shapes, linear: int, runs: Sequence[PreparedRun]) -> list[Shape]:
+    """Shapes of groups that enough runs have: load, stroke and oil hardly change within one, so that three constants
+    which as many levels decide sort runs, whatever is wrong in them. A place where a law bends is a constant too."""
+
+    def told(shape: Shape) -> bool:
+        constants = linear + sum(name.startswith("beyond") for name in shape.values)
+        return constants < 3 or sum(any(spoken_of(run, shape.values)) for run in runs) >= RUNS_PER_CONSTANT * constants
+
+    return [each for each in shapes(runs) if told(each)]

@@ -1,12 +1,16 @@
 """What the runs must hold before anything is searched: both directions, enough of a log, and what is left out."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import workflow
 from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
+from winch_friction.discrepancy.assembly import insufficient
+from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.next_experiment import of_wire
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
@@ -183,3 +187,20 @@ def test_a_run_whose_pressure_was_dead_for_most_of_it_tells_what_it_has():
     columns = {"time": 0.02 * np.arange(3000), "motor_speed": np.ones(3000)}
     dead = np.where(np.arange(3000) < 600, 1e7, np.nan)
     assert long_enough([Run("dead", {**columns, "main.pressure_a": dead})])[0]
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_runs_that_lack_something_say_what_was_seen_of_them_all_the_same(crane_150t, crane2_model, named):
+    """Twelve runs, of which nine losses did as well, got a page without a region, a candidate or the refit."""
+    lacking = insufficient([], ["a note"], crane_150t, crane2_model)
+    holdout = replace(lacking.holdout, size_after=Size(0.306, (0.3, 0.31)))
+    result = replace(
+        lacking, regions=("where",), considered=("loss",), untestable=("signal",), holdout=holdout,
+        effects=("effect",) * named,
+    )  # fmt: skip
+    said = workflow._with_what_was_seen(lacking, result)
+    assert (said.verdict, said.effects, said.model) == ("insufficient", (), crane2_model)
+    assert (said.regions, said.considered, said.untestable) == (("where",), ("loss",), ("signal",))
+    assert said.holdout is lacking.holdout  # of the model that is written, which is the given one
+    assert said.notes[0] == "a note"
+    assert [("0.306 bar" in note) for note in said.notes[1:]] == [True] * (not named)

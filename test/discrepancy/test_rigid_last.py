@@ -153,5 +153,8 @@ def test_a_gap_above_the_noise_of_runs_too_short_for_a_swing_is_not_nothing(answ
     runs = surrounded(monkeypatch, RIGID, told=False)
     monkeypatch.setattr(workflow, "nobodys", lambda side: quiet)
     monkeypatch.setattr(workflow, "insufficient", lambda *_: Result("insufficient"))
+    seen = []
+    monkeypatch.setattr(workflow, "_with_what_was_seen", lambda own, result: seen.append(result.verdict) or own)
     answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
     assert workflow.find_gap(runs, None, None, GapOptions(proposals=False)).verdict == said
+    assert seen == [verdict] * (said == "insufficient")

@@ -151,7 +151,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
     if trial.search.verdict.kind == UNEXPLAINED and search.verdict.untold:
         names = adequacy.of_names(search.verdict.refused)
-        return insufficient([*checks, names], notes, crane, model, (given, split))
+        lacking = insufficient([*checks, names], notes, crane, model, (given, split))
+        return _with_what_was_seen(lacking, assemble(split, options, trial))
     if trial.search.verdict.kind != NOTHING and not options.candidates:
         split, trial = by_other_runs(split, crane, options, trial, rng)
     if trial.search.verdict.kind == UNEXPLAINED and not options.candidates:
@@ -187,8 +188,18 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
     # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
     if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
-        return insufficient([*checks, swing], notes, crane, model, (given, split))
+        return _with_what_was_seen(insufficient([*checks, swing], notes, crane, model, (given, split)), result)
     return result
+
+
+def _with_what_was_seen(lacking: GapResult, result: GapResult) -> GapResult:
+    """The answer of runs that lack something, with what their search showed all the same."""
+    left = f"{result.holdout.size_after.value:.3g} {result.unit}"
+    said = [] if result.effects else [f"the model's own parameters, fitted anew, leave {left} of the locked runs"]
+    return replace(
+        lacking, regions=result.regions, considered=result.considered, untestable=result.untestable,
+        notes=(*lacking.notes, *said),
+    )  # fmt: skip
 
 
 def _without_swing(

@@ -158,3 +158,18 @@ def test_a_gap_above_the_noise_of_runs_too_short_for_a_swing_is_not_nothing(answ
     answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
     assert workflow.find_gap(runs, None, None, GapOptions(proposals=False)).verdict == said
     assert seen == [verdict] * (said == "insufficient")
+
+
+@pytest.mark.parametrize(
+    ("verdict", "left", "told"),
+    [(NOTHING, 0.2, True), (UNEXPLAINED, 0.3, True), (UNEXPLAINED, 0.5, False), (MISSING, 0.2, False)],
+)
+def test_a_seed_is_refuted_only_where_its_freed_parameters_close_the_gap(answers, monkeypatch, verdict, left, told):
+    """A ship's roll of 23 s moved K4 by 3.9 deviations and left 1.3 bar of 1.8: it was called the seed's fault."""
+    runs, size = surrounded(monkeypatch, RIGID), SimpleNamespace(value=left, interval=(left, left))
+    monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted="K4"))
+    holdout = SimpleNamespace(size_after=size, floor=0.2, excused=0.2, left_by_run=())
+    monkeypatch.setattr(workflow, "assemble", lambda *_: replace(Result(verdict), holdout=holdout))
+    answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
+    found = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
+    assert found.seed_refuted == (("K4",) if told else ())

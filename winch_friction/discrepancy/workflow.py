@@ -181,6 +181,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if result.verdict == UNEXPLAINED:
         notes += of_wire(given)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
+    if refuted and result.verdict == UNEXPLAINED and far_off(result.holdout):
+        refuted = ()  # its freed parameters leave what is plainly more than noise: they imitate something
     result = replace(
         result, seed_model=model, seed_refuted=refuted, adequacy=tuple(checks), notes=(*notes, *result.notes),
         proposals=proposals,

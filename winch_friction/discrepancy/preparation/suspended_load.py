@@ -6,6 +6,7 @@ behind it need not be known. One damper or one damping ratio is taken for all ru
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -220,9 +221,12 @@ def ringing_damping(
     off = np.abs(np.log(stiffness[:, None] / stiffness)) <= 2.0 * IN_TUNE
     same = off & (np.abs(np.log(ratio[:, None] / ratio)) <= ALIKE)
     alike = same[np.argmax(same.sum(axis=1))]
-    agreed = agreed_damping(np.array([modes[k] for k in sharp])[alike].tolist())
-    if alike.sum() < 2 or agreed is None:
+    if alike.sum() < 2:
         return None
+    # one damper or one ratio: two runs of like loads and lengths do not tell, what all of them leave does
+    known = [(mode, own) for mode, own in zip(modes, left, strict=True) if len(own) and mode[0] > 0.0]
+    damper = float(np.median((2.0 * ratio * frequency * mass)[alike]))
+    agreed = min(_one_damper(damper), _one_ratio(float(np.median(ratio[alike]))), key=partial(_leaves, known))
     against = sum(
         denies(own, agreed(mode[0], mode[2])) for mode, own in zip(modes, left, strict=True) if mode[1] <= 0.0
     )

@@ -22,6 +22,7 @@ from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settli
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.model import completed
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -160,7 +161,7 @@ def prepare(
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
-        constants=_constants(crane, model), unit_torque=balance.unit_torque,
+        constants=tuple(sorted(completed(model, crane).constants.items())), unit_torque=balance.unit_torque,
         used=used & grid.valid & ~spikes,
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane), seen=seen,
@@ -250,11 +251,6 @@ def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:
     more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(balance.point))
     heavier, as_it_is = (np.asarray(model.torque(x, balance.states)) for x in (more, balance.point))
     return np.asarray((heavier - as_it_is) / 0.01)
-
-
-def _constants(crane: Crane, model: FrictionModel) -> tuple[tuple[str, float], ...]:
-    own = {"max_displacement": crane.max_displacement, "gear_ratio": crane.gear_ratio, **model.constants}
-    return tuple(sorted(own.items()))
 
 
 def channels_of(

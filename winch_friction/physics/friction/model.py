@@ -240,11 +240,16 @@ def refuse_other_crane(model: FrictionModel, crane: Crane) -> None:
         )
 
 
+def _of_machine(crane: Crane) -> dict[str, float]:
+    """The constants that a crane file states for its models; an electric winch has no displacement."""
+    own = {"gear_ratio": crane.gear_ratio, "max_displacement": crane.max_displacement}
+    return {name: value for name, value in own.items() if value > 0.0}
+
+
 def completed(model: FrictionModel, crane: Crane) -> FrictionModel:
     """The model with the constants of the machine that its file does not state, from the crane that it serves: a term
     that reads the gear ratio would else be taken at a ratio of 1."""
-    own = {"gear_ratio": crane.gear_ratio, "max_displacement": crane.max_displacement}
-    missing = {name: value for name, value in own.items() if value > 0.0 and name not in model.constants}
+    missing = {name: value for name, value in _of_machine(crane).items() if name not in model.constants}
     return replace(model, constants={**model.constants, **missing}) if missing else model
 
 
@@ -259,11 +264,10 @@ def contradictions(model: FrictionModel, crane: Crane) -> list[str]:
     found = []
     if model.crane and crane.name and model.crane != crane.name:
         found.append(f"it was made for crane '{model.crane}'")
-    own = {"gear_ratio": crane.gear_ratio, "max_displacement": crane.max_displacement}
     names = {"gear_ratio": ("gear ratio", ""), "max_displacement": ("largest displacement", " m^3/rad")}
-    for name, value in own.items():
+    for name, value in _of_machine(crane).items():
         said = model.constants.get(name, value)
-        if value > 0.0 and abs(said - value) > SAME * value:
+        if abs(said - value) > SAME * value:
             words, unit = names[name]
             found.append(f"its {words} is {said:.5g}{unit}, the crane's {value:.5g}{unit}")
     hydraulic = [term.name for term in model.terms if term.reads_groups]

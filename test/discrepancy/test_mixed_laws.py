@@ -312,6 +312,13 @@ def test_runs_that_ring_tell_more_than_the_many_whose_sensors_seem_to(rings, exp
         assert mode.frequency == run.wire_mode[0]
 
 
+def test_heave_compensation_that_denies_a_swing_is_outvoted_by_more_runs_that_ring():
+    """Where a swing is told by runs that agree only, both of two such seas would take it away."""
+    hoists = [ringing(1.0, length=length) for length in (150.0, 200.0, 300.0)]
+    seas = [prepared(Mode(3.0, 0.0), RUNG, groups=2, length=200.0) for _ in range(2)]
+    assert [mode.damping > 0.0 for mode in _agreed_modes([*hoists, *seas])] == [True] * 5
+
+
 @pytest.mark.parametrize("damper", [True, False])
 def test_what_all_runs_leave_tells_whether_those_that_ring_have_one_damper_or_one_ratio(damper):
     """Two of one frequency ring by 0.05; five seas at a third of it leave least by 0.15, or by 0.05 as well."""

@@ -39,6 +39,13 @@ def test_what_the_file_lacks_comes_from_the_crane(stated, silent, crane_150t):
     assert model_from_text(model_to_text(completed(silent, crane_150t))).constants == stated.constants
 
 
+def test_nothing_else_changes_and_an_electric_winch_has_no_displacement(silent, crane_150t):
+    thick = replace(silent, constants={**silent.constants, "density": 905.0})
+    assert completed(thick, crane_150t).constants["density"] == 905.0
+    drive = wf.load_crane("emps")
+    assert completed(replace(silent, constants={}), drive).constants == {"gear_ratio": drive.gear_ratio}
+
+
 @pytest.fixture(scope="module")
 def run():
     return wf.simulate("ahc_55t_215", wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2"), duration=3.0).run

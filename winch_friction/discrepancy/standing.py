@@ -79,8 +79,9 @@ def several_leave_more_than_noise(trial: Trial) -> str:
     closed = search.cross.excess(search.explanation) <= LIMITS.least_excess
     most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
     share = search.cross.excess(search.explanation) / max(search.cross.excess(search.cross.explain(())), 1e-9)
-    near = not far_off(side) or share <= LIMITS.several_share
-    if left <= most or (near and least_part(search.cross, search.explanation, names) >= LIMITS.large_part):
+    part = least_part(search.cross, search.explanation, names)
+    near = not far_off(side) or share <= LIMITS.left_over * part  # what the smaller could leave of its own, alone
+    if left <= most or (near and part >= LIMITS.large_part):
         return ""
     return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {side.floor:.3g}"
 

@@ -147,7 +147,6 @@ class Thresholds:
     # of what several names explain, that is no inexactness of the others: laws of the literature that are not a
     # machine's own leave a tenth of the torque, a hundredth of its square, and bad ones a tenth of it
     large_part: float = 0.2
-    several_share: float = 0.02  # of the excess, which such names may leave: each as its law may be inexact by a tenth
     far_off_the_floor: float = 2.0  # times the floor: more is something, however few segments show it
     # times what names leave of the training runs, each beside its floor: that and more of the locked runs is left by
     # what fits the runs that it was chosen on and no others. Right names left up to 2.1 times as much, over ten draws

@@ -14,7 +14,14 @@ from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_s
 from winch_friction.discrepancy.preparation.prepare import _followed, prepare
 from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups, motion_of
 from winch_friction.discrepancy.preparation.suspended_load import load_of
-from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of, least_noise_of
+from winch_friction.discrepancy.regressors import (
+    TOLERANCES,
+    base_of,
+    build_problem,
+    layout_of,
+    least_noise_of,
+    tolerance_columns,
+)
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
@@ -155,6 +162,24 @@ def test_what_a_load_cell_is_off_by_is_more_of_the_motors_that_carry_a_part():
     )
     assert least_noise_of(whole) == pytest.approx(np.hypot(0.1, 3e-4 * 150.0))
     assert least_noise_of(part) == pytest.approx(np.hypot(0.1, 3e-4 * 412.5))
+
+
+@pytest.mark.parametrize(("rated", "least"), [(0.0, 0.1), (300.0, 0.3), (50.0, 0.1)])
+def test_a_drives_torque_is_off_by_a_share_of_what_it_is_rated_for(rated, least):
+    """N m: a light run of 100 N m knows its own torque no better than a heavy one."""
+    run = SimpleNamespace(groups=[], gap=np.zeros(5), predicted=np.full(5, 100.0), rated_torque=rated, unit_torque=1.0)
+    assert least_noise_of(run) == pytest.approx(least)
+
+
+def test_a_drives_torque_has_a_zero_like_a_transducer():
+    """A torque that was off by 0.07 % of the rated one was a tare of 19 kg; 0.15 bar are a step and a half of it."""
+    run = SimpleNamespace(
+        groups=[], time=np.zeros(5), speed=np.zeros(5), load=np.zeros(5), radius=np.ones(5), gear_ratio=100.0,
+        inertia=1.0, acceleration=np.zeros(5), dt=0.02, rated_torque=300.0, corrections=np.empty((5, 0)),
+        predicted=np.zeros(5), from_speed=np.zeros(5),
+    )  # fmt: skip
+    zero = tolerance_columns(run)[:, [name for name, *_ in TOLERANCES].index("zero")]
+    assert 0.15 * zero == pytest.approx(np.full(5, 1.5 * 1e-3 * 300.0))
 
 
 def test_where_port_b_is_the_higher_the_operating_point_has_its_pressure(crane_150t, crane2_model):

@@ -49,7 +49,15 @@ def searched(*slots, **more):
 def side(left=1.0, **more):
     """Runs that keep so many floors."""
     size = Size(left, (left, left))
-    known = {"runs": (), "floor": 1.0, "excused": 1.0, "noise_floor": 1.0, "size_before": size, "size_after": size}
+    known = {
+        "runs": (),
+        "least_noise": 0.1,
+        "floor": 1.0,
+        "excused": 1.0,
+        "noise_floor": 1.0,
+        "size_before": size,
+        "size_after": size,
+    }
     return SimpleNamespace(**known, **more)
 
 
@@ -175,3 +183,20 @@ def test_a_name_has_no_more_rivals_than_a_set_has_room_for(monkeypatch):
         Trial(one, None, side(), side()), every, SLOTS[1:], lambda own: Trial(own, None, side(), side()), RNG
     )
     assert found.search.selection.found[0].rivals == SLOTS[1 : LIMITS.most_names]
+
+
+def test_what_does_as_well_as_a_step_of_a_transducer_does_not_stand(monkeypatch):
+    """A search that lists a gear before the tare within a step, which does as well, has found neither."""
+    search = searched(SLOTS[0])
+    search = replace(search, selection=replace(search.selection, found=(Finding(SLOTS[0], SLOTS[1:2], 0.0, 0.1, 1.0),)))
+    full = SimpleNamespace(train=side(), holdout=side(), repaired=SimpleNamespace(parameters={}), search=search)
+    for name in ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample"):
+        monkeypatch.setattr(module, name, lambda *_: "")
+    monkeypatch.setattr(module, "nobodys", lambda _: False)
+
+    def within(cross, fitted, least):
+        return "a step" if any("two" in each.names for each in fitted) else ""
+
+    monkeypatch.setattr(module, "within_a_step", within)
+    stands, why = module._stands(search, SimpleNamespace(holdout=side()), lambda _: full, RNG)
+    assert (stands, why) == (None, "a step")

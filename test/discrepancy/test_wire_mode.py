@@ -117,6 +117,28 @@ def test_a_stiffness_that_follows_the_wire_is_told_from_one_that_does_not(follow
     assert not follows or left[500:].std() < 0.5 * without[500:].std()
 
 
+def test_a_lift_to_twice_the_length_swings_by_its_own_length_at_every_moment():
+    """From 22 m to 49: by the length in the middle it denied the swing that it has, and its gap stayed in a null."""
+    length, frequency, ratio = 22.0 + 27.0 * TIME / TIME[-1], 9.0, 0.05
+    middle = float(np.median(length))
+
+    def oscillator(t, y):
+        spring = frequency**2 * middle / float(np.interp(t, TIME, length))
+        return [y[1], -motion(t) - 2 * ratio * np.sqrt(spring) * y[1] - spring * y[0]]
+
+    exact = solve_ivp(oscillator, (0, TIME[-1]), [0.0, 0.0], t_eval=TIME, max_step=0.01, rtol=1e-8)
+    spring = frequency**2 * middle / length
+    load = -2 * ratio * np.sqrt(spring) * exact.y[1] - spring * exact.y[0]
+    noise = 60.0 * np.random.default_rng(3).standard_normal(len(TIME))
+    gap, everywhere = MASS * LEVER * (load - motion(TIME)) + noise, np.ones(len(TIME), bool)
+    stated, lever = (frequency**2 * MASS,), np.full(len(TIME), LEVER)
+    step = np.sign(np.cos(0.7 * TIME))[:, None]
+    swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, stated, step, length=length)
+    assert swing.mode.follows
+    assert swing.mode.damping == pytest.approx(ratio, rel=0.5)
+    assert min(swing.left) < 0.6
+
+
 @pytest.mark.parametrize("share", [0.55, 0.8, 1.0, 1.25])
 def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
     """Twenty metres between drum and tip beside fifty paid out, a modulus from a catalogue."""

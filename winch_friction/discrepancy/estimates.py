@@ -14,7 +14,7 @@ from scipy.special import chdtrc, ndtri
 
 from winch_friction.discrepancy.answer import Side, keeps_something, steady_excess, telling
 from winch_friction.discrepancy.candidates.candidate import Estimates, ParameterEstimate, Sides
-from winch_friction.discrepancy.candidates.signals import DELAY, ZERO
+from winch_friction.discrepancy.candidates.signals import DELAY, ZEROS
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import dependences
@@ -277,19 +277,20 @@ def within_a_sample(parameters: Mapping[str, Estimates], side: Side) -> str:
     return f"a delay of {1e3 * most:.2g} ms is how a log of a sample every {1e3 * step:.3g} ms is made"
 
 
-def within_a_step(cross: CrossFit, explanation: Explanation) -> str:
-    """Why a zero of transducers is none; empty where it is one, or there is none.
+def within_a_step(cross: CrossFit, fitted: Sequence[Explanation], least: float) -> str:
+    """Why a zero of a transducer, of a drive's torque or of a load cell, one of these, is none; else empty.
 
     The step up to which it is off without being wrong is the same whether it stays, creeps or moves with the oil. Its
-    size is the root mean square over the blocks of `cross`, in the gap's unit, bar.
+    size is the root mean square over the blocks of `cross`, in the gap's unit, like what no balance closes, `least`.
     """
-    columns = [column for slot in explanation.slots if slot.name == ZERO for column in slot.columns]
-    if not columns:
-        return ""
-    every = cross.problem.columns(explanation.slots)
-    torque = cross.problem.blocks.x[:, columns] @ explanation.beta[[every.index(column) for column in columns]]
-    size, most = float(np.sqrt(np.mean(torque**2))), LIMITS.step * LIMITS.least_noise
-    return f"a zero of {size:.2g} bar is within the {most:g} bar by which a transducer steps" if size <= most else ""
+    most = LIMITS.step * least
+    for each in fitted:
+        columns = [column for slot in each.slots if slot.name in ZEROS for column in slot.columns]
+        at = [cross.problem.columns(each.slots).index(column) for column in columns]
+        torque = cross.problem.blocks.x[:, columns] @ each.beta[at] if columns else np.inf
+        if (size := float(np.sqrt(np.mean(np.square(torque))))) <= most:
+            return f"a zero of {size:.2g} is within the {most:.2g} by which a transducer steps"
+    return ""
 
 
 def takes_little(cross: CrossFit, base: Explanation, explanation: Explanation) -> bool:

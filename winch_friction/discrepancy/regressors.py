@@ -188,11 +188,14 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     """Torque in N m per unit of each tolerance and of each correction's error, shape (samples, columns)."""
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSEST else 1.0)
-    # a drive without pressures has its torque from elsewhere
     zeros = [
         sum((g.count * g.displacement * BAR for g in run.groups if g.balances is own), np.zeros(len(run.time)))
         for own in (True, False)
     ]
+    if (
+        not run.groups
+    ):  # a drive without pressures has its torque from elsewhere, whose step is a share of the rated one
+        zeros[0] = zeros[0] + LIMITS.least_share_of_torque * run.rated_torque / LIMITS.least_noise
     return np.column_stack([weight, inertia, timing_column(run), *zeros, run.corrections])
 
 
@@ -266,7 +269,8 @@ def least_noise_of(run: PreparedRun) -> float:
         # where a passive side carries the load, what a load cell is off by is many times as much of the driving side
         hangs = float(np.sqrt(np.mean(run.drum_torque**2))) / run.gear_ratio / run.unit_torque
         return float(np.hypot(own, LIMITS.least_share_of_load * hangs))
-    return LIMITS.least_share_of_torque * float(np.sqrt(np.mean((run.gap + run.predicted) ** 2))) / run.unit_torque
+    given = float(np.sqrt(np.mean((run.gap + run.predicted) ** 2)))
+    return LIMITS.least_share_of_torque * max(given, run.rated_torque) / run.unit_torque
 
 
 def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Accounted:

@@ -125,7 +125,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     slots = search.explanation.slots
     if not slots and not search.reversal:
         return _stands_though_refused(search, refit, trial_of, rng)
-    full = trial_of(search)
+    full, cross = trial_of(search), search.cross
     names = ", ".join([*search.explanation.names, *([search.reversal.slot.name] if search.reversal else [])])
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
         worse = ", ".join(worse_runs(full.holdout, rng))
@@ -133,13 +133,14 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
         why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
         return None, f"{names}: {why}, and of the others this takes hardly more"
+    alike = [cross.explain((rival,)) for rival in search.selection.found[0].rivals] if len(slots) == 1 else []
     why = (
         unproven(names, refit.holdout, full.holdout, rng)
         or leaves_too_much(full.holdout)
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
-        or within_a_step(search.cross, search.explanation)
+        or within_a_step(cross, [search.explanation, *alike], full.holdout.least_noise)
     )
     return (None, why) if why else (full, "")
 

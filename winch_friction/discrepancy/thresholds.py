@@ -41,7 +41,7 @@ class Thresholds:
     # of what hangs there, that a load cell differs by from run to run beside the one tolerance for all of them: what
     # the best cells repeat to; of ten runs that were off by so much a feedback "shifted with the oil"
     least_share_of_load: float = 3e-4
-    least_share_of_torque: float = 1e-3  # of an electric drive's torque
+    least_share_of_torque: float = 1e-3  # of an electric drive's torque under the rated load, of which it is stated
     bare_room: float = 10.0  # times the size found: how far a bare model's new parameter may move later
     # -- folds and evidence
     fewest_runs: int = 5  # with fewer, folds are stretches of time

@@ -38,6 +38,7 @@ RUNS_PER_CONSTANT = 2  # of a law of three constants or more: one decides, anoth
 SMALL = 0.8  # of the typical delay: the largest that the columns of a small one can be
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
 DELAY, ZERO = "signal_delay", "pressure_offset"
+ZEROS = (ZERO, "torque_offset", "tare_load")  # of what tells a torque or a load; they act one way
 OIL = ("oil_temperature",)
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 # K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Se
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.channels import BAR, CM3_PER_REV
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -78,6 +78,7 @@ class PreparedRun:
     corrections: FloatArray  # change of the gap in N m per unit of each correction of the model, (samples, corrections)
     gear_ratio: float
     inertia: float
+    rated_torque: float  # N m at the motor shaft under the rated load on the outermost layer; 0 where nobody rates it
     constants: tuple[tuple[str, float], ...]  # for the candidates' equations
     unit_torque: float  # N m per bar of the balancing group (1 for an electric drive)
     used: np.ndarray  # samples of the regime: moving, or just reversed
@@ -161,6 +162,7 @@ def prepare(
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
+        rated_torque=crane.rated_load * GRAVITY * max(crane.drum.layer_radii) / crane.gear_ratio,
         constants=tuple(sorted(completed(model, crane).constants.items())), unit_torque=balance.unit_torque,
         used=used & grid.valid & ~spikes,
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),

@@ -95,6 +95,9 @@ def swinging_load(
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
     judge = _Judge(gap, counts, partial(change, None), besides)
     first = min(len(besides), 1)
+    if len(frequencies) == 1 and _changes(length):  # one that pays out twice its length swings by none in the middle
+        followed = _Judge(gap, counts, partial(change, length), besides)
+        judge = min((judge, followed), key=lambda each: min(each.by_damping(first, frequencies[0])))
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
         if ratio > 0.0:

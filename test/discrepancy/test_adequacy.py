@@ -6,12 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import workflow
 from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
-from winch_friction.discrepancy.assembly import insufficient
 from winch_friction.discrepancy.engine.chance import Size
-from winch_friction.discrepancy.next_experiment import of_wire
+from winch_friction.discrepancy.next_experiment import insufficient, of_wire, with_what_was_seen
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
@@ -198,7 +196,7 @@ def test_runs_that_lack_something_say_what_was_seen_of_them_all_the_same(crane_1
         lacking, regions=("where",), considered=("loss",), untestable=("signal",), holdout=holdout,
         effects=("effect",) * named,
     )  # fmt: skip
-    said = workflow._with_what_was_seen(lacking, result)
+    said = with_what_was_seen(lacking, result)
     assert (said.verdict, said.effects, said.model) == ("insufficient", (), crane2_model)
     assert (said.regions, said.considered, said.untestable) == (("where",), ("loss",), ("signal",))
     assert said.holdout is lacking.holdout  # of the model that is written, which is the given one

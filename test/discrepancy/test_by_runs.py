@@ -5,12 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import workflow
+from winch_friction.discrepancy import again, workflow
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.run_states import EACH_RUN
+from winch_friction.discrepancy.search import Study
 from winch_friction.physics.signals import Run
 
 FLOOR, FAR = 0.2, 1.0  # bar
+STUDY = Study(SimpleNamespace(train=()), None, GapOptions(), np.random.default_rng(0))
 
 
 def side(left):
@@ -37,11 +39,10 @@ def trial(kind, locked=FAR, train=FAR, law=EACH_RUN):
     ],
 )
 def test_only_what_it_closes_alone_is_taken(monkeypatch, other, taken):
-    monkeypatch.setattr(workflow, "search_runs", lambda split, given, options, rng, also: other.search)
-    monkeypatch.setattr(workflow, "standing", lambda *_: other)
-    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(again, "search_runs", lambda study, given, also: other.search)
+    monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(UNEXPLAINED)
-    after = workflow.by_runs(SimpleNamespace(train=()), None, GapOptions(), before, np.random.default_rng(0))
+    after = again.by_runs(STUDY, before)
     assert (after is other) is taken
     assert (after is before) is not taken
 
@@ -74,18 +75,14 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
     monkeypatch.setattr(workflow, "search_runs", lambda *_: SimpleNamespace(verdict=SimpleNamespace(untold=False)))
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
-    monkeypatch.setattr(workflow, "standing", lambda *_: None)
-    monkeypatch.setattr(workflow, "not_one_law", lambda *_: trial(first))
-    monkeypatch.setattr(workflow, "by_other_runs", lambda split, crane, options, trial, rng: (split, trial))
-    for step in ("by_surfaces", "by_groups"):
-        monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
-    monkeypatch.setattr(workflow, "swings", lambda given: False)
+    monkeypatch.setattr(workflow, "standing", lambda *_: trial(first))
+    monkeypatch.setattr(workflow, "_once_more", lambda study, given, trial: (study, trial))
     monkeypatch.setattr(workflow, "propose", lambda *_: laws)
     monkeypatch.setattr(workflow, "by_runs", lambda *_: seen.append(True) or named)
     monkeypatch.setattr(workflow, "replace", lambda result, **more: SimpleNamespace(**{**vars(result), **more}))
     monkeypatch.setattr(
         workflow, "assemble",
-        lambda split, options, own: SimpleNamespace(
+        lambda study, own: SimpleNamespace(
             verdict=own.search.verdict.kind, notes=(), train=own.train, holdout=own.holdout
         ),
     )  # fmt: skip
@@ -146,16 +143,15 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
 def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypatch, other, two, taken):
     asked = []
 
-    def search(split, given, options, rng):
-        asked.append(options.candidates)
+    def search(study, given):
+        asked.append(study.options.candidates)
         return other.search
 
-    monkeypatch.setattr(workflow, "of_one_group", lambda runs: ["one"] if two else [])
-    monkeypatch.setattr(workflow, "search_runs", search)
-    monkeypatch.setattr(workflow, "standing", lambda *_: other)
-    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+    monkeypatch.setattr(again, "of_one_group", lambda runs: ["one"] if two else [])
+    monkeypatch.setattr(again, "search_runs", search)
+    monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(UNEXPLAINED)
     before.search.given = SimpleNamespace(prepared=(), model=None)
-    after = workflow.by_groups(SimpleNamespace(train=()), None, GapOptions(), before, np.random.default_rng(0))
+    after = again.by_groups(STUDY, before)
     assert (after is other) is taken
     assert asked == [("one",)] * two

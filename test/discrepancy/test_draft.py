@@ -130,7 +130,7 @@ def test_laws_that_close_much_less_than_the_best_are_not_proposed(monkeypatch):
     monkeypatch.setattr(proposals, "_laws", lambda *_: [(None, 0.0)] * 6)
     monkeypatch.setattr(proposals, "_proven", lambda *_: None if (left := next(lefts)) is None else proposal(left))
     search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
-    found = proposals.propose(SimpleNamespace(search=search), (), None, None, np.random.default_rng(0))
+    found = proposals.propose(SimpleNamespace(search=search), (), None, np.random.default_rng(0))
     assert [each.after for each in found] == [0.8, 0.7]
 
 
@@ -140,7 +140,7 @@ def test_a_law_that_closes_little_of_the_locked_gap_is_not_proposed(monkeypatch)
     monkeypatch.setattr(proposals, "_laws", lambda *_: [(None, 0.0)])
     monkeypatch.setattr(proposals, "_proven", lambda *_: proposal(1.9))
     search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
-    assert proposals.propose(SimpleNamespace(search=search), (), None, None, np.random.default_rng(0)) == ()
+    assert proposals.propose(SimpleNamespace(search=search), (), None, np.random.default_rng(0)) == ()
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import outdone as outdone_module
+from winch_friction.discrepancy import several as several_module
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
-from winch_friction.discrepancy.assembly import Trial, _concluded
 from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
@@ -39,20 +38,22 @@ from winch_friction.discrepancy.engine.selection import (
     select,
     with_fewer,
 )
-from winch_friction.discrepancy.next_experiment import supplying
+from winch_friction.discrepancy.next_experiment import nothing_compared, supplying
 from winch_friction.discrepancy.outdone import _asked, _closed, outdone
 from winch_friction.discrepancy.proof import (
+    Trial,
     _noise,
     adds,
     at_the_floor,
     is_minor,
     leaves_too_much,
-    nothing_compared,
     unproven,
     worse_runs,
 )
-from winch_friction.discrepancy.standing import _by_another_signal, _each_proven, _sets, several_leave_more_than_noise
+from winch_friction.discrepancy.several import _by_another_signal, each_proven, several_leave_more_than_noise
+from winch_friction.discrepancy.standing import _needs_a_rival_law, _sets
 from winch_friction.discrepancy.ties import Company
+from winch_friction.discrepancy.workflow import _concluded
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
 
@@ -379,7 +380,7 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
-    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert list(proven.search.selection.final.names) == stay
     assert [each.slot.name for each in proven.search.selection.found] == stay
 
@@ -398,7 +399,7 @@ def test_a_small_second_name_is_dropped_and_a_second_law_of_the_same_cause_is_no
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
-    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert len(proven.search.selection.final.slots) == stay
 
 
@@ -418,7 +419,7 @@ def test_what_did_as_well_alone_is_a_rival_of_what_stays(share, name, rivals, al
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
-    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     (finding,) = proven.search.selection.found
     assert finding.slot.name == name
     assert {each.name for each in finding.rivals} == rivals
@@ -516,7 +517,7 @@ def test_a_dropped_name_that_does_as_well_alone_is_a_rival(alone, rivals):
         return Trial(own, None, None, replace(side(5.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
-    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     (finding,) = proven.search.selection.found
     assert finding.slot.name == "wave"
     assert [each.name for each in finding.rivals] == rivals
@@ -538,7 +539,7 @@ def test_a_small_second_name_stays_by_another_signal(second, names):
         return Trial(own, None, None, replace(side(30.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
-    proven = _each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert list(proven.search.selection.final.names) == names
 
 
@@ -561,7 +562,7 @@ def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(
     rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=slots[1:])))
     sides = [SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0) for left in (fewer, more)]
     trials = [SimpleNamespace(search=rest, holdout=side) for side in sides]
-    monkeypatch.setattr(standing_module, "refused", lambda trial, rng: refuses)
+    monkeypatch.setattr(several_module, "refused", lambda search, rng: refuses)
     assert _by_another_signal(slots[0], *trials, np.random.default_rng(0)) is stays
 
 
@@ -796,6 +797,9 @@ class _Tried(_Whole):
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
+STUDY = SimpleNamespace(split=SimpleNamespace(train=()), rng=np.random.default_rng(0))
+
+
 @pytest.mark.parametrize(
     ("left_as_given", "of_others", "kind"),
     [(0.0, 0.0, NOTHING), (3.0, 0.0, UNEXPLAINED), (0.0, 3.0, UNEXPLAINED), (0.0, 0.5, NOTHING)],
@@ -808,9 +812,9 @@ def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatc
     astray = side(noise(), 3.0 * WAVE + noise(1))
     train, given = (side(noise(), left * WAVE + noise(1)) for left in (of_others, left_as_given))
     monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
-    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, astray))
-    monkeypatch.setattr(standing_module, "as_given", lambda _, __, own, rng: Trial(own, None, train, given))
-    assert standing_module.standing(None, None, None, search, np.random.default_rng(0)).search.verdict.kind == kind
+    monkeypatch.setattr(standing_module, "tried", lambda _, own: Trial(own, None, None, astray))
+    monkeypatch.setattr(standing_module, "as_given", lambda _, own: Trial(own, None, train, given))
+    assert standing_module.standing(STUDY, search).search.verdict.kind == kind
 
 
 def standing_of(monkeypatch, trial, refit):
@@ -818,9 +822,10 @@ def standing_of(monkeypatch, trial, refit):
     monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
     monkeypatch.setattr(standing_module, "_sets", lambda own, _: iter([own]))
     monkeypatch.setattr(standing_module, "_stands", lambda *_: (trial, ""))
-    monkeypatch.setattr(standing_module, "_each_proven", lambda full, *_: full)
-    monkeypatch.setattr(standing_module, "tried", lambda _, __, ___, own, rng: Trial(own, None, None, refit))
-    return standing_module.standing(None, None, None, trial.search, np.random.default_rng(0))
+    monkeypatch.setattr(standing_module, "each_proven", lambda full, *_: full)
+    monkeypatch.setattr(standing_module, "one_law", lambda *_: "")
+    monkeypatch.setattr(standing_module, "tried", lambda _, own: Trial(own, None, None, refit))
+    return standing_module.standing(STUDY, trial.search)
 
 
 @pytest.mark.parametrize(("left", "stand"), [(0.2, True), (2.0, False)])
@@ -838,19 +843,14 @@ def test_names_that_together_leave_more_than_noise_are_not_the_answer(monkeypatc
 
 
 @pytest.mark.parametrize(("train", "locked", "asked"), [(0.0, 0.0, False), (1.2, 0.0, True), (0.0, 1.2, True)])
-def test_no_law_is_asked_where_a_curve_leaves_nothing_of_any_run(monkeypatch, train, locked, asked):
+def test_no_law_is_asked_where_a_curve_leaves_nothing_of_any_run(train, locked, asked):
     """Of hundreds of laws one always leaves less of the noise."""
     cross = crossfit(3.0 * WAVE + noise())
     own = replace(SLOTS[0], free=True)
     final = replace(cross.explain(SLOTS[:1]), slots=(own,))
     search = _Tried(cross, Selection(cross.explain(()), final, (Finding(own, (), 0.0, 0.5, 1.0),)), Verdict(MISSING))
     sides = [side(3.0 * WAVE + noise(), kept * WAVE + noise(1)) for kept in (train, locked)]
-    trial, said = Trial(search, None, *sides), []
-    monkeypatch.setattr(outdone_module, "_closed", lambda *_: True)
-    monkeypatch.setattr(outdone_module, "_asked", lambda *_: said.append("asked") or [])
-    split = SimpleNamespace(train=())
-    assert outdone_module.not_one_law(split, None, None, trial, np.random.default_rng(0)) is trial
-    assert bool(said) is asked
+    assert _needs_a_rival_law(Trial(search, None, *sides)) is asked
 
 
 def leaving(rms):

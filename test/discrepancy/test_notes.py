@@ -9,11 +9,11 @@ import pytest
 from winch_friction.cli.gap import _found_as, _parameters, show_result
 from winch_friction.discrepancy.adequacy import Check, of_names
 from winch_friction.discrepancy.answer import Side
-from winch_friction.discrepancy.assembly import _in_the_end, _inexact, _times
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
-from winch_friction.discrepancy.proof import nothing_compared
+from winch_friction.discrepancy.next_experiment import nothing_compared
+from winch_friction.discrepancy.workflow import _in_the_end, _inexact, _times
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run

@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import workflow
+from winch_friction.discrepancy import again, workflow
 from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.expansion import Split
+from winch_friction.discrepancy.search import Study
 
 FLOOR, FAR = 0.2, 1.0  # bar
 RUNS = tuple(SimpleNamespace(name=f"run_{k}") for k in range(9))
@@ -36,16 +37,16 @@ def asked(monkeypatch):
 
     def answer(other):
         splits = []
-        monkeypatch.setattr(workflow, "search_runs", lambda split, *_: splits.append(split))
-        monkeypatch.setattr(workflow, "standing", lambda *_: other)
-        monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
+        monkeypatch.setattr(again, "search_runs", lambda study, *_: splits.append(study.split))
+        monkeypatch.setattr(again, "standing", lambda *_: other)
         return splits
 
     return answer
 
 
 def looked(before):
-    return workflow.by_other_runs(SPLIT, None, GapOptions(), before, np.random.default_rng(0))
+    study, after = workflow._with_other_runs(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), before)
+    return study.split, after
 
 
 @pytest.mark.parametrize(

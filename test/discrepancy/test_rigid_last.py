@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import workflow
+from winch_friction.discrepancy import again, workflow
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.search import Study
 from winch_friction.physics.signals import Run
 
 
@@ -64,23 +65,24 @@ def answers(monkeypatch):
     """What the next search and the judgement of its names answer; `asked` tells the balances searched."""
     own = SimpleNamespace(search=[], judged=[], asked=[])
 
-    def search_runs(split, given, options, rng, also=None):
+    def search_runs(study, given, also=None):
         own.asked.append(given)
         return own.search.pop(0)
 
-    def standing(split, crane, options, search, rng):
+    def standing(study, search):
         kind, file = own.judged.pop(0)
         return trial(replace(search, kind=kind), file)
 
-    monkeypatch.setattr(workflow, "search_runs", search_runs)
-    monkeypatch.setattr(workflow, "standing", standing)
-    monkeypatch.setattr(workflow, "not_one_law", lambda split, crane, options, trial, rng: trial)
-    monkeypatch.setattr(workflow, "by_other_runs", lambda split, crane, options, trial, rng: (split, trial))
+    for module in (again, workflow):
+        monkeypatch.setattr(module, "search_runs", search_runs)
+        monkeypatch.setattr(module, "standing", standing)
+        monkeypatch.setattr(module, "swings", lambda given: given.swings)
+        monkeypatch.setattr(module, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)
+    monkeypatch.setattr(workflow, "_with_other_runs", lambda study, trial: (study, trial))
     for step in ("by_surfaces", "by_groups"):
-        monkeypatch.setattr(workflow, step, lambda split, crane, options, trial, rng: trial)
-    monkeypatch.setattr(workflow, "as_rigid", lambda given: RIGID)
-    monkeypatch.setattr(workflow, "swings", lambda given: given.swings)
-    monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)
+        monkeypatch.setattr(workflow, step, lambda study, trial: trial)
+    monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: True)
+    monkeypatch.setattr(again, "as_rigid", lambda given: RIGID)
     return own
 
 
@@ -98,8 +100,8 @@ def answers(monkeypatch):
 def test_only_names_whose_file_leaves_no_swing_are_taken(answers, rigid, judged, file, taken):
     before = trial(Found(UNEXPLAINED))
     answers.search, answers.judged = [Found(rigid, RIGID)], [(judged, file)]
-    split, rng = SimpleNamespace(runs=()), np.random.default_rng(0)
-    after = workflow._without_swing(split, None, ELASTIC, GapOptions(), before, rng)
+    study = Study(SimpleNamespace(runs=()), None, GapOptions(), np.random.default_rng(0))
+    after = again.without_swing(study, ELASTIC, before)
     assert answers.asked == [RIGID]
     assert (after is not before) is taken
     if taken:  # judged, and proposed for, in the balance that the runs were met with
@@ -123,7 +125,7 @@ def surrounded(monkeypatch, met, told=True):
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
     monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
     monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
-    monkeypatch.setattr(workflow, "assemble", lambda split, options, trial: Result(trial.search.kind))
+    monkeypatch.setattr(workflow, "assemble", lambda study, trial: Result(trial.search.kind))
     return runs
 
 
@@ -154,7 +156,7 @@ def test_a_gap_above_the_noise_of_runs_too_short_for_a_swing_is_not_nothing(answ
     monkeypatch.setattr(workflow, "nobodys", lambda side: quiet)
     monkeypatch.setattr(workflow, "insufficient", lambda *_: Result("insufficient"))
     seen = []
-    monkeypatch.setattr(workflow, "_with_what_was_seen", lambda own, result: seen.append(result.verdict) or own)
+    monkeypatch.setattr(workflow, "with_what_was_seen", lambda own, result: seen.append(result.verdict) or own)
     answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
     assert workflow.find_gap(runs, None, None, GapOptions(proposals=False)).verdict == said
     assert seen == [verdict] * (said == "insufficient")

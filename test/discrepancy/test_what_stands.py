@@ -6,12 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import search as search_module
+from winch_friction.discrepancy import several
 from winch_friction.discrepancy import standing as module
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Verdict
-from winch_friction.discrepancy.assembly import Trial
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import Finding, Selection
+from winch_friction.discrepancy.proof import Trial
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RNG = np.random.default_rng(0)
@@ -85,12 +87,12 @@ def tried_with(monkeypatch, search, left_of, worse_of=lambda _: (), sets=()):
     """What stands of a search without names that hold; the locked runs keep what `left_of` says of each file."""
     monkeypatch.setattr(module, "_replicated", lambda own, *_: own)
     monkeypatch.setattr(module, "_sets", lambda *_: iter(sets))
-    monkeypatch.setattr(module, "dependences", lambda *_: [])
+    monkeypatch.setattr(search_module, "dependences", lambda *_: [])
     monkeypatch.setattr(module, "worse_runs", lambda of, _: worse_of(of))
-    monkeypatch.setattr(module, "tried", lambda *more, rng: Trial(more[3], None, side(), side(left_of(more[3]))))
-    monkeypatch.setattr(module, "as_given", lambda _, __, own, rng: Trial(own, "as given", side(), side()))
+    monkeypatch.setattr(module, "tried", lambda _, own: Trial(own, None, side(), side(left_of(own))))
+    monkeypatch.setattr(module, "as_given", lambda _, own: Trial(own, "as given", side(), side()))
     search = replace(search, cross=SimpleNamespace(remainder=lambda _: None))
-    return module.standing(None, None, None, search, RNG)
+    return module.standing(SimpleNamespace(split=None, rng=RNG), search)
 
 
 @pytest.mark.parametrize("ripple", [None, "ripple"])
@@ -177,9 +179,9 @@ def test_fewer_names_are_tried_unless_one_is_what_every_machine_has(monkeypatch,
 
 def test_a_name_has_no_more_rivals_than_a_set_has_room_for(monkeypatch):
     """Three dropped names do as well alone; a set has room for three in all."""
-    monkeypatch.setattr(module, "adds", lambda *_: False)
+    monkeypatch.setattr(several, "adds", lambda *_: False)
     every, one = searched(*SLOTS), searched(SLOTS[0])
-    found = module._with_those_as_good_alone(
+    found = several._with_those_as_good_alone(
         Trial(one, None, side(), side()), every, SLOTS[1:], lambda own: Trial(own, None, side(), side()), RNG
     )
     assert found.search.selection.found[0].rivals == SLOTS[1 : LIMITS.most_names]

@@ -9,8 +9,9 @@ import pytest
 
 from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import Effect
-from winch_friction.discrepancy.assembly import _amounts, insufficient
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.next_experiment import insufficient
+from winch_friction.discrepancy.workflow import _amounts
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
 from winch_friction.physics.friction.table import Table, tabulated
 from winch_friction.physics.signals import Run

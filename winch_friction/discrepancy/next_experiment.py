@@ -7,20 +7,24 @@ the measurement, is the expected separation. And what to log where the runs cann
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from winch_friction.discrepancy.adequacy import HEAVE, SWING, TELLING, Check
+from winch_friction.discrepancy.answer import INSUFFICIENT, GapResult, Side
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.expansion import Expansion, Given
+from winch_friction.discrepancy.expansion import Expansion, Given, Split
 from winch_friction.discrepancy.preparation.prepare import prepare
+from winch_friction.discrepancy.proof import compare
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch import Crane
 from winch_friction.records.strict_yaml import shipped
 
@@ -150,6 +154,49 @@ def of_wire(given: Given) -> list[str]:
     return [
         f"{which} wire_out, so that how the load swings on its wire is a guess, and its swing may be the gap: log it"
     ]
+
+
+# -- where the runs cannot answer
+def insufficient(
+    checks: Sequence[Check], notes: Sequence[str], crane: Crane, model: FrictionModel,
+    looked_at: tuple[Given, Split] | None = None,
+) -> GapResult:  # fmt: skip
+    """The result of runs that cannot answer: what they lack in numbers, and a scenario that supplies it."""
+    sides = [nothing_compared(), nothing_compared()]
+    if looked_at is not None:
+        given, split = looked_at
+        rng = np.random.default_rng(0)
+        sides = [compare(given, given, names, rng) for names in (split.train, split.holdout)]
+    name = supplying(checks) if crane.drive.hydraulic else ""
+    lacking = "; ".join(check.sentence for check in checks if not check.met)
+    plan = {
+        "scenario": f"{name}.yaml", "separates": [], "expected_z": 0.0, "considered": {},
+        "note": f"supplies what the runs lack ({lacking})",
+    }  # fmt: skip
+    return GapResult(
+        verdict=INSUFFICIENT, refused=lacking, effects=(), regions=(), unit=crane.drive.unit, train=sides[0],
+        holdout=sides[1], depends=(), unexplained_share=0.0, considered=(), untestable=(), model=model,
+        seed_model=model, next_experiment=plan if name else None,
+        next_scenario=shipped("scenarios", name).read_text(encoding="utf-8") if name else "", notes=tuple(notes),
+        adequacy=tuple(checks),
+    )  # fmt: skip
+
+
+def with_what_was_seen(lacking: GapResult, result: GapResult) -> GapResult:
+    """The answer of runs that lack something, with what their search showed all the same."""
+    left = f"{result.holdout.size_after.value:.3g} {result.unit}"
+    said = [] if result.effects else [f"the model's own parameters, fitted anew, leave {left} of the locked runs"]
+    return replace(
+        lacking, regions=result.regions, considered=result.considered, untestable=result.untestable,
+        notes=(*lacking.notes, *said),
+    )  # fmt: skip
+
+
+def nothing_compared() -> Side:
+    """Of runs that could not even be prepared."""
+    none, number, size = np.zeros(0), np.zeros(0, int), Size(0.0, (0.0, 0.0))
+    blocks = Blocks(none, np.zeros((0, 1)), number, number, none, {}, none, number)
+    return Side((), blocks, none, none, size, size, 0.0, 0.0, (0.0, 0.0))
 
 
 def supplying(checks: Sequence[Check]) -> str:

@@ -1,51 +1,35 @@
 """Names that do not stand beside one law of the grammar, which does by itself what they do, however well they fit."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.adequacy import Split
-from winch_friction.discrepancy.answer import GapOptions
-from winch_friction.discrepancy.assembly import Trial, tried
 from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
-from winch_friction.discrepancy.proof import at_the_floor, nobodys
+from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
-from winch_friction.discrepancy.standing import nameless, refused, unexplained
+from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
-from winch_friction.physics.winch import Crane
 
 # signals of an equation by the proposals' word for them
 _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
 
-def not_one_law(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """The trial without its names where one law that is none of theirs does by itself what they do.
+def one_law(trial: Trial, train: Sequence[str], rng: np.random.Generator) -> str:
+    """Why the names of a trial do not stand beside one law that is none of theirs; empty where they do.
 
     Of hundreds of laws one that picks the right runs always leaves a little less of those it was chosen on: where one
-    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves, and
-    where it leaves nothing that is anybody's of any run none.
+    name leaves the locked runs at their floor such are asked only if they leave next to nothing of what it leaves.
     """
     search = trial.search
-    slots = on_their_own(search.explanation.slots)
-    left = search.cross.excess(search.explanation)
-    causes = {slot.name for slot in slots}
-    asked = len(causes) > 1 or any(slot.free for slot in slots) or (slots and left > LIMITS.least_excess)
-    asked = asked and not (len(causes) == 1 and nobodys(trial.train) and nobodys(trial.holdout))
-    closed = bool(asked) and len(causes) == 1 and _closed(trial, rng)
-    near = partial(near_laws, search, split.train, rng)
-    laws = _asked(near, search.cross, search.selection.final, closed) if asked else []
-    why = outdone(laws, search.cross, search.selection, closed)
-    if not why:
-        return trial
-    refit = tried(split, crane, options, nameless(search), rng)
-    return replace(refit, search=unexplained(refit.search, why, rng))
+    closed = len({slot.name for slot in on_their_own(search.explanation.slots)}) == 1 and _closed(trial, rng)
+    laws = _asked(partial(near_laws, search, train, rng), search.cross, search.selection.final, closed)
+    return outdone(laws, search.cross, search.selection, closed)
 
 
 def _closed(trial: Trial, rng: np.random.Generator) -> bool:
@@ -54,9 +38,7 @@ def _closed(trial: Trial, rng: np.random.Generator) -> bool:
     A few locked runs do not vouch for what the many others refuse: a name whose company was dropped may leave in these
     a third of the gap, for which it would never have been given by itself.
     """
-    if not at_the_floor(trial.holdout):
-        return False
-    return not refused(trial, rng)
+    return at_the_floor(trial.holdout) and not refused(trial.search, rng)
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

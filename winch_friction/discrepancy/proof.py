@@ -6,6 +6,7 @@ nobody logged a temperature.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import stdtr
@@ -13,14 +14,26 @@ from scipy.special import stdtr
 from winch_friction.discrepancy.answer import Side, relative_error
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks, segment_length
-from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms_with_interval
+from winch_friction.discrepancy.engine.chance import chance_of_no_gain, rms_with_interval
 from winch_friction.discrepancy.engine.problem import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import block_size, least_noise_of, timing_column
+from winch_friction.discrepancy.repair import Repair
+from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.records.model_file import model_from_text, model_to_text
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A repaired model as its file is read, and what it leaves of the gap."""
+
+    search: Search
+    repaired: Repair
+    train: Side
+    holdout: Side
 
 
 def read_back(model: FrictionModel) -> FrictionModel:
@@ -190,13 +203,6 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
         least_noise=closes,
         relative=(relative_error(y_before, torque), relative_error(y_after, torque)),
     )  # fmt: skip
-
-
-def nothing_compared() -> Side:
-    """Of runs that could not even be prepared."""
-    none, number, size = np.zeros(0), np.zeros(0, int), Size(0.0, (0.0, 0.0))
-    blocks = Blocks(none, np.zeros((0, 1)), number, number, none, {}, none, number)
-    return Side((), blocks, none, none, size, size, 0.0, 0.0, (0.0, 0.0))
 
 
 def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[no-untyped-def]

@@ -10,17 +10,16 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED, Verdict
-from winch_friction.discrepancy.assembly import Trial
-from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import run_blocks, segment_length
 from winch_friction.discrepancy.engine.crossfit import flip_p_values
 from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
-from winch_friction.discrepancy.expansion import Expansion
+from winch_friction.discrepancy.expansion import expand_around
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.proof import fits_only_its_own, left_beside_a_refit, unproven
+from winch_friction.discrepancy.proof import Trial, fits_only_its_own, left_beside_a_refit, unproven
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -87,17 +86,13 @@ class Proposal:
         }  # fmt: skip
 
 
-Expand = Callable[[Search, Candidate], Expansion]
 Evaluate = Callable[[Search], Trial]
 
 
-def propose(
-    refit: Trial, train: Sequence[str], expand: Expand, evaluate: Evaluate, rng: np.random.Generator
-) -> tuple[Proposal, ...]:
+def propose(refit: Trial, train: Sequence[str], evaluate: Evaluate, rng: np.random.Generator) -> tuple[Proposal, ...]:
     """At most three laws for an unexplained gap, the simplest first; none where nothing holds on the locked runs.
 
-    `refit` is the trial without a name; `expand` prepares the runs around the search's base with one more candidate,
-    `evaluate` puts the file that a search would write to the locked runs.
+    `refit` is the trial without a name; `evaluate` puts the file that a search would write to the locked runs.
     """
     search = refit.search
     if search.verdict.kind != UNEXPLAINED:
@@ -105,7 +100,7 @@ def propose(
     runs = [run for run in search.expansion.runs if run.name in train]
     found: list[Proposal] = []
     for scored, p_value in _laws(search, runs, rng):
-        proposal = _proven(refit, train, scored, p_value, expand, evaluate, rng)
+        proposal = _proven(refit, train, scored, p_value, evaluate, rng)
         if proposal is not None and proposal.worthwhile:
             found.append(proposal)
         if len(found) == LIMITS.most_proposals:
@@ -244,9 +239,8 @@ def _evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int)
 
 
 def _proven(
-    refit: Trial, train: Sequence[str], scored: Scored, p_value: float, expand: Expand, evaluate: Evaluate,
-    rng: np.random.Generator,
-) -> Proposal | None:  # fmt: skip
+    refit: Trial, train: Sequence[str], scored: Scored, p_value: float, evaluate: Evaluate, rng: np.random.Generator
+) -> Proposal | None:
     """A law as a term, refitted with the model and put to the locked runs; None where these do not bear it out."""
     if sum(factor.kind == "lag" or factor.signal == "run_time" for factor in scored.law.factors) > 1:
         return None  # one memory is all that a proposal may have
@@ -254,7 +248,8 @@ def _proven(
     grid = {name: (value,) for name, value in declared.constants.items()}
     candidate = friction_candidate(declared.term, grid, hydraulic=False, own_size=True)
     with known_for_now(declared.term):
-        expansion = expand(refit.search, candidate)
+        own = refit.search
+        expansion = expand_around(own.given, own.expansion, own.cross.explain(()), [candidate])
         cross = expansion.cross(train, expansion.layout.slots)
         base, final = cross.explain(()), cross.explain(expansion.layout.slots)
         finding = Finding(final.slots[0], (), p_value, float(cross.gain(base, final)), 1.0)

@@ -36,6 +36,7 @@ from winch_friction.discrepancy.regressors import base_of, build_problem, layout
 from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.winch import Crane
 
 LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
@@ -125,6 +126,17 @@ def after_reversals(
 
 
 # -- the search
+@dataclass(frozen=True)
+class Study:
+    """What every step of one call shares: its runs and which are locked, their crane, what the user chose, and the one
+    source of chance."""
+
+    split: Split
+    crane: Crane
+    options: GapOptions
+    rng: np.random.Generator
+
+
 def is_long_delay(slot: Slot) -> bool:
     """Whether a shape is a delay that is no small one, which its first derivative says."""
     values = slot.origin[1].values
@@ -154,27 +166,25 @@ class Search:
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
-def search_runs(
-    split: Split, given: Given, options: GapOptions, rng: np.random.Generator, also: LastResort | None = None
-) -> Search:
+def search_runs(study: Study, given: Given, also: LastResort | None = None) -> Search:
     """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs.
 
     `also` makes candidates of last resort of all runs and the model, such as laws that only the data know, over two
     signals at once: then it is one cause alone, for one of these with company imitates anything.
     """
-    model, prepared = given.model, given.prepared
-    training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in split.train]
+    model, prepared, train, rng = given.model, given.prepared, study.split.train, study.rng
+    training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
     ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    known = options.candidates or [
-        *candidates_for(prepared, model, options.effects_file), *run_states(prepared, model)
+    known = study.options.candidates or [
+        *candidates_for(prepared, model, study.options.effects_file), *run_states(prepared, model)
     ]  # fmt: skip
     if also is not None:
         known = [*known, *also(prepared, model)]
     usable, blind = testable(known, prepared, model)
     candidates = [each for each in usable if each.regime == MOVING]
     at_seed = Expansion(prepared, layout_of(base_of(model, model), candidates, prepared, model), model)
-    cross = _cleaned(at_seed, ripple, _waves(at_seed, ripple)).cross(split.train)
+    cross = _cleaned(at_seed, ripple, _waves(at_seed, ripple)).cross(train)
     expansion, selection = at_seed, select(cross, rng, 1)
     for _ in range(LIMITS.most_expansions):
         shapes = (*selection.final.slots, *near(cross, selection.final))
@@ -186,7 +196,7 @@ def search_runs(
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)
         expansion = _cleaned(around, ripple, waves)
-        cross = expansion.cross(split.train, selection.final.slots)
+        cross = expansion.cross(train, selection.final.slots)
         selection = select(cross, rng, LIMITS.most_effects if also is None else 1)
         if not any(slot.origin[0].continuous for slot in selection.final.slots):
             break
@@ -198,7 +208,7 @@ def search_runs(
     if verdict.kind != UNEXPLAINED:
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
-        reversal = after_reversals(given, expansion, selection.final, usable, split.train, rng, cleaned)
+        reversal = after_reversals(given, expansion, selection.final, usable, train, rng, cleaned)
     leakage, air = flow_balance.detect(own_runs, own_prepared), soft_oil.free_air(own_runs, own_prepared)
     flow = tuple(each for each in (leakage, air) if each is not None and each.found)
     if any(each.name == soft_oil.NAME for each in usable):
@@ -209,7 +219,7 @@ def search_runs(
         verdict = Verdict(MISSING)
     return Search(
         given,
-        split.train,
+        train,
         at_seed,
         expansion,
         cross,
@@ -248,3 +258,28 @@ def _cleaned(expansion: Expansion, ripple: Ripple | None, waves: Mapping[str, Fl
     if ripple is None:
         return expansion
     return replace(expansion, runs=tuple(without_ripple(run, ripple, waves[run.name]) for run in expansion.runs))
+
+
+# -- the same search with other names
+def decided(search: Search, selection: Selection, rng: np.random.Generator) -> Search:
+    """The search with a selection and the verdict that the training runs give it."""
+    left = dependences(search.cross, search.cross.remainder(selection.final), rng)
+    verdict = decide(search.cross, selection, left, search.ripple is not None)
+    return replace(search, selection=selection, verdict=verdict, left=tuple(left))
+
+
+def refused(search: Search, rng: np.random.Generator) -> bool:
+    """Whether the names found leave more of the training runs than the verdict allows."""
+    return decided(search, search.selection, rng).verdict.kind == UNEXPLAINED
+
+
+def nameless(search: Search) -> Search:
+    """The search without any name."""
+    selection = replace(search.selection, final=search.selection.base, found=())
+    return replace(search, selection=selection, reversal=None, ripple=None, flow=())
+
+
+def unexplained(search: Search, why: str, rng: np.random.Generator) -> Search:
+    """The search with the signals that its gap depends on."""
+    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
+    return replace(search, verdict=Verdict(UNEXPLAINED, why), left=tuple(left))

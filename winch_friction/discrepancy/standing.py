@@ -1,46 +1,70 @@
 """Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
-from winch_friction.discrepancy.assembly import Trial, as_given, tried
-from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
-from winch_friction.discrepancy.engine.chance import dependences, least_part
-from winch_friction.discrepancy.engine.selection import Selection, select, with_fewer
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
-from winch_friction.discrepancy.expansion import Split
+from winch_friction.discrepancy.expansion import Split, meet
+from winch_friction.discrepancy.outdone import one_law
 from winch_friction.discrepancy.proof import (
-    adds,
+    Trial,
     at_the_floor,
+    compare,
     far_off,
     fits_only_its_own,
-    is_minor,
     leaves_most,
     leaves_too_much,
     nobodys,
+    read_back,
     unproven,
     worse_runs,
 )
-from winch_friction.discrepancy.search import Search
+from winch_friction.discrepancy.repair import Repair, draft, polished
+from winch_friction.discrepancy.search import Search, Study, decided, nameless, unexplained
+from winch_friction.discrepancy.several import each_proven, several_leave_more_than_noise
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.winch import Crane
 
-CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
-WHILE_SPEED_CHANGES = (DELAY, "inertia_error")
 _TrialOf = Callable[[Search], Trial]
 
 
-def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rng: np.random.Generator) -> Trial:
+def standing(study: Study, search: Search) -> Trial:
     """The trial that the locked runs bear out: with the names found, with fewer, with what shows beside the moving
-    samples, or with none."""
-    search = _replicated(search, split, rng)
-    trial_of = partial(tried, split, crane, options, rng=rng)
+    samples, or with none, as where one law that is none of theirs does by itself what the names do."""
+    trial = _borne_out(study, search)
+    why = one_law(trial, study.split.train, study.rng) if _needs_a_rival_law(trial) else ""
+    if not why:
+        return trial
+    refit = tried(study, nameless(trial.search))
+    return replace(refit, search=unexplained(refit.search, why, study.rng))
+
+
+def _needs_a_rival_law(trial: Trial) -> bool:
+    """Whether names are to be held against the laws of the grammar: several, a curve, and one that leaves more of the
+    training runs than noise; none that leaves nothing that is anybody's of any run."""
+    search = trial.search
+    slots = on_their_own(search.explanation.slots)
+    if not slots:
+        return False
+    if len({slot.name for slot in slots}) > 1:
+        return True
+    inexact = any(slot.free for slot in slots) or search.cross.excess(search.explanation) > LIMITS.least_excess
+    return inexact and not (nobodys(trial.train) and nobodys(trial.holdout))
+
+
+def _borne_out(study: Study, search: Search) -> Trial:
+    """The same by the locked runs alone."""
+    rng = study.rng
+    search = _replicated(search, study.split, rng)
+    trial_of = partial(tried, study)
     refit = trial_of(nameless(search))
     aside = bool(search.ripple or search.flow)  # of what is in every file no name takes anything off the locked gap
     beside = trial_of(replace(nameless(search), ripple=search.ripple, flow=search.flow)) if aside else refit
@@ -48,42 +72,23 @@ def standing(split: Split, crane: Crane, options: GapOptions, search: Search, rn
     for each in _sets(search, rng):
         full, why = _stands(each, beside, trial_of, rng)
         if full is not None:
-            proven = _each_proven(full, beside, trial_of, rng)
-            why = proven.search.selection.untold or several_leave_more_than_noise(proven)
+            if several := len(full.search.selection.final.slots) > 1:
+                full = each_proven(full, beside, trial_of, rng)
+            why = full.search.selection.untold or (several_leave_more_than_noise(full) if several else "")
             if not why:
-                return proven
+                return full
         whys.append(why)
     if aside and not worse_runs(beside.holdout, rng):
         refit = beside
     judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
     if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
         # little data may lead a refit astray where the model that was given leaves nothing
-        given = as_given(split, options, nameless(search), rng)
+        given = as_given(study, nameless(search))
         if at_the_floor(given.holdout) and not far_off(given.train):
             return replace(given, search=replace(given.search, verdict=Verdict(NOTHING)))
     # what is fitted to a gap that nothing explains may fit the next runs worse than the model that was given
     harmful = judged.search.verdict.kind == UNEXPLAINED and worse_runs(judged.holdout, rng)
-    return as_given(split, options, judged.search, rng) if harmful else judged
-
-
-def several_leave_more_than_noise(trial: Trial) -> str:
-    """Why several names do not stand although each takes its part of the locked gap; empty where they do.
-
-    One name's law may be inexact; of several the second is as likely what the first one's law has wrong, but hardly
-    where together they close the many training runs down to their noise, or where each takes a large part.
-    """
-    search, side, left = trial.search, trial.holdout, trial.holdout.size_after.value
-    names = {own.name for own in on_their_own(search.explanation.slots)}
-    if len(names) < 2:
-        return ""
-    closed = search.cross.excess(search.explanation) <= LIMITS.least_excess
-    most = LIMITS.at_the_floor * side.excused if closed else LIMITS.several_leave * side.floor
-    share = search.cross.excess(search.explanation) / max(search.cross.excess(search.cross.explain(())), 1e-9)
-    part = least_part(search.cross, search.explanation, names)
-    near = not far_off(side) or share <= LIMITS.left_over * part  # what the smaller could leave of its own, alone
-    if left <= most or (near and part >= LIMITS.large_part):
-        return ""
-    return f"{', '.join(sorted(names))} together leave {left:.3g} where the noise is {side.floor:.3g}"
+    return as_given(study, judged.search) if harmful else judged
 
 
 def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
@@ -111,13 +116,6 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
 def _with_at_most(count: int, search: Search, rng: np.random.Generator) -> Search:
     """The best with so many names, judged anew."""
     return decided(search, select(search.cross, rng, count), rng)
-
-
-def decided(search: Search, selection: Selection, rng: np.random.Generator) -> Search:
-    """The search with a selection and the verdict that the training runs give it."""
-    left = dependences(search.cross, search.cross.remainder(selection.final), rng)
-    verdict = decide(search.cross, selection, left, search.ripple is not None)
-    return replace(search, selection=selection, verdict=verdict, left=tuple(left))
 
 
 def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> tuple[Trial | None, str]:
@@ -176,108 +174,6 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
     return replace(search, ripple=ripple, flow=flow, reversal=reversal)
 
 
-def _each_proven(full: Trial, refit: Trial, trial_of: _TrialOf, rng: np.random.Generator) -> Trial:
-    """The trial without those names, the one that the training runs miss least first, that the locked runs do not need
-    beside the others: which take nothing off them surely, or no more than the others' laws are inexact by, or, beside
-    one whose law is not the catalogue's own and may want mending, those without which nothing would be missing.
-    """
-    every, dropped = full.search, list[Slot]()
-    for slot in _least_missed_first(full.search):
-        search, final = full.search, full.search.selection.final
-        brought = any(slot.name in each.brings for each in final.slots)
-        if len(final.slots) == 1 or brought or slot.plain:
-            continue
-        without = trial_of(_without(search, slot))
-        mends = any(each.law for each in without.search.selection.final.slots) and at_the_floor(without.holdout)
-        # a second law of a cause is no second name: what it takes may be little beside what the first one does
-        same = slot.name in without.search.selection.final.names
-        minor = not same and is_minor(refit.holdout, without.holdout, full.holdout)
-        minor = minor and not leaves_too_much(without.holdout)
-        inexact = (mends or minor) and not _by_another_signal(slot, without, full, rng)
-        if inexact or not adds(without.holdout, full.holdout, rng):
-            full = without
-            dropped.append(slot)
-    if dropped:
-        full = replace(full, search=_judged_anew(full.search, rng))
-        full = _with_those_as_good_alone(full, every, dropped, trial_of, rng)
-    return full
-
-
-def _with_those_as_good_alone(
-    one: Trial, every: Search, dropped: Sequence[Slot], trial_of: _TrialOf, rng: np.random.Generator
-) -> Trial:
-    """The trial of one name with those dropped names as its rivals that leave by themselves no more of the locked runs:
-    these do not say which of the two it is, and that one came first says nothing.
-    """
-    (finding, *more), search = one.search.selection.found, one.search
-    known = {finding.slot.name, *(slot.name for slot in finding.rivals)}
-    for slot in dropped:
-        if more or slot.plain or slot.name in known or len(known) > LIMITS.most_named:
-            continue
-        alone = every
-        for other in every.selection.final.slots:
-            alone = alone if other is slot else _without(alone, other)
-        if not adds(trial_of(alone).holdout, one.holdout, rng):
-            finding, known = replace(finding, rivals=(*finding.rivals, slot)), known | {slot.name}
-    return replace(one, search=_of(search, replace(search.selection, found=(finding, *more))))
-
-
-def _by_another_signal(slot: Slot, without: Trial, full: Trial, rng: np.random.Generator) -> bool:
-    """Whether a name brings the locked gap down to its floor, where the others leave more of it or more of the training
-    runs than the verdict allows, by a signal that they do not read: then it is no inexactness of theirs."""
-    read = {signal for own in without.search.selection.final.slots for signal in _reads(own)}
-    if _reads(slot) <= read | CONSTANT:
-        return False
-    fewer, more = (each.holdout.size_after.value / each.holdout.floor for each in (without, full))
-    if more > LIMITS.several_leave:
-        return False
-    return fewer > LIMITS.several_leave or refused(without, rng)
-
-
-def refused(trial: Trial, rng: np.random.Generator) -> bool:
-    """Whether a trial's names leave more of the training runs than the verdict allows."""
-    return decided(trial.search, trial.search.selection, rng).verdict.kind == UNEXPLAINED
-
-
-def _reads(slot: Slot) -> set[str]:
-    """The signals that a name's law reads; what only shows while the speed changes reads the acceleration."""
-    return {*slot.origin[0].signals, *(["acceleration"] if slot.name in WHILE_SPEED_CHANGES else [])}
-
-
-def _least_missed_first(search: Search) -> list[Slot]:
-    """The names in the order in which the held-out loss of the training runs rises without them: of two that say much
-    the same, the one found first need not be the one that says it best.
-    """
-    slots = search.selection.final.slots
-    without = {id(slot): search.cross.explain(tuple(each for each in slots if each is not slot)) for slot in slots}
-    return sorted(slots, key=lambda slot: without[id(slot)].loss)
-
-
-def _without(search: Search, slot: Slot) -> Search:
-    """The search without one of its names."""
-    rest = tuple(each for each in search.selection.final.slots if each is not slot)
-    found = tuple(each for each in search.selection.found if each.slot is not slot)
-    return _of(search, replace(search.selection, final=search.cross.explain(rest), found=found))
-
-
-def _judged_anew(search: Search, rng: np.random.Generator) -> Search:
-    """The search with the rivals that its names have now that others are gone."""
-    return _of(search, with_fewer(search.cross, search.selection, search.selection.final.slots, rng))
-
-
-def _of(search: Search, selection: Selection) -> Search:
-    verdict = search.verdict
-    if verdict.kind in (MISSING, AMBIGUOUS):
-        verdict = replace(verdict, kind=AMBIGUOUS if any(each.rivals for each in selection.found) else MISSING)
-    return replace(search, selection=selection, verdict=verdict)
-
-
-def nameless(search: Search) -> Search:
-    """The search without any name."""
-    selection = replace(search.selection, final=search.selection.base, found=())
-    return replace(search, selection=selection, reversal=None, ripple=None, flow=())
-
-
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
     others, one of which may have met what none of the locked runs did, are not far off it. What the search found to be
@@ -292,7 +188,68 @@ def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     return unexplained(search, "; ".join(filter(None, (why, kept))), rng)
 
 
-def unexplained(search: Search, why: str, rng: np.random.Generator) -> Search:
-    """The search with the signals that its gap depends on."""
-    left = dependences(search.cross, search.cross.remainder(search.selection.base), rng)
-    return replace(search, verdict=Verdict(UNEXPLAINED, why), left=tuple(left))
+# -- the file that a search would write, put to all runs
+def tried(study: Study, search: Search) -> Trial:
+    """The repaired model of a search and what it leaves of all runs, read back from its file."""
+    search, split = placed(search, study.split), study.split
+    repaired = draft(search, search.explanation, _provenance(study, search))
+    repaired = polished(repaired, search.given.model, split.runs, split.train, study.crane)
+    after = meet(split.runs, study.crane, read_back(repaired.model), ())
+    sides = (compare(search.given, after, names, study.rng) for names in (split.train, split.holdout))
+    return Trial(search, repaired, *sides)
+
+
+def as_given(study: Study, search: Search) -> Trial:
+    """The given model as it is, where a refit would only make it worse on the locked runs."""
+    given, split = search.given, study.split
+    model = replace(given.model, provenance={**given.model.provenance, **_provenance(study, search)})
+    sides = (compare(given, given, names, study.rng) for names in (split.train, split.holdout))
+    return Trial(search, Repair(model, {}), *sides)
+
+
+def _provenance(study: Study, search: Search) -> Mapping[str, Any]:
+    return {
+        "repaired_by": "winch-friction gap", "verdict": search.verdict.kind, "trained_on": list(study.split.train),
+        "seed": study.options.seed,
+    }  # fmt: skip
+
+
+def placed(search: Search, split: Split) -> Search:
+    """The search with each effect that has an instant at the one that the locked runs tell by their first halves.
+
+    The training runs say between which two of them a machine changed, and of the instants between these they cannot
+    say more: on them the columns are the same. A locked run between was before the change or after it, as it is in a
+    state (`run_states`): the first half of its samples says which, and all of it is what the names are proven on.
+    """
+    for k, slot in enumerate(search.selection.final.slots):
+        if others := _same_on_training(search.cross, slot):
+            search = _told(search, k, [slot, *others], split)
+    return search
+
+
+def _same_on_training(cross: CrossFit, slot: Slot) -> list[Slot]:
+    """Other shapes of the same law whose columns are the same over the training runs."""
+    x = cross.problem.blocks.x
+    alike = [each for each in cross.problem.slots if (each.name, each.law) == (slot.name, slot.law)]
+    own = x[:, slot.columns]
+    return [each for each in alike if each.columns != slot.columns and np.array_equal(x[:, each.columns], own)]
+
+
+def _told(search: Search, k: int, shapes: list[Slot], split: Split) -> Search:
+    """The search with that of the shapes for its effect number `k` that leaves least of the locked runs' first
+    halves."""
+    selection, final = search.selection, search.selection.final
+    sets = [(*final.slots[:k], each, *final.slots[k + 1 :]) for each in shapes]
+    locked = search.expansion.cross(split.holdout, final.slots)
+    best = min(sets, key=lambda slots: _left_of_first_halves(locked, replace(final, slots=slots)))
+    found = [replace(each, slot=best[k]) if each.slot is final.slots[k] else each for each in selection.found]
+    return replace(search, selection=replace(selection, final=search.cross.explain(best), found=tuple(found)))
+
+
+def _left_of_first_halves(locked: CrossFit, explanation: Explanation) -> float:
+    """Sum of squares, in units of the noise, that an explanation of the training runs leaves of the first half of every
+    locked run."""
+    blocks, left = locked.problem.blocks, locked.remainder(explanation)
+    runs = range(int(blocks.run.max(initial=-1)) + 1)
+    half = np.array([np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in runs])
+    return float((left[blocks.position <= half[blocks.run]] ** 2).sum()) if len(left) else 0.0

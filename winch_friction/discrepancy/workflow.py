@@ -1,6 +1,6 @@
-"""Locate, name, add, prove: the whole workflow on runs in memory."""
+"""Locate, name, add, prove: the whole workflow on runs in memory, and its result."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -8,110 +8,50 @@ import numpy as np
 
 from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.adequacy import lock_holdout, refuse
-from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions, GapResult
-from winch_friction.discrepancy.assembly import Trial, assemble, insufficient, tried
-from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.candidates.catalogue import of_one_group
-from winch_friction.discrepancy.candidates.families import SURFACES, free_members
+from winch_friction.discrepancy.again import by_groups, by_other_runs, by_runs, by_surfaces, without_swing
+from winch_friction.discrepancy.answer import (
+    AMBIGUOUS,
+    MISSING,
+    NOTHING,
+    UNEXPLAINED,
+    Effect,
+    GapOptions,
+    GapResult,
+    Side,
+    named,
+    unexplained_share,
+)
+from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
+from winch_friction.discrepancy.engine.blocks import find_regions
+from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
-from winch_friction.discrepancy.expansion import Expansion, Given, Split, as_rigid, expand_around, meet, swings
-from winch_friction.discrepancy.next_experiment import of_wire
-from winch_friction.discrepancy.outdone import not_one_law
+from winch_friction.discrepancy.expansion import Given, meet, swings
+from winch_friction.discrepancy.next_experiment import (
+    NextExperiment,
+    insufficient,
+    of_wire,
+    plan_experiment,
+    with_what_was_seen,
+)
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
-from winch_friction.discrepancy.proof import adds, at_the_floor, far_off, nobodys, rms
+from winch_friction.discrepancy.preparation.prepare import READ_AS
+from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys, rms
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
-from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
-from winch_friction.discrepancy.search import Search, search_runs
-from winch_friction.discrepancy.standing import standing
+from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
+from winch_friction.discrepancy.search import ReversalFinding, Search, Study, search_runs
+from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.discrepancy.ties import Company, company, known_combination
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed
+from winch_friction.physics.friction.table import in_windows
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 from winch_friction.records.runs import apart, without_broken
 
-
-# -- once more, where nothing explains it
-def by_surfaces(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
-    it is where that does not end in a proven name that leaves surely less."""
-    given = trial.search
-    named = given.verdict.kind in (MISSING, AMBIGUOUS)
-    left = given.cross.excess(given.explanation)
-    if named and (len(given.explanation.slots) != 1 or left <= LIMITS.least_excess):
-        return trial
-    search = search_runs(split, given.given, options, rng, partial(free_members, rows=SURFACES))
-    if not search.selection.found:
-        return trial
-    if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
-        return trial
-    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
-        return trial
-    return other if not named or adds(trial.holdout, other.holdout, rng) else trial
-
-
-def by_groups(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
-    the locked runs to their floor, and the others near theirs."""
-    given = trial.search.given
-    own = of_one_group(given.prepared)
-    search = search_runs(split, given, replace(options, candidates=tuple(own)), rng) if own else None
-    if search is None or not search.selection.found:
-        return trial
-    return _closing(split, crane, options, search, trial, rng)
-
-
-def by_runs(split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator) -> Trial:
-    """What no name explains and no equation brings to the floor, once more with a brake that drags by another amount in
-    every run; the trial as it is unless that alone brings the locked runs to their floor, and the others near theirs.
-    """
-    by_run = partial(another_in_each_run, split.train)
-    search = search_runs(split, trial.search.given, options, rng, by_run)
-    if [each.slot.law for each in search.selection.found] != [EACH_RUN]:
-        return trial
-    return _closing(split, crane, options, search, trial, rng)
-
-
-def by_other_runs(
-    split: Split, crane: Crane, options: GapOptions, trial: Trial, rng: np.random.Generator
-) -> tuple[Split, Trial]:
-    """What the training runs show and the locked ones show nothing of, once more with some of the former locked: what
-    is not in a run proves no name. Split and trial as they are unless names stand, the former ones among them, that
-    bring these locked runs to their floor and all the others, in which the first ones are now, near theirs.
-    """
-    other = _locking_what_shows(split, trial) if at_the_floor(trial.holdout) else None
-    if other is None:
-        return split, trial
-    proven = _closing(other, crane, options, search_runs(other, trial.search.given, options, rng), trial, rng)
-    named, before = (set(each.search.explanation.names) for each in (proven, trial))
-    return (other, proven) if proven is not trial and before < named else (split, trial)
-
-
-def _locking_what_shows(split: Split, trial: Trial) -> Split | None:
-    """Every second of the training runs that show something, most first, locked in place of as many of the others; None
-    where fewer than two do."""
-    side = trial.train
-    left = {run.name: rms(side.after[side.blocks.run == k]) / side.floor for k, run in enumerate(side.runs)}
-    most_first = sorted(left, key=lambda name: -left[name])
-    showing = [name for name in most_first if left[name] > LIMITS.far_off_the_floor]
-    if len(showing) < 2:
-        return None
-    locked = set(showing[1::2][: len(split.holdout)])
-    locked |= set(split.holdout[: len(split.holdout) - len(locked)])
-    names = [run.name for run in split.runs]
-    train, holdout = (tuple(name for name in names if (name in locked) is own) for own in (False, True))
-    return replace(split, train=train, holdout=holdout)
-
-
-def _closing(
-    split: Split, crane: Crane, options: GapOptions, search: Search, trial: Trial, rng: np.random.Generator
-) -> Trial:
-    """What a search finds, if it brings the locked runs to their floor and the others near theirs; else the trial."""
-    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
-    return other if named and at_the_floor(other.holdout) and not far_off(other.train) else trial
+CATALOGUES = "catalogue's"  # of two laws, the one without a name of its own
+LEFT_AS_GIVEN = "the model is left as it was given: fitted to what nothing explains, it does worse on the locked runs"
 
 
 # -- the order of the steps
@@ -136,48 +76,32 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model)
     split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
-    rng = np.random.default_rng(options.seed + 1)
+    study = Study(split, crane, options, np.random.default_rng(options.seed + 1))
     options.told("closing the balance")
     given = meet(split.runs, crane, model)
     checks += adequacy.of_prepared(given, split.train, split.holdout)
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model, (given, split))
     options.told("searching")
-    search = search_runs(split, given, options, rng)
-    seed = try_seed(search, rng)
+    search = search_runs(study, given)
+    seed = try_seed(search, study.rng)
     if seed.enough:
-        search = search_runs(split, widened(given), options, rng)
+        search = search_runs(study, widened(given))
     options.told("proving on the locked runs")
-    trial = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
+    trial = standing(study, search)
     if trial.search.verdict.kind == UNEXPLAINED and search.verdict.untold:
         names = adequacy.of_names(search.verdict.refused)
         lacking = insufficient([*checks, names], notes, crane, model, (given, split))
-        return _with_what_was_seen(lacking, assemble(split, options, trial))
-    if trial.search.verdict.kind != NOTHING and not options.candidates:
-        split, trial = by_other_runs(split, crane, options, trial, rng)
-    if trial.search.verdict.kind == UNEXPLAINED and not options.candidates:
-        trial = by_groups(split, crane, options, trial, rng)
-    if trial.search.verdict.kind != NOTHING and not options.candidates:
-        options.told("drawing surfaces")
-        trial = by_surfaces(split, crane, options, trial, rng)
-    if trial.search.verdict.kind == UNEXPLAINED and swings(given):
-        options.told("searching without a swing of the load")
-        trial = _without_swing(split, crane, given, options, trial, rng)
+        return with_what_was_seen(lacking, assemble(study, trial))
+    study, trial = _once_more(study, given, trial)
     options.told("planning")
-
-    def expand(own: Search, candidate: Candidate) -> Expansion:
-        return expand_around(own.given, own.expansion, own.cross.explain(()), [candidate])
-
-    def evaluate(own: Search) -> Trial:
-        return tried(split, crane, options, own, rng)
-
     proposals: tuple[Proposal, ...] = ()
     if trial.search.verdict.kind == UNEXPLAINED and options.proposals:
-        proposals = propose(trial, split.train, expand, evaluate, rng)
+        proposals = propose(trial, study.split.train, partial(tried, study), study.rng)
         if not options.candidates and all(each.after > LIMITS.at_the_floor * each.noise_floor for each in proposals):
-            trial = by_runs(split, crane, options, trial, rng)
+            trial = by_runs(study, trial)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
-    result = assemble(split, options, trial)
+    result = assemble(study, trial)
     if result.verdict == UNEXPLAINED:
         notes += of_wire(given)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
@@ -190,31 +114,187 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     swing = adequacy.of_swing(crane, [*result.train.left_by_run, *result.holdout.left_by_run])
     # a floor that noise alone has raised excuses nothing: then it is not known whether anything is missing
     if not swing.met and (result.verdict == UNEXPLAINED or (result.verdict == NOTHING and not nobodys(result.holdout))):
-        return _with_what_was_seen(insufficient([*checks, swing], notes, crane, model, (given, split)), result)
+        lacking = insufficient([*checks, swing], notes, crane, model, (given, study.split))
+        return with_what_was_seen(lacking, result)
     return result
 
 
-def _with_what_was_seen(lacking: GapResult, result: GapResult) -> GapResult:
-    """The answer of runs that lack something, with what their search showed all the same."""
-    left = f"{result.holdout.size_after.value:.3g} {result.unit}"
-    said = [] if result.effects else [f"the model's own parameters, fitted anew, leave {left} of the locked runs"]
-    return replace(
-        lacking, regions=result.regions, considered=result.considered, untestable=result.untestable,
-        notes=(*lacking.notes, *said),
+def _once_more(study: Study, given: Given, trial: Trial) -> tuple[Study, Trial]:
+    """What is open, asked again by every way that may say more than what stands."""
+    if trial.search.verdict.kind != NOTHING and not study.options.candidates:
+        study, trial = _with_other_runs(study, trial)
+        if trial.search.verdict.kind == UNEXPLAINED:
+            trial = by_groups(study, trial)
+        if trial.search.verdict.kind != NOTHING:
+            study.options.told("drawing surfaces")
+            trial = by_surfaces(study, trial) if _surfaces_may_say_more(trial.search) else trial
+    if trial.search.verdict.kind == UNEXPLAINED and swings(given):
+        study.options.told("searching without a swing of the load")
+        trial = without_swing(study, given, trial)
+    return study, trial
+
+
+def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
+    """With others locked, where two training runs or more show what none of the locked ones shows: one alone cannot be
+    learned from and proven on."""
+    side = trial.train
+    if not at_the_floor(trial.holdout):
+        return study, trial
+    left = {run.name: rms(side.after[side.blocks.run == k]) / side.floor for k, run in enumerate(side.runs)}
+    showing = [name for name in sorted(left, key=lambda name: -left[name]) if left[name] > LIMITS.far_off_the_floor]
+    return by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
+
+
+def _surfaces_may_say_more(search: Search) -> bool:
+    """Where nothing is named, or one name whose law is not exact: several are no inexactness of one law."""
+    if search.verdict.kind not in (MISSING, AMBIGUOUS):
+        return True
+    return len(search.explanation.slots) == 1 and search.cross.excess(search.explanation) > LIMITS.least_excess
+
+
+# -- what a trial says
+def assemble(study: Study, trial: Trial) -> GapResult:
+    """The result that a trial stands by."""
+    runs = study.split.runs
+    search, repaired = trial.search, trial.repaired
+    cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
+    found = selection.found if search.explanation is selection.final else ()
+    experiment = _experiment(given.crane, search, study.options) if study.options.plan else None
+    first = {each.slot.name: each for each in reversed(found)}  # of a cause with two laws, the one found first
+    tied = {name: company(search, each) for name, each in first.items()}
+    kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
+    left = [LEFT_AS_GIVEN] if kind == UNEXPLAINED and repaired.model.values == given.model.values else []
+    drift = drift_note((trial.train, trial.holdout), list(search.explanation.names), given.crane.drive.unit)
+    return GapResult(
+        verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
+        regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
+        unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
+        depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
+        unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
+        untestable=search.untestable, model=_concluded(repaired.model, given.model, kind), seed_model=given.model,
+        next_experiment=experiment.content() if experiment else None,
+        next_scenario=experiment.text if experiment else "",
+        notes=(
+            *_notes(runs, given.loads), *_amounts(repaired.model, runs),
+            *_times(repaired.model, given.model, runs), *repaired.cut,
+            *(each.note for own in tied.values() for each in own.partners),
+            *filter(None, (own.note(name) for name, own in tied.items())), *([drift] if drift else []), *left,
+            *(_inexact(trial.holdout, given.crane.drive.unit) if found else []),
+        ),
     )  # fmt: skip
 
 
-def _without_swing(
-    split: Split, crane: Crane, given: Given, options: GapOptions, trial: Trial, rng: np.random.Generator
-) -> Trial:
-    """What nothing explains, once more with a wire that does not give: a late signal rings like a load that swings.
+def _in_the_end(selection: Selection) -> tuple[Considered, ...]:
+    """What was considered; of what was taken at first and does not stand it says so."""
+    stand = {finding.slot.name for finding in selection.found}
+    fell = f"{TAKEN} at first, but it does not stand in the end"
+    return tuple(
+        replace(each, verdict=fell) if each.verdict == TAKEN and each.name not in stand else each
+        for each in selection.considered
+    )
 
-    The trial as it is unless names stand whose file leaves no swing in any run.
-    """
-    search = search_runs(split, as_rigid(given), options, rng)
-    if search.verdict.kind not in (MISSING, AMBIGUOUS):
-        return trial
-    search = replace(search, given=given)
-    other = not_one_law(split, crane, options, standing(split, crane, options, search, rng), rng)
-    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
-    return other if named and not swings(meet(split.runs, crane, other.repaired.model, ())) else trial
+
+def _effects(
+    search: Search, found: Sequence[Finding], repaired: Repair, tied: Mapping[str, Company]
+) -> tuple[Effect, ...]:
+    effects = [
+        _effect(search, [each for each in found if each.slot.name == name], repaired, tied[name])
+        for name in dict.fromkeys(each.slot.name for each in found)
+    ]
+    if search.reversal is not None:
+        effects.append(_reversal_effect(search.reversal, repaired.parameters))
+    side = [search.ripple.effect] if search.ripple else []
+    return (*effects, *side, *(each.effect for each in search.flow))
+
+
+def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperiment | None:
+    """For the first effect that has rivals; an electric drive has no scenario family."""
+    if search.verdict.kind != AMBIGUOUS or not crane.drive.hydraulic:
+        return None
+    own = next(each for each in search.selection.found if each.rivals)
+    fitted = search.selection.final
+    return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
+
+
+def _effect(search: Search, laws: Sequence[Finding], repaired: Repair, tied: Company) -> Effect:
+    """One cause with its law, or with the two that its law is a mixture of."""
+    found, candidates = laws[0], [each.slot.origin[0] for each in laws]
+    name = candidates[0].name
+    estimates = repaired.parameters.get(name, {})
+    return Effect(
+        name, tied.rivals, _and(each.slot.label for each in laws),
+        " + ".join(dict.fromkeys(each.latex for each in candidates)), estimates,
+        found.p_value, found.gain, found.selection_frequency,
+        law_name=_law_name(candidates),
+        free=any(each.free for each in candidates),
+        combination=known_combination(search, found, estimates, tied.partners, repaired.model),
+    )  # fmt: skip
+
+
+def _law_name(candidates: Sequence[Candidate]) -> str:
+    """Of one law or of several; the catalogue's own has no name unless there is another beside it."""
+    names = dict.fromkeys(each.law_name for each in candidates)
+    return _and(name or CATALOGUES for name in names) if len(names) > 1 else next(iter(names))
+
+
+def _and(parts: Iterable[str]) -> str:
+    return " and ".join(part for part in parts if part)
+
+
+def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
+    candidate = finding.slot.origin[0]
+    return Effect(
+        candidate.name, (), finding.slot.label, candidate.latex, parameters[candidate.name], finding.p_value,
+        finding.gain, 1.0, "just after reversals", candidate.law_name, candidate.free,
+    )  # fmt: skip
+
+
+def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> FrictionModel:
+    """The model under the verdict that stands; where nothing was put right it is called refitted."""
+    changed = model.term_names != given.term_names or model.corrections != given.corrections
+    same = not changed and model.values == given.values
+    other = given.name if same else model.name.removesuffix(REPAIRED) + REFITTED
+    name = model.name if changed else other
+    return replace(model, name=name, provenance={**model.provenance, "verdict": verdict})
+
+
+def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
+    notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
+    bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
+    if bare:
+        notes.append(f"no wire_layer in {len(bare)} runs: the outer layer is assumed")
+    return tuple(notes)
+
+
+def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:
+    """Which runs have what a table of windows over time says, and how much of it."""
+    found = []
+    for term in model.terms:
+        if term.table is None or not term.table.in_times:
+            continue
+        level = model.value(term.parameters[0].name)
+        own = [(run.name, in_windows(term.table, level, float(run.time[len(run) // 2]))) for run in runs]
+        said = ", ".join(f"{name} {amount:.3g}" for name, amount in own if amount)
+        found.append(f"{term.name}, N·m at each motor: {said}; to any other run the file gives none")
+    return found
+
+
+def _times(model: FrictionModel, seed: FrictionModel, runs: Sequence[Run]) -> list[str]:
+    """Which runs have an error that is not always there, of those that the given model did not know."""
+    found = []
+    for each in model.corrections:
+        if each.during and not each.declared.grows and each.during not in [old.during for old in seed.corrections]:
+            there = [run.name for run in runs if each.holds(float(run.time[len(run) // 2]))]
+            found.append(f"{each.name} is there in {', '.join(there)}; in no other of these runs")
+    return list(dict.fromkeys(found))
+
+
+def _inexact(side: Side, unit: str) -> list[str]:
+    """That more than noise is left beside what is named."""
+    left = side.size_after.value
+    if left <= LIMITS.far_off_the_floor * side.floor:
+        return []
+    return [
+        f"the locked runs keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}: the cause is named, its "
+        "law is not exact, or a smaller effect is beside it"
+    ]

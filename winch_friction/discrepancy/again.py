@@ -1,0 +1,99 @@
+"""What the first search leaves open, once more in another way; what stands is what the locked runs bear out again.
+
+Whether a way may say more than what stands already is asked by the workflow.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
+from winch_friction.discrepancy.candidates.catalogue import of_one_group
+from winch_friction.discrepancy.candidates.families import SURFACES, free_members
+from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
+from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off
+from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
+from winch_friction.discrepancy.search import Search, Study, search_runs
+from winch_friction.discrepancy.standing import standing
+from winch_friction.discrepancy.thresholds import LIMITS
+
+
+def by_surfaces(study: Study, trial: Trial) -> Trial:
+    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
+    it is where that does not end in a proven name that leaves surely less."""
+    given = trial.search
+    named = given.verdict.kind in (MISSING, AMBIGUOUS)
+    search = search_runs(study, given.given, partial(free_members, rows=SURFACES))
+    if not search.selection.found:
+        return trial
+    left = given.cross.excess(given.explanation)
+    if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
+        return trial
+    other = standing(study, search)
+    if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
+        return trial
+    return other if not named or adds(trial.holdout, other.holdout, study.rng) else trial
+
+
+def by_groups(study: Study, trial: Trial) -> Trial:
+    """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
+    the locked runs to their floor, and the others near theirs."""
+    given = trial.search.given
+    own = of_one_group(given.prepared)
+    chosen = replace(study, options=replace(study.options, candidates=tuple(own)))
+    search = search_runs(chosen, given) if own else None
+    if search is None or not search.selection.found:
+        return trial
+    return _closing(study, search, trial)
+
+
+def by_runs(study: Study, trial: Trial) -> Trial:
+    """What no name explains and no equation brings to the floor, once more with a brake that drags by another amount in
+    every run; the trial as it is unless that alone brings the locked runs to their floor, and the others near theirs.
+    """
+    search = search_runs(study, trial.search.given, partial(another_in_each_run, study.split.train))
+    if [each.slot.law for each in search.selection.found] != [EACH_RUN]:
+        return trial
+    return _closing(study, search, trial)
+
+
+def by_other_runs(study: Study, trial: Trial, showing: Sequence[str]) -> tuple[Study, Trial]:
+    """What the training runs show and the locked ones show nothing of, once more with some of the former locked: what
+    is not in a run proves no name. Study and trial as they are unless names stand, the former ones among them, that
+    bring these locked runs to their floor and all the others, in which the first ones are now, near theirs.
+
+    `showing`: the training runs that show something, most first.
+    """
+    other = replace(study, split=_locking(study.split, showing))
+    proven = _closing(other, search_runs(other, trial.search.given), trial)
+    named, before = (set(each.search.explanation.names) for each in (proven, trial))
+    return (other, proven) if proven is not trial and before < named else (study, trial)
+
+
+def _locking(split: Split, showing: Sequence[str]) -> Split:
+    """Every second of these runs locked in place of as many of the others."""
+    locked = set(showing[1::2][: len(split.holdout)])
+    locked |= set(split.holdout[: len(split.holdout) - len(locked)])
+    names = [run.name for run in split.runs]
+    train, holdout = (tuple(name for name in names if (name in locked) is own) for own in (False, True))
+    return replace(split, train=train, holdout=holdout)
+
+
+def without_swing(study: Study, given: Given, trial: Trial) -> Trial:
+    """What nothing explains, once more with a wire that does not give: a late signal rings like a load that swings.
+
+    The trial as it is unless names stand whose file leaves no swing in any run.
+    """
+    search = search_runs(study, as_rigid(given))
+    if search.verdict.kind not in (MISSING, AMBIGUOUS):
+        return trial
+    other = standing(study, replace(search, given=given))
+    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
+    return other if named and not swings(meet(study.split.runs, study.crane, other.repaired.model, ())) else trial
+
+
+def _closing(study: Study, search: Search, trial: Trial) -> Trial:
+    """What a search finds, if it brings the locked runs to their floor and the others near theirs; else the trial."""
+    other = standing(study, search)
+    named = other.search.verdict.kind in (MISSING, AMBIGUOUS)
+    return other if named and at_the_floor(other.holdout) and not far_off(other.train) else trial

@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import several as several_module
 from winch_friction.discrepancy import standing as standing_module
+from winch_friction.discrepancy import workflow as workflow_module
 from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -53,7 +54,7 @@ from winch_friction.discrepancy.proof import (
 from winch_friction.discrepancy.several import _by_another_signal, each_proven, several_leave_more_than_noise
 from winch_friction.discrepancy.standing import _needs_a_rival_law, _sets
 from winch_friction.discrepancy.ties import Company
-from winch_friction.discrepancy.workflow import _concluded
+from winch_friction.discrepancy.workflow import _company, _concluded, _no_room
 from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.table import Table, tabulated
 
@@ -1105,9 +1106,18 @@ def test_what_a_set_has_no_room_for_is_said(monkeypatch):
     )
     assert [slot.name for slot in found.rivals] == ["second", "third"]
     assert found.no_room == ("fourth", "fifth")
-    own = Company(("second", "third"), (), found.no_room)
-    assert own.note("first") == "first: as well on these runs, but without room in a set: fourth, fifth"
-    assert Company((), ()).note("first") == ""
+    said = _no_room("first", found.no_room)
+    assert said == "first: as well on these runs, but without room in a set: fourth, fifth"
+
+
+@pytest.mark.parametrize(("names", "asked"), [
+    (("pressure_scale",), True), (("churning", "layer_radius"), True), (("churning", "tare_load"), False),
+])  # fmt: skip
+def test_what_no_search_looks_for_is_asked_of_whatever_is_tied_to_it(monkeypatch, names, asked):
+    own, *rivals = (Slot(name, "", (k,)) for k, name in enumerate(names))
+    found = Finding(own, tuple(rivals), 0.0, 0.1, 1.0, no_room=("fourth",))
+    monkeypatch.setattr(workflow_module, "company", lambda *_: "asked")
+    assert _company(None, found) == ("asked" if asked else Company(names[1:], (), ("fourth",)))
 
 
 @pytest.mark.parametrize(("left_out", "told"), [(3, True), (4, False)])

@@ -12,8 +12,8 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions, Verdict, decide
-from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape, Untestable
+from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Effect, GapOptions, Verdict, decide
+from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
 from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
 from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
@@ -57,6 +57,14 @@ class ReversalFinding:
     fitted: Explanation
     base: Explanation  # the same without it
     expansion: Expansion
+
+    def effect(self, parameters: Estimates) -> Effect:
+        """The finding as an entry of the result, with its parameters in the repaired model."""
+        candidate = self.slot.origin[0]
+        return Effect(
+            candidate.name, (), self.slot.label, candidate.latex, parameters, self.p_value, self.gain, 1.0,
+            "just after reversals", candidate.law_name, candidate.free,
+        )  # fmt: skip
 
     def holds_on(self, names: Sequence[str], rng: np.random.Generator) -> bool:
         """Whether it also shrinks the gap just after reversals of runs that it was not fitted to, each run by its own

@@ -106,6 +106,10 @@ TIES = (
         "the same load at a much smaller and a much larger wire_out",
     ),
 )  # fmt: skip
+UNSOUGHT = ("displacement_scale", "load_scale")  # sides of ties that no search looks for
+WITH_UNSOUGHT = frozenset(
+    tie.first.name for tie in TIES if tie.second.name in UNSOUGHT
+)  # names that such a side belongs to
 
 
 @dataclass(frozen=True)
@@ -136,11 +140,11 @@ def unsought(model: FrictionModel) -> tuple[Candidate, ...]:
     """The sides of ties that no search looks for."""
     return (
         Candidate(
-            "displacement_scale", r"e_D\,(\sum_g n_g D_g\,\Delta p_g - D\,\partial T/\partial D)", (e_D,),
+            UNSOUGHT[0], r"e_D\,(\sum_g n_g D_g\,\Delta p_g - D\,\partial T/\partial D)", (e_D,),
             partial(_displacement_columns, model), group_shapes, kind="signal", hydraulic=True,
         ),
         Candidate(
-            "load_scale", r"e_m\,m\,(g+\ddot x)\,R/i", (e_m,), _load_columns, single_shape, kind="load", plain=True,
+            UNSOUGHT[1], r"e_m\,m\,(g+\ddot x)\,R/i", (e_m,), _load_columns, single_shape, kind="load", plain=True,
         ),
     )  # fmt: skip
 
@@ -175,11 +179,6 @@ class Company:
     rivals: tuple[str, ...]
     partners: tuple[Partner, ...]
     no_room: tuple[str, ...] = ()
-
-    def note(self, name: str) -> str:
-        """What is to be said of the names that have no room beside this one; empty without any."""
-        said = f"{name}: as well on these runs, but without room in a set: {', '.join(self.no_room)}"
-        return said if self.no_room else ""
 
 
 def company(search: Search, found: Finding) -> Company:

@@ -1,6 +1,6 @@
 """Locate, name, add, prove: the whole workflow on runs in memory, and its result."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -21,7 +21,7 @@ from winch_friction.discrepancy.answer import (
     named,
     unexplained_share,
 )
-from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.engine.blocks import find_regions
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
@@ -39,10 +39,10 @@ from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys, rms
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
-from winch_friction.discrepancy.search import ReversalFinding, Search, Study, search_runs
+from winch_friction.discrepancy.search import Search, Study, search_runs
 from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.ties import Company, company, known_combination
+from winch_friction.discrepancy.ties import WITH_UNSOUGHT, Company, company, known_combination
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed
 from winch_friction.physics.friction.table import in_windows
@@ -155,16 +155,15 @@ def _surfaces_may_say_more(search: Search) -> bool:
 # -- what a trial says
 def assemble(study: Study, trial: Trial) -> GapResult:
     """The result that a trial stands by."""
-    runs = study.split.runs
-    search, repaired = trial.search, trial.repaired
+    runs, search, repaired = study.split.runs, trial.search, trial.repaired
     cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
     found = selection.found if search.explanation is selection.final else ()
     experiment = _experiment(given.crane, search, study.options) if study.options.plan else None
     first = {each.slot.name: each for each in reversed(found)}  # of a cause with two laws, the one found first
-    tied = {name: company(search, each) for name, each in first.items()}
+    tied = {name: _company(search, each) for name, each in first.items()}
     kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
     left = [LEFT_AS_GIVEN] if kind == UNEXPLAINED and repaired.model.values == given.model.values else []
-    drift = drift_note((trial.train, trial.holdout), list(search.explanation.names), given.crane.drive.unit)
+    drift = drift_note((trial.train, trial.holdout), search.explanation.names, given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
@@ -178,10 +177,22 @@ def assemble(study: Study, trial: Trial) -> GapResult:
             *_notes(runs, given.loads), *_amounts(repaired.model, runs),
             *_times(repaired.model, given.model, runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
-            *filter(None, (own.note(name) for name, own in tied.items())), *([drift] if drift else []), *left,
+            *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *filter(None, [drift]),
+            *left,
             *(_inexact(trial.holdout, given.crane.drive.unit) if found else []),
         ),
     )  # fmt: skip
+
+
+def _company(search: Search, found: Finding) -> Company:
+    """The other names of a finding: its rivals, and what is tied to one of them by the equations."""
+    names = tuple(slot.name for slot in found.rivals)
+    return company(search, found) if WITH_UNSOUGHT & {found.slot.name, *names} else Company(names, (), found.no_room)
+
+
+def _no_room(name: str, others: Sequence[str]) -> str:
+    """What is said of the names that have no room beside this one."""
+    return f"{name}: as well on these runs, but without room in a set: {', '.join(others)}"
 
 
 def _in_the_end(selection: Selection) -> tuple[Considered, ...]:
@@ -202,7 +213,7 @@ def _effects(
         for name in dict.fromkeys(each.slot.name for each in found)
     ]
     if search.reversal is not None:
-        effects.append(_reversal_effect(search.reversal, repaired.parameters))
+        effects.append(search.reversal.effect(repaired.parameters[search.reversal.slot.name]))
     side = [search.ripple.effect] if search.ripple else []
     return (*effects, *side, *(each.effect for each in search.flow))
 
@@ -221,32 +232,21 @@ def _effect(search: Search, laws: Sequence[Finding], repaired: Repair, tied: Com
     found, candidates = laws[0], [each.slot.origin[0] for each in laws]
     name = candidates[0].name
     estimates = repaired.parameters.get(name, {})
+    several = tied.partners or sum(each.name in estimates for each in candidates[0].linear) > 1
     return Effect(
-        name, tied.rivals, _and(each.slot.label for each in laws),
+        name, tied.rivals, " and ".join(each.slot.label for each in laws if each.slot.label),
         " + ".join(dict.fromkeys(each.latex for each in candidates)), estimates,
         found.p_value, found.gain, found.selection_frequency,
         law_name=_law_name(candidates),
         free=any(each.free for each in candidates),
-        combination=known_combination(search, found, estimates, tied.partners, repaired.model),
+        combination=known_combination(search, found, estimates, tied.partners, repaired.model) if several else None,
     )  # fmt: skip
 
 
 def _law_name(candidates: Sequence[Candidate]) -> str:
     """Of one law or of several; the catalogue's own has no name unless there is another beside it."""
     names = dict.fromkeys(each.law_name for each in candidates)
-    return _and(name or CATALOGUES for name in names) if len(names) > 1 else next(iter(names))
-
-
-def _and(parts: Iterable[str]) -> str:
-    return " and ".join(part for part in parts if part)
-
-
-def _reversal_effect(finding: ReversalFinding, parameters: Mapping[str, Mapping[str, ParameterEstimate]]) -> Effect:
-    candidate = finding.slot.origin[0]
-    return Effect(
-        candidate.name, (), finding.slot.label, candidate.latex, parameters[candidate.name], finding.p_value,
-        finding.gain, 1.0, "just after reversals", candidate.law_name, candidate.free,
-    )  # fmt: skip
+    return " and ".join(name or CATALOGUES for name in names) if len(names) > 1 else next(iter(names))
 
 
 def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> FrictionModel:

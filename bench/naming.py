@@ -17,7 +17,7 @@ from bench.measuring import Row, seconds
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import MOVING
-from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
+from winch_friction.discrepancy.catalogue import candidates_for, testable
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of

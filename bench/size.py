@@ -6,7 +6,7 @@ from bench.measuring import Row, sea, seconds
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import MOVING, Candidate
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.records.crane_file import load_crane

@@ -14,10 +14,9 @@ from campaign import rig
 from campaign.rig.flavour import ALL, FLAVOURS
 from campaign.rig.truth import CRANE2
 from winch_friction.discrepancy.candidates.candidate import MOVING
-from winch_friction.discrepancy.candidates.catalogue import candidates_for
-from winch_friction.discrepancy.candidates.catalogue import testable as usable_of
+from winch_friction.discrepancy.catalogue import candidates_for, run_states
+from winch_friction.discrepancy.catalogue import testable as usable_of
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.run_states import run_states
 from winch_friction.physics.signals import Run
 
 LEAST = 0.05  # of the effect's own rms that the package's best law must leave

@@ -16,7 +16,7 @@ from campaign.third_rig.crane import BAR, CM3_PER_REV
 from campaign.third_rig.plan import draw_plan
 from campaign.third_rig.plant import residual, solve
 from campaign.third_rig.sets import NULL, OUTSIDE, PAIR, SINGLE
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.catalogue import all_candidates
 
 FOREIGN = ("winch_friction", "campaign.rig", "campaign.second_rig")
 FEW = {"runs": (3, 3), "seconds": (12, 15)}

@@ -93,23 +93,23 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
 
 
 def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch):
-    from winch_friction.discrepancy import run_states
+    from winch_friction.discrepancy import catalogue
 
     asked = []
-    monkeypatch.setattr(run_states, "build_problem", lambda *_: SimpleNamespace(slots=[None]))
-    monkeypatch.setattr(run_states, "layout_of", lambda *_: None)
-    monkeypatch.setattr(run_states, "base_of", lambda *_: None)
-    monkeypatch.setattr(run_states, "follows_a_signal", lambda *_: False)
+    monkeypatch.setattr(catalogue, "build_problem", lambda *_: SimpleNamespace(slots=[None]))
+    monkeypatch.setattr(catalogue, "layout_of", lambda *_: None)
+    monkeypatch.setattr(catalogue, "base_of", lambda *_: None)
+    monkeypatch.setattr(catalogue, "follows_a_signal", lambda *_: False)
 
     def levels_of(problem, slot, runs, whole):
         asked.append(whole)
         return np.array([0.5, -1.0, 4.0, 2.0, 1.0, 3.0, 2.0, 1.0]), None
 
-    monkeypatch.setattr(run_states, "levels_of", levels_of)
+    monkeypatch.setattr(catalogue, "levels_of", levels_of)
     runs = [SimpleNamespace(name=f"run_{k}", start=1e9 - 600.0 * k, time=np.array([0.0, 60.0])) for k in range(8)]
-    brake = next(each for each in run_states.shipped_friction() if each.name == "brake_drag" and not each.law_name)
+    brake = next(each for each in catalogue.shipped_friction() if each.name == "brake_drag" and not each.law_name)
     model = SimpleNamespace(term_names=tuple(brake.presumes))
-    found, worn = run_states.another_in_each_run({"run_0", "run_3"}, runs, model)
+    found, worn = catalogue.another_in_each_run({"run_0", "run_3"}, runs, model)
     assert asked == [[name in ("run_0", "run_3") for name in (run.name for run in runs)]]
     # every run has a date of its own, so that what wears by any law of it, as to a new seal, is one with a brake
     assert (found.name, worn.name) == ("brake_drag", "wear_drift")
@@ -118,16 +118,16 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     assert found.term.table.weights == (0.25, 0.5, 0.75, 0.25, 0.5, 1.0, 0.0, 0.125)
     windows = found.term.table.knots[0][1]
     assert all(windows[2 * k] < runs[7 - k].start < runs[7 - k].start + 60.0 < windows[2 * k + 1] for k in range(8))
-    assert run_states.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []
+    assert catalogue.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []
     # runs whose torque cannot be closed, as heave compensation without a logged pressure, tell nothing and need nothing
     monkeypatch.setattr(
-        run_states, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, 1.0, *[np.nan] * 2]), None)
+        catalogue, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, 1.0, *[np.nan] * 2]), None)
     )
-    found, _ = run_states.another_in_each_run({"run_0"}, runs, model)
+    found, _ = catalogue.another_in_each_run({"run_0"}, runs, model)
     assert found.term.table.weights == (0.25, 0.5, 0.75, 1.0, 0.5, 0.25)
     assert found.term.table.knots[0][1][0] > runs[6].start + 60.0
-    monkeypatch.setattr(run_states, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, *[np.nan] * 3]), None))
-    assert run_states.another_in_each_run({"run_0"}, runs, model) == []  # five are too few
+    monkeypatch.setattr(catalogue, "levels_of", lambda *_: (np.array([1.0, 2.0, 4.0, 3.0, 2.0, *[np.nan] * 3]), None))
+    assert catalogue.another_in_each_run({"run_0"}, runs, model) == []  # five are too few
 
 
 @pytest.mark.parametrize(

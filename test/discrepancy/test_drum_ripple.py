@@ -8,7 +8,7 @@ from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ANGLE
-from winch_friction.discrepancy.candidates.catalogue import (
+from winch_friction.discrepancy.catalogue import (
     CAUSE,
     FASTEST,
     HARMONICS,

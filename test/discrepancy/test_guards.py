@@ -12,8 +12,8 @@ from winch_friction.discrepancy import workflow as workflow_module
 from winch_friction.discrepancy.adequacy import of_names
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.engine import selection as selection_module
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, find_regions, grams
 from winch_friction.discrepancy.engine.chance import (

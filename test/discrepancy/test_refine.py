@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import Shape
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.families import CURVES, SURFACES, free_members, name_of
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.search import _refined
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 

@@ -11,10 +11,11 @@ from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy.catalogue import levels_of, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
-from winch_friction.discrepancy.run_states import EACH_RUN, levels_of, two_levels
+from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
 from winch_friction.records.crane_file import load_crane

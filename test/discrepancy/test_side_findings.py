@@ -9,7 +9,7 @@ import pytest
 
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.adequacy import long_enough, of_records
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
 from winch_friction.discrepancy.detectors.ripple import (

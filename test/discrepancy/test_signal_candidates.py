@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import ALL
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.feedback import (
     _swivel,
     bends_over,
@@ -26,6 +25,7 @@ from winch_friction.discrepancy.candidates.signals import (
     signal_candidates,
     warm_columns,
 )
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM

@@ -21,7 +21,6 @@ from winch_friction.discrepancy.candidates.candidate import (
     groups_of,
     own_group_shapes,
 )
-from winch_friction.discrepancy.candidates.catalogue import of_one_group
 from winch_friction.discrepancy.candidates.signals import (
     DELAYS,
     PRESSURES,
@@ -33,6 +32,7 @@ from winch_friction.discrepancy.candidates.signals import (
     scale_columns,
     signal_candidates,
 )
+from winch_friction.discrepancy.catalogue import of_one_group
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE
 
 TIME = 0.02 * np.arange(101)

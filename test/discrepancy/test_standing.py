@@ -10,8 +10,8 @@ from campaign.gap_cases import Case
 from campaign.gap_hard_cases import all_cases, runs_of
 from campaign.rig import DRAWN, make_dataset
 from winch_friction.discrepancy.answer import GapOptions
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.friction import blurred_travel
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.search import too_short
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.signals import Run

@@ -12,9 +12,9 @@ from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
 from winch_friction.discrepancy.candidates.families import literature
 from winch_friction.discrepancy.candidates.friction import friction_candidate
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.selection import Finding
 from winch_friction.discrepancy.preparation.prepare import prepare

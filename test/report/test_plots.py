@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.catalogue import all_candidates
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.physics.effects import effect_texts
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms, term_named

@@ -36,8 +36,8 @@ def _plant() -> None:
 
 
 def _laws() -> None:
-    from winch_friction.discrepancy.candidates.catalogue import all_candidates
     from winch_friction.discrepancy.candidates.families import outlines
+    from winch_friction.discrepancy.catalogue import all_candidates
     from winch_friction.physics.friction.compiled import compiled
 
     laws = [candidate.term for candidate in all_candidates() if candidate.term is not None]

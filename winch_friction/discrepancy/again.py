@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import partial
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
-from winch_friction.discrepancy.candidates.catalogue import of_one_group
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
+from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off
-from winch_friction.discrepancy.run_states import EACH_RUN, another_in_each_run
+from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Search, Study, search_runs
 from winch_friction.discrepancy.standing import standing
 from winch_friction.discrepancy.thresholds import LIMITS

@@ -1,29 +1,23 @@
 """States of a run: what some runs have and others have not, such as a brake that hangs or a transducer replaced.
 
-No run tells of another which state it was in; the first half of its own samples does. The second half, and with locked
-runs everything that their names are proven on, is judged by one size for all runs and one yes or no for each.
+Which runs those are is told by the first half of each (`catalogue`); here it becomes candidates.
 """
 
 import itertools
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Estimates, Shape, Sides, Values
-from winch_friction.discrepancy.candidates.feedback import feedback_candidates
-from winch_friction.discrepancy.candidates.friction import COULOMB, shipped_friction, term_columns
-from winch_friction.discrepancy.candidates.geometry import geometry_candidates
-from winch_friction.discrepancy.candidates.signals import signal_candidates
+from winch_friction.discrepancy.candidates.friction import COULOMB, term_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.problem import Problem
-from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
+from winch_friction.discrepancy.logged_causes import told_by_a_signal
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction import FrictionModel, Scope
+from winch_friction.physics.friction import Scope
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.table import Table, tabulated
 
@@ -34,9 +28,7 @@ BRAKE, WEAR, SOME_RUNS, SINCE, EACH_RUN = (
     "since a date",
     "by another amount in each run",
 )
-SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
 THEN = "_then"  # behind the name of a parameter that is there for a time
-FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
 MARGIN = 1.0  # s by which a window reaches beyond its runs, where no other run is nearer
 
 Windows = tuple[tuple[float, float], ...]
@@ -62,22 +54,17 @@ class State:
         return f"{self.law}, {self.count} of {self.runs}" + (", and another size else" if self.both else "")
 
 
-def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
-    """Candidates for what these runs show in two levels and nothing that was logged tells apart."""
-    if len(runs) < LIMITS.fewest_levels:
-        return []
-    every = [*shipped_friction(), *signal_candidates(), *feedback_candidates(), *geometry_candidates()]
-    known = [each for each in every if each.name in (BRAKE, *SIGNALS) and not each.law_name]
-    known = [each for each in known if each.untestable(runs) is None]
-    known = [each for each in known if not each.presumes or set(each.presumes) & set(model.term_names)]
-    layout = layout_of(base_of(model, model), known, runs, model)
-    problem = build_problem(runs, layout)
-    found = []
-    for slot in problem.slots:
-        state = _state(runs, problem, slot)
-        if state is not None:
-            found += _candidates(slot, state)
-    return found
+def in_some_runs(slot: Slot, runs: Sequence[PreparedRun], levels: FloatArray, there: np.ndarray) -> list[Candidate]:
+    """Candidates for what is `there` in some runs, at these levels; none where a logged signal says as much."""
+    return [] if told_by_a_signal(runs, there) else _candidates(slot, _state(runs, levels, there))
+
+
+def in_each_run(runs: Sequence[PreparedRun], levels: FloatArray) -> list[Candidate]:
+    """Candidates for a drag by these amounts, one of each run: a brake, or what wears by whatever law of the date."""
+    order, begins, ends = _by_date(runs)
+    windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
+    weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
+    return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]
 
 
 def _candidates(slot: Slot, state: State) -> list[Candidate]:
@@ -107,26 +94,6 @@ def _drag(cause: str, windows: Windows, law: str, weights: tuple[float, ...] = (
     )  # fmt: skip
 
 
-def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
-    """A brake that drags by another amount in every run, that of a locked one told by its first half; none where a
-    logged signal tells the amounts. Twelve amounts imitate much: it is for what nothing else explains. Every run has a
-    date of its own, so that a wear by whatever law of the date, a seal that was renewed, is the same.
-    """
-    brake = next(each for each in shipped_friction() if each.name == BRAKE and not each.law_name)
-    if len(runs) < LIMITS.fewest_levels or not set(brake.presumes) & set(model.term_names):
-        return []
-    problem = build_problem(runs, layout_of(base_of(model, model), [brake], runs, model))
-    levels, _ = levels_of(problem, problem.slots[0], len(runs), [run.name in train for run in runs])
-    known = np.isfinite(levels)  # a run whose torque cannot be closed tells nothing, and needs nothing
-    runs, levels = [run for run, has in zip(runs, known, strict=True) if has], levels[known]
-    if len(runs) < LIMITS.fewest_levels or levels.max() <= 0.0 or follows_a_signal(runs, levels):
-        return []
-    order, begins, ends = _by_date(runs)
-    windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
-    weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
-    return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]
-
-
 def _within(candidate: Candidate, state: State, run: PreparedRun, values: Values) -> FloatArray:
     own = candidate.columns(run, values)
     then = own * float(any(begin <= run.start <= end for begin, end in state.windows))
@@ -141,13 +108,7 @@ def _then(candidate: Candidate, state: State, found: Estimates, shape: Shape, si
     return always + [replace(each, during=state.windows) for each in candidate.corrects(of_then, shape, sides)]
 
 
-def _state(runs: Sequence[PreparedRun], problem: Problem, slot: Slot) -> State | None:
-    """In which runs it is, told by the first half of each; None where that is not one of two clear levels, or where
-    a logged signal says as much."""
-    levels, deviations = levels_of(problem, slot, len(runs))
-    there = two_levels(levels, deviations, np.array([float(np.median(run.load)) for run in runs]))
-    if there is None or told_by_a_signal(runs, there):
-        return None
+def _state(runs: Sequence[PreparedRun], levels: FloatArray, there: np.ndarray) -> State:
     other = float(np.nanmean(levels[~there]))
     both = abs(other) > LIMITS.other_level * abs(float(np.nanmean(levels[there])) - other)
     order, begins, ends = _by_date(runs)
@@ -175,81 +136,3 @@ def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]
     before = 0.5 * (begins[first] - ends[first - 1]) if first > 0 else MARGIN
     after = 0.5 * (begins[last + 1] - ends[last]) if last + 1 < len(begins) else MARGIN
     return begins[first] - min(before, MARGIN), ends[last] + min(after, MARGIN)
-
-
-def levels_of(
-    problem: Problem, slot: Slot, runs: int, whole: Sequence[bool] | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Size of a candidate in the first half of each run, or in all of it where it is `whole`, and its deviation from
-    the others', in its units, the base fitted to all of them; NaN where a run has none of it."""
-    blocks, base = problem.blocks, list(problem.base_columns)
-    half = np.array(
-        [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
-    )
-    first = blocks.position <= half[blocks.run]
-    first |= np.asarray(whole if whole is not None else [False] * runs)[blocks.run]
-    weight, run = blocks.weight[first], blocks.run[first]
-    own = blocks.x[first, slot.columns[0]] * weight
-    columns = np.column_stack(
-        [blocks.x[first][:, base] * weight[:, None], own[:, None] * (run[:, None] == range(runs))]
-    )
-    size = np.sqrt((columns**2).sum(axis=0))
-    h = columns.T @ columns
-    h[np.arange(len(base)), np.arange(len(base))] += LIMITS.prior_weight
-    at = np.arange(len(base), len(h))
-    has = size[at] > 1e-6 * max(float(size[at].max()), 1e-300)
-    h[at, at] += np.where(has, 0.0, 1.0)
-    inverse = np.linalg.pinv(h)
-    beta = inverse @ (columns.T @ (blocks.y[first] * weight))
-    left = blocks.y[first] * weight - columns @ beta
-    # what the base does not know moves the levels of all runs alike, and nothing between them
-    covariance = inverse[np.ix_(at, at)][np.ix_(has, has)]
-    alike = np.eye(len(covariance)) - 1.0 / max(len(covariance), 1)
-    deviations = np.ones(len(at))
-    deviations[has] = np.sqrt(np.maximum(np.diag(alike @ covariance @ alike), 0.0))
-    deviations *= np.sqrt(LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
-    return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
-
-
-def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | None = None) -> np.ndarray | None:
-    """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
-    two runs each; None where they do not. What is NaN belongs to neither and is not there.
-
-    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does. A value
-    counts the less the larger its deviation is beside the usual one: of a light load little is known of a displacement.
-    """
-    known = np.flatnonzero(np.isfinite(levels))
-    if len(known) < LIMITS.fewest_levels:
-        return None
-    order = known[np.argsort(levels[known])]
-    load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
-    usual = float(np.median(deviations[known]))
-    weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
-    parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
-    parts = [each for each in parts if min(weights[part].sum() for part in each) >= FEWEST_OF_A_LEVEL]
-    fits = [(_two_lines(levels, load, weights, low, high), low, high) for low, high in parts]
-    if not fits:
-        return None
-    (within, slope), low, high = min(fits, key=lambda fit: fit[0][0])
-    within /= max(float(weights[order].sum()) - (2 if loads is None else 3), 1.0)
-    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * usual)
-    centres = [float(np.average(levels[part] - slope * load[part], weights=weights[part])) for part in (low, high)]
-    apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
-    if centres[1] - centres[0] < apart * spread:
-        return None
-    there = np.zeros(len(levels), bool)
-    there[high if abs(centres[1]) >= abs(centres[0]) else low] = True
-    return there
-
-
-def _two_lines(
-    values: FloatArray, load: FloatArray, weights: FloatArray, low: np.ndarray, high: np.ndarray
-) -> tuple[float, float]:
-    """Weighted sum of squares about two levels that share a slope over the load, and that slope."""
-    own, off = (
-        np.concatenate([each[part] - np.average(each[part], weights=weights[part]) for part in (low, high)])
-        for each in (load, values)
-    )
-    weight = weights[np.concatenate([low, high])]
-    slope = float(own @ (weight * off)) / max(float(own @ (weight * own)), 1e-300)
-    return float(weight @ (off - slope * own) ** 2), slope

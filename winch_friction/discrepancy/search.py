@@ -14,10 +14,10 @@ import numpy as np
 
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Effect, GapOptions, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
-from winch_friction.discrepancy.candidates.catalogue import candidates_for, testable
 from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
 from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.catalogue import candidates_for, run_states, testable
 from winch_friction.discrepancy.detectors import flow_balance, soft_oil
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.delay import without_delay
@@ -33,7 +33,6 @@ from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, Split, expand_around
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
-from winch_friction.discrepancy.run_states import run_states
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch import Crane

@@ -1,0 +1,287 @@
+"""All candidates: the shipped ones, a user's own, those that speak of what these runs have covered, and what the
+channels at hand cannot show.
+
+Those that repeat with the turns of the drum are made for a crane: an eccentric drum, an oval one, the planets and
+wheels of its gear, whole numbers of periods per turn of the drum, a share of the load's torque, whichever way it turns.
+They are slower than a block, so that a regression sees them; a ripple of the motor's own turn is too fast for blocks
+and has a detector of its own.
+
+No run tells of another which state it was in, as whether a brake hangs; the first half of its own samples does. The
+second half, and with locked runs everything that their names are proven on, is judged by one size for all runs and one
+yes or no for each.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.candidate import (
+    ANGLE,
+    FLOW,
+    Candidate,
+    Shape,
+    Untestable,
+    label_of,
+    own_group_shapes,
+)
+from winch_friction.discrepancy.candidates.families import free_members, literature
+from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
+from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
+from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates, layers_apart
+from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.problem import Problem
+from winch_friction.discrepancy.logged_causes import follows_a_signal
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
+from winch_friction.discrepancy.run_states import BRAKE, in_each_run, in_some_runs
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel, term_named
+from winch_friction.physics.friction.term import load_file
+
+# -- turns of the drum
+CAUSE = "torque_ripple"
+ONE, HARMONICS, HIGHEST_HARMONIC = "drum_ripple", "drum_ripple_harmonics", 3
+FASTEST = 0.1  # periods per turn of the motor, from where on the spectrum over its angle looks
+MOST_ORDERS = 40  # per turn of the drum; what is faster is left to the spectrum over the motor's angle
+LEAST_TURN = 1.0  # of the drum, in at least two runs: less is no period
+COUNTED = 0.9  # of the way that the speed tells, that the logged angle must have gone: one that wraps has no turns
+
+
+def drum_ripples(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """One wave, and one with its harmonics; none that the model has already."""
+    most = min(int(FASTEST * runs[0].gear_ratio), MOST_ORDERS) if runs else 0
+    orders = {ONE: ("k_d", most), HARMONICS: ("k_dh", most // HIGHEST_HARMONIC)}
+    return [
+        replace(
+            friction_candidate(
+                term_named(name), law_name=name, needs=("shaft_angle",), blind=_no_turns, continuous=(),
+                shapes=partial(_whole_orders, order, highest),
+            ),
+            name=CAUSE,
+        )
+        for name, (order, highest) in orders.items()
+        if highest and name not in model.term_names
+    ]  # fmt: skip
+
+
+def _whole_orders(name: str, highest: int, _: Sequence[PreparedRun]) -> list[Shape]:
+    return [Shape(label_of({name: float(k)}), {name: float(k)}) for k in range(1, highest + 1)]
+
+
+def _no_turns(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    """What repeats shows where it has repeated, over an angle that is counted on from turn to turn."""
+    if (reason := no_load(runs)) is not None:
+        return reason
+    turns = [_turned(run) for run in runs]
+    if sum(each >= LEAST_TURN for each in turns) >= 2:
+        return None
+    return "shaft_angle", "no two runs turn the drum once, by an angle that counts its turns"
+
+
+def _turned(run: PreparedRun) -> float:
+    """Turns of the drum that the angle covers; none where it does not follow the speed."""
+    covered, told = float(np.ptp(run.angle)), float(np.ptp(np.cumsum(run.speed))) * run.dt
+    return covered / run.gear_ratio / (2.0 * np.pi) if covered >= COUNTED * told else 0.0
+
+
+# -- all of them
+def _no_command(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+    known = any("speed_reference" in run.present for run in runs)
+    return None if known else ("speed_reference", "lost flow shows only against a commanded speed")
+
+
+# these leave the torque balance at the motor shaft closed, whatever their size, or vanish in its block means
+DETECTED = (
+    Candidate("entrained_air", r"V\,p^{-1/1.4}", regime=FLOW, kind="flow", hydraulic=True, blind=_no_command),
+    Candidate("slip_leakage", r"C\,p/\mu", regime=FLOW, kind="flow", hydraulic=True, blind=_no_command),
+    Candidate("torque_ripple", term=None, regime=ANGLE),
+)
+
+
+def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
+    """Every candidate, with those that a user's file registers as terms; a clash of names raises `InputError`."""
+    found = [
+        *DETECTED,
+        *shipped_friction(),
+        *signal_candidates(),
+        *feedback_candidates(),
+        *gas_candidates(),
+        *geometry_candidates(),
+    ]
+    if effects_file is not None:
+        found += [replace(friction_candidate(term), own_size=True) for term in load_file(Path(effects_file))]
+    found += literature()
+    names = [each.name for each in found if not each.law_name]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InputError(f"{effects_file}: effect '{twice[0]}' exists already; give it another name")
+    return found
+
+
+def candidates_for(
+    runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None
+) -> list[Candidate]:
+    """Every candidate, those that speak of what these runs have covered, and of each family the free member."""
+    own = [*bends_over(runs), *layers_apart(runs), *drum_ripples(runs, model), *free_members(runs, model)]
+    return [*all_candidates(effects_file), *own]
+
+
+def of_one_group(runs: Sequence[PreparedRun]) -> list[Candidate]:
+    """Zero and gain errors of one driving group alone, where there are two: whatever hoisting and heave compensation
+    differ by looks a little like one, so they are for what nothing else explains."""
+    own = own_group_shapes(runs)
+    shapes = {"pressure_offset": own, "swivel_offset": own, "pressure_scale": by_port(own)}
+    plain = [each for each in (*signal_candidates(), *feedback_candidates()) if not each.law_name]
+    return [
+        replace(each, law_name="of one driving group", shapes=partial(_given, shapes[each.name]))
+        for each in plain
+        if shapes.get(each.name)
+    ]
+
+
+def _given(shapes: list[Shape], _: Sequence[PreparedRun]) -> list[Shape]:
+    return shapes
+
+
+def testable(
+    candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel
+) -> tuple[list[Candidate], list[Untestable]]:
+    """Split by the channels at hand and by what the model already has."""
+    usable: list[Candidate] = []
+    blind: list[Untestable] = []
+    for each in candidates:
+        if each.presumes and not set(each.presumes) & set(model.term_names):
+            continue
+        reason = each.untestable(runs)
+        if reason is None:
+            usable.append(each)
+        else:
+            blind.append(reason)
+    seen = {each.name for each in usable}
+    own = {each.name: each for each in reversed(blind) if each.name not in seen}
+    return usable, list(reversed(own.values()))
+
+
+# -- what these runs show in two levels, or by another amount each
+SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
+FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
+
+
+def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """Candidates for what these runs show in two levels and nothing that was logged tells apart."""
+    if len(runs) < LIMITS.fewest_levels:
+        return []
+    every = [*shipped_friction(), *signal_candidates(), *feedback_candidates(), *geometry_candidates()]
+    known = [each for each in every if each.name in (BRAKE, *SIGNALS) and not each.law_name]
+    known = [each for each in known if each.untestable(runs) is None]
+    known = [each for each in known if not each.presumes or set(each.presumes) & set(model.term_names)]
+    layout = layout_of(base_of(model, model), known, runs, model)
+    problem = build_problem(runs, layout)
+    found = []
+    for slot in problem.slots:
+        levels, deviations = levels_of(problem, slot, len(runs))
+        there = two_levels(levels, deviations, np.array([float(np.median(run.load)) for run in runs]))
+        if there is not None:
+            found += in_some_runs(slot, runs, levels, there)
+    return found
+
+
+def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
+    """A brake that drags by another amount in every run, that of a locked one told by its first half; none where a
+    logged signal tells the amounts. Twelve amounts imitate much: it is for what nothing else explains. Every run has a
+    date of its own, so that a wear by whatever law of the date, a seal that was renewed, is the same.
+    """
+    brake = next(each for each in shipped_friction() if each.name == BRAKE and not each.law_name)
+    if len(runs) < LIMITS.fewest_levels or not set(brake.presumes) & set(model.term_names):
+        return []
+    problem = build_problem(runs, layout_of(base_of(model, model), [brake], runs, model))
+    levels, _ = levels_of(problem, problem.slots[0], len(runs), [run.name in train for run in runs])
+    known = np.isfinite(levels)  # a run whose torque cannot be closed tells nothing, and needs nothing
+    runs, levels = [run for run, has in zip(runs, known, strict=True) if has], levels[known]
+    if len(runs) < LIMITS.fewest_levels or levels.max() <= 0.0 or follows_a_signal(runs, levels):
+        return []
+    return in_each_run(runs, levels)
+
+
+def levels_of(
+    problem: Problem, slot: Slot, runs: int, whole: Sequence[bool] | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Size of a candidate in the first half of each run, or in all of it where it is `whole`, and its deviation from
+    the others', in its units, the base fitted to all of them; NaN where a run has none of it."""
+    blocks, base = problem.blocks, list(problem.base_columns)
+    half = np.array(
+        [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
+    )
+    first = blocks.position <= half[blocks.run]
+    first |= np.asarray(whole if whole is not None else [False] * runs)[blocks.run]
+    weight, run = blocks.weight[first], blocks.run[first]
+    own = blocks.x[first, slot.columns[0]] * weight
+    columns = np.column_stack(
+        [blocks.x[first][:, base] * weight[:, None], own[:, None] * (run[:, None] == range(runs))]
+    )
+    size = np.sqrt((columns**2).sum(axis=0))
+    h = columns.T @ columns
+    h[np.arange(len(base)), np.arange(len(base))] += LIMITS.prior_weight
+    at = np.arange(len(base), len(h))
+    has = size[at] > 1e-6 * max(float(size[at].max()), 1e-300)
+    h[at, at] += np.where(has, 0.0, 1.0)
+    inverse = np.linalg.pinv(h)
+    beta = inverse @ (columns.T @ (blocks.y[first] * weight))
+    left = blocks.y[first] * weight - columns @ beta
+    # what the base does not know moves the levels of all runs alike, and nothing between them
+    covariance = inverse[np.ix_(at, at)][np.ix_(has, has)]
+    alike = np.eye(len(covariance)) - 1.0 / max(len(covariance), 1)
+    deviations = np.ones(len(at))
+    deviations[has] = np.sqrt(np.maximum(np.diag(alike @ covariance @ alike), 0.0))
+    deviations *= np.sqrt(LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
+    return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
+
+
+def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | None = None) -> np.ndarray | None:
+    """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
+    two runs each; None where they do not. What is NaN belongs to neither and is not there.
+
+    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does. A value
+    counts the less the larger its deviation is beside the usual one: of a light load little is known of a displacement.
+    """
+    known = np.flatnonzero(np.isfinite(levels))
+    if len(known) < LIMITS.fewest_levels:
+        return None
+    order = known[np.argsort(levels[known])]
+    load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
+    usual = float(np.median(deviations[known]))
+    weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
+    parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
+    parts = [each for each in parts if min(weights[part].sum() for part in each) >= FEWEST_OF_A_LEVEL]
+    fits = [(_two_lines(levels, load, weights, low, high), low, high) for low, high in parts]
+    if not fits:
+        return None
+    (within, slope), low, high = min(fits, key=lambda fit: fit[0][0])
+    within /= max(float(weights[order].sum()) - (2 if loads is None else 3), 1.0)
+    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * usual)
+    centres = [float(np.average(levels[part] - slope * load[part], weights=weights[part])) for part in (low, high)]
+    apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
+    if centres[1] - centres[0] < apart * spread:
+        return None
+    there = np.zeros(len(levels), bool)
+    there[high if abs(centres[1]) >= abs(centres[0]) else low] = True
+    return there
+
+
+def _two_lines(
+    values: FloatArray, load: FloatArray, weights: FloatArray, low: np.ndarray, high: np.ndarray
+) -> tuple[float, float]:
+    """Weighted sum of squares about two levels that share a slope over the load, and that slope."""
+    own, off = (
+        np.concatenate([each[part] - np.average(each[part], weights=weights[part]) for part in (low, high)])
+        for each in (load, values)
+    )
+    weight = weights[np.concatenate([low, high])]
+    slope = float(own @ (weight * off)) / max(float(own @ (weight * own)), 1e-300)
+    return float(weight @ (off - slope * own) ** 2), slope

@@ -6,12 +6,12 @@ import sys
 
 import pytest
 
-from winch_friction.cli.console import search_at_hand
+from winch_friction.cli.gap import search_at_hand
 
 FAULTS = """
 import resource, sys
 import numpy as np
-from winch_friction.cli.console import keep_freed_memory
+from winch_friction.cli.gap import keep_freed_memory
 
 held = keep_freed_memory() if sys.argv[1] == "kept" else None
 for _ in range(300):

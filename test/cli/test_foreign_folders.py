@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from winch_friction.cli.console import refuse_foreign
+from winch_friction.cli.inputs import refuse_foreign
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError
 from winch_friction.records.strict_yaml import config_directory

@@ -7,8 +7,8 @@ import shutil
 import pytest
 import yaml
 
-from winch_friction.cli.console import refuse_foreign
 from winch_friction.cli.identify import PRACTICE
+from winch_friction.cli.inputs import refuse_foreign
 from winch_friction.cli.main import run
 from winch_friction.identification.practice import read_practice
 from winch_friction.records.model_file import load_model

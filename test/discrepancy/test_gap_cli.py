@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gap_rig import runs_with
 
-from winch_friction.cli.gap import _parameters, _unexplained
+from winch_friction.cli.gap_output import _parameters, _unexplained
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model

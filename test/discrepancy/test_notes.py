@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.cli.gap import _found_as, _parameters, show_result
+from winch_friction.cli.gap_output import _found_as, _parameters, show_result
 from winch_friction.discrepancy.adequacy import Check, of_names
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine.blocks import Slot

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import progress
 from winch_friction.cli.optional import OptionalPath, OptionalTexts
 from winch_friction.physics.errors import InputError
 

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_json, show_table, show_warnings
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath
 
@@ -33,8 +34,15 @@ def command(
 
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
-    from winch_friction.cli.console import refuse_foreign, refuse_unwritable
-    from winch_friction.cli.inputs import folders_of_cranes, load_terms, provenance_of, read_inputs, run_paths
+    from winch_friction.cli.inputs import (
+        folders_of_cranes,
+        load_terms,
+        read_inputs,
+        refuse_foreign,
+        refuse_unwritable,
+        run_paths,
+    )
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
     from winch_friction.records.runs import refuse_same_names

@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
-from winch_friction.cli.inputs import load_terms
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import PAGE, load_terms, refuse_existing, refuse_other_kind, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError, Problems
@@ -125,7 +125,7 @@ def _on_grid(one: Any, two: Any, crane: Any, loads: list[float], out: Path | Non
     said = _said(one.name, two.name, rows)
     page = None
     if out is not None:
-        from winch_friction.cli.inputs import provenance_of
+        from winch_friction.cli.provenance import provenance_of
         from winch_friction.report.curves import write_comparison_page
 
         worst = max(rows, key=lambda row: abs(row["largest [N*m]"]))

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import refuse_existing, refuse_input_as_output, show_json, show_warnings
+from winch_friction.cli.console import show_json
+from winch_friction.cli.inputs import refuse_existing, refuse_input_as_output, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalPath, Overwrite
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, Run

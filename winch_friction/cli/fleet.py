@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_table
+from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.fleet_work import VERBS, Task, carry_out, dated_rows, own_folders, plan
+from winch_friction.cli.inputs import progress
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
@@ -55,8 +56,8 @@ def command(
 
       winch-friction fleet check s3://logs --crane my.yaml --model seed.yaml --out fleet/ --scheduler tcp://host:8786
     """
-    from winch_friction.cli.console import refuse_foreign, refuse_unwritable
-    from winch_friction.cli.inputs import provenance_of
+    from winch_friction.cli.inputs import refuse_foreign, refuse_unwritable
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.fleet.recordings import find_recordings
 
     refuse_unwritable(out / "fleet.json")

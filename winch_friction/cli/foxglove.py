@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import show_warnings
+from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.errors import InputError
 

@@ -1,14 +1,29 @@
 """`winch-friction gap`: where runs and model disagree, what is missing, the repaired model, and the proof."""
 
-import json
-from collections.abc import Collection
+import ctypes
+import gc
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import progress, search_at_hand, show_json, show_table, show_warnings, stepping
+from winch_friction.cli.console import show_json
+from winch_friction.cli.gap_output import REPLACED, show_result, write_result
+from winch_friction.cli.inputs import (
+    bar_of_work,
+    progress,
+    read_inputs,
+    recorded_crane,
+    refuse_copies,
+    refuse_foreign,
+    refuse_implausible,
+    refuse_input_as_output,
+    run_paths,
+    show_warnings,
+)
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError
@@ -28,7 +43,6 @@ Examples:
 """
 
 MODEL = "a6vm215_crane2"  # of the 150 t crane, where none is named
-REPLACED = ("model.yaml", "report.html", "addition.csv", "proposal_*.py", "proposal_*.yaml")
 WRITTEN = ("gap.json", *REPLACED, "experiment_*.yaml", "ahc_55t_*.yaml", "test_02.yaml")  # the last: next experiments
 app = typer.Typer(add_completion=False, rich_markup_mode="rich")
 
@@ -76,6 +90,61 @@ def command(
         show_result(content, out, said)
 
 
+# -- a bar, and how its process keeps house
+@contextmanager
+def stepping(description: str, total: int) -> Iterator[Callable[[str], None]]:
+    """A bar that moves by one each time the yielded function is told what begins."""
+    with bar_of_work() as bar:
+        task = bar.add_task(description, total=total)
+        begun = 0
+
+        def tell(what: str) -> None:
+            nonlocal begun
+            bar.update(task, description=f"{description}: {what}", completed=begun)
+            begun += 1
+
+        yield tell
+
+
+# For a process that makes and lets go objects and arrays all the time.
+#
+# A search takes some 100 000 arrays of 0.1 to 2 MB. glibc gives what is free at the end of its heap back to the system
+# at once, and every page that is taken again costs a fault: 240 000 of them in a `gap` of twelve runs, a tenth of its
+# processor time. The environment's `MALLOC_..._` variables would do the same, but a process cannot set its own.
+#
+# Python looks for garbage in cycles after every 700 new objects, and ever again goes through all that SymPy and numba
+# hold, which is no garbage: another tenth. What a search lets go has no cycles and is freed without that.
+
+# glibc's malloc.h; bytes
+M_TRIM_THRESHOLD, KEPT_FREE = -1, 128 << 20  # a quarter of what a search of an hour holds at its peak
+M_TOP_PAD, TAKEN_AHEAD = -2, 16 << 20
+M_MMAP_THRESHOLD, ON_THEIR_OWN = -3, 4 << 20  # larger arrays still go back at once: they make the peak
+RARELY = (20_000, 10, 20)  # objects more, looks at the youngest, looks at the middle: some twenty looks in a search
+
+
+@contextmanager
+def search_at_hand() -> Iterator[None]:
+    """Keep what is freed, and look for garbage rarely until the end."""
+    keep_freed_memory()
+    before = gc.get_threshold()
+    gc.set_threshold(*RARELY)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+
+
+def keep_freed_memory() -> bool:
+    """Let this process keep what it has freed for what it takes next; False where the C library is not glibc."""
+    try:
+        mallopt = ctypes.CDLL(None).mallopt
+    except (OSError, AttributeError, TypeError):
+        return False
+    pairs = ((M_MMAP_THRESHOLD, ON_THEIR_OWN), (M_TRIM_THRESHOLD, KEPT_FREE), (M_TOP_PAD, TAKEN_AHEAD))
+    return {mallopt(option, size) for option, size in pairs} == {1}
+
+
+# -- from files to files
 @search_at_hand()
 def run_gap(
     paths: list[Path],
@@ -93,8 +162,7 @@ def run_gap(
     overwrite: bool = False,
 ) -> tuple[dict[str, Any], Collection[str]]:
     """The workflow from files to files; returns the content of gap.json, and which of its notes were warnings."""
-    from winch_friction.cli.console import refuse_foreign, refuse_input_as_output
-    from winch_friction.cli.inputs import read_inputs, refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.discrepancy.answer import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.model import unstated
@@ -131,13 +199,11 @@ def run_gap(
         ) from None
     with stepping("comparing with the model", STEPS) as tell:
         result = find_gap(read, loaded_crane, seed_model, replace(options, told=tell))
-    from winch_friction.cli.inputs import provenance_of
-
     made = provenance_of(paths, loaded_crane.name, model, seed) | forced
     noted = replace(result.model, provenance={**result.model.provenance, **forced})
     result = replace(result, provenance=made, model=noted, notes=(*warned, *result.notes))
     content = result.content()
-    _write(out, result, content, read)
+    write_result(out, result, content, read)
     if report:
         from winch_friction.report.gap import write_gap_report
 
@@ -145,32 +211,14 @@ def run_gap(
     return content, warned
 
 
-def _write(out: Path, result: Any, content: dict[str, Any], runs: list[Any]) -> None:
-    """All files but the page, at once; those of an earlier call go: beside new ones they would be read as theirs."""
-    from winch_friction.records.atomic import together, write_text
-    from winch_friction.records.model_file import save_model
-
-    with together(out, "gap.json") as place:
-        _write_addition(place, result, runs)
-        save_model(result.model, place / "model.yaml")
-        if content["next_experiment"] and result.next_scenario:
-            write_text(place / content["next_experiment"]["scenario"], result.next_scenario)
-        _write_proposals(place, result)
-        write_text(place / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
-        new = {each.name for each in place.iterdir()}
-    for old in (each for name in REPLACED for each in out.glob(name) if each.name not in new):
-        old.unlink()
-
-
 def _usual_model(crane: str, paths: list[Path]) -> str:
     """The model that is taken where none is named, said on stderr; for a crane that has none, raises `InputError`."""
-    from winch_friction.cli.inputs import recorded_crane
     from winch_friction.cli.names import models_of
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.model_file import load_model
 
     usual = load_model(MODEL)
-    named = load_crane(crane).name if crane else recorded_crane(paths)
+    named = load_crane(crane).name if crane else recorded_crane(paths)[0]
     if named not in ("", usual.crane):
         shipped = ", ".join(models_of(named))
         has = f"shipped for it: {shipped}" if shipped else "`winch-friction init model` writes one to begin with"
@@ -178,16 +226,6 @@ def _usual_model(crane: str, paths: list[Path]) -> str:
     taken = f"no --crane and no --model: taken as crane '{usual.crane}' and model '{MODEL}'; name your own if not"
     show_warnings([f"no --model: taken as '{MODEL}', of crane '{usual.crane}'" if named else taken])
     return MODEL
-
-
-def _write_proposals(out: Path, result: Any) -> None:
-    """Of each proposed law its file of terms and the model with it."""
-    from winch_friction.records.atomic import write_text
-    from winch_friction.records.model_file import save_model
-
-    for number, proposal in enumerate(result.proposals, start=1):
-        write_text(out / f"proposal_{number}.py", proposal.text)
-        save_model(proposal.model, out / f"proposal_{number}.yaml")
 
 
 def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[Any]:
@@ -200,80 +238,3 @@ def _simulated(runs: list[Any], fmu: Path | None, fmu_map: Path | None) -> list[
 
     links = load_fmu_map(fmu_map)
     return [simulate_fmu(fmu, links, run) for run in progress(runs, "simulating by the FMU")]
-
-
-def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
-    """For a user's own simulation: what it has to add, as a table."""
-    from winch_friction.discrepancy.addition import write_addition
-    from winch_friction.discrepancy.preparation.own_simulation import simulated_column
-
-    if runs and simulated_column(runs[0]):
-        sides = [*result.train.runs, *result.holdout.runs]
-        write_addition(out / "addition.csv", sides, result.seed_model, result.model)
-
-
-def _parameters(effect: dict[str, Any]) -> str:
-    """Values with deviations, in the units that people read them in; of a curve that the data drew only that it is one:
-    its rises by themselves say little."""
-    from winch_friction.report.tables import estimate_for_people, number
-
-    def amount(found: dict[str, Any]) -> str:
-        value, std, unit = estimate_for_people(found["value"], found["std"], found["unit"])
-        shown = value if isinstance(value, str) else number(value, 3)
-        sure = f" ± {number(std, 2)} {unit}" if std > 0.0 else "" if isinstance(value, str) else f" {unit}"
-        return f"{shown}{sure}".removesuffix(" –")
-
-    of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
-    said = [f"{k} = {amount(found)}" for k, found in effect["parameters"].items() if k not in of_curve]
-    return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
-
-
-def _found_as(effect: dict[str, Any]) -> str:
-    """The name, and in which signals, layers or runs it was found, where no parameter says so."""
-    said = [part for part in effect.get("variant", "").split(", ") if part and "=" not in part]
-    return f"{effect['name']} ({', '.join(said)})" if said else effect["name"]
-
-
-def _unexplained(depends_on: list[str], reason: str, **_: Any) -> str:
-    return f"it depends on: {', '.join(depends_on)} ({reason})" if depends_on else f"no effect is named: {reason}"
-
-
-def show_result(content: dict[str, Any], out: Path, said: Collection[str] = ()) -> None:
-    """The verdict for a person; what was `said` as a warning is not said again."""
-    from winch_friction.discrepancy.adequacy import Check
-
-    gap, unit = content["gap"]["holdout"], content["gap"]["unit"]
-    rows = [
-        [
-            _found_as(effect),
-            ", ".join(effect["indistinguishable_from"]) or "-",
-            _parameters(effect),
-            f"{100 * effect['evidence']['cv_gain']:.0f} %",
-        ]
-        for effect in content["effects"]
-    ]
-    print(f"verdict: {content['verdict']}")
-    if rows:
-        show_table("missing effects", ["effect", "or", "parameters ± σ", "error lower by"], rows)
-    if content["verdict"] == "unexplained":
-        print(_unexplained(**content["unexplained"]))
-    for check in content["adequacy"] if content["verdict"] == "insufficient" else []:
-        if not check["met"]:
-            print(f"lacking: {Check(**check).sentence}")
-    if gap["before"] is not None:
-        print(
-            f"locked runs: {gap['before']:.3g} {unit} before, {gap['after']:.3g} {unit} after, "
-            f"noise floor {gap['noise_floor']:.3g} {unit}"
-        )
-    for note in content["notes"]:
-        if note not in said:
-            print(f"note: {note}")
-    for proposal in content.get("proposals", ()):
-        print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
-    if plan := content["next_experiment"]:
-        far = f" ({plan['note']})" if plan["note"] else ""
-        print(f"next experiment: {plan['scenario']}{far}")
-    elif content["verdict"] == "ambiguous":
-        print("next experiment: no scenario at hand tells these apart; measure what only one of them changes")
-    written = [out / name for name in ("gap.json", "model.yaml", "report.html") if (out / name).exists()]
-    print("written:", ", ".join(map(str, written)))

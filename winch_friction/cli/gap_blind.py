@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.cli.console import progress, refuse_existing, show_json, show_table
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import progress, refuse_existing
 from winch_friction.physics.errors import InputError
 
 NOTHING = "nothing"  # drawn as well: a search that always finds something is worth nothing

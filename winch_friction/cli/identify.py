@@ -66,7 +66,8 @@ def motor(
 
     Example: winch-friction identify motor a6vm215_generated --model all --out seed.yaml
     """
-    from winch_friction.cli.console import (
+    from winch_friction.cli.identify_output import show_motor
+    from winch_friction.cli.inputs import (
         MODEL,
         progress,
         refuse_existing,
@@ -74,7 +75,6 @@ def motor(
         refuse_other_kind,
         show_warnings,
     )
-    from winch_friction.cli.identify_output import show_motor
     from winch_friction.identification.motor_identification import identify_motor, motor_seed
     from winch_friction.identification.motor_models import MOTOR_MODELS
     from winch_friction.identification.supplier_file import read_supplier_table
@@ -135,9 +135,16 @@ def system(
 
     Example: winch-friction identify system test_*.parquet --motor a6vm215 --out crane.yaml
     """
-    from winch_friction.cli.console import MODEL, refuse_existing, refuse_input_as_output, refuse_other_kind
     from winch_friction.cli.identify_output import show_system
-    from winch_friction.cli.inputs import refuse_copies, refuse_implausible, run_paths
+    from winch_friction.cli.inputs import (
+        MODEL,
+        refuse_copies,
+        refuse_existing,
+        refuse_implausible,
+        refuse_input_as_output,
+        refuse_other_kind,
+        run_paths,
+    )
     from winch_friction.identification.prior import load_unit_spread
     from winch_friction.identification.system_identification import identify_system, winch_seed
     from winch_friction.identification.verification import test_errors
@@ -228,16 +235,17 @@ def practice(
 
     Example: winch-friction identify practice practice_150t --out practice/
     """
-    from winch_friction.cli.console import (
-        progress,
-        refuse_foreign,
-        refuse_unwritable,
-        show_json,
-        show_warnings,
-        stdout,
-    )
+    from winch_friction.cli.console import show_json, stdout
     from winch_friction.cli.identify_output import seed_json, show_parameters
-    from winch_friction.cli.inputs import provenance_of, refuse_copies, refuse_implausible
+    from winch_friction.cli.inputs import (
+        progress,
+        refuse_copies,
+        refuse_foreign,
+        refuse_implausible,
+        refuse_unwritable,
+        show_warnings,
+    )
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.identification.supplier_table import FitRange
     from winch_friction.identification.table_remarks import remarks_on

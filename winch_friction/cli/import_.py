@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import progress, show_json, show_warnings
+from winch_friction.cli.console import show_json
+from winch_friction.cli.inputs import progress, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.importing.mapping import LogMap
 from winch_friction.physics.errors import InputError
@@ -80,7 +81,7 @@ def propose_map(
     logs: list[Path], map_file: Path, crane: str, settings: list[str], overwrite: bool, as_json: bool
 ) -> None:
     """Write the proposed map; what keeps it from being imported is an `InputError` after it was written."""
-    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.inputs import refuse_unwritable
     from winch_friction.importing.map_text import map_text
     from winch_friction.importing.propose import propose
     from winch_friction.records.atomic import write_text
@@ -126,7 +127,7 @@ def import_logs(
     overwrite: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Write one run file per log, all or none."""
-    from winch_friction.cli.console import refuse_unwritable
+    from winch_friction.cli.inputs import refuse_unwritable
     from winch_friction.importing.carry_out import import_log
     from winch_friction.importing.contradiction import run_contradictions
     from winch_friction.importing.mapping import load_map, refuse_if_open, with_settings

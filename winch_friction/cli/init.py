@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import refuse_unwritable, show_json
+from winch_friction.cli.console import show_json
+from winch_friction.cli.inputs import refuse_unwritable
 from winch_friction.cli.names import complete_crane
 from winch_friction.cli.optional import OptionalFloat, OptionalInt, OptionalPath
 from winch_friction.physics.errors import InputError

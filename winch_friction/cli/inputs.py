@@ -1,23 +1,58 @@
-"""What the verbs ask of their inputs before they work, which runs, of which crane, and can that be; and what is said
-of them beside a result.
+"""What the verbs ask before they work: of their inputs, which runs, of which crane, and can that be; of the places that
+they write to, that no input and no other kind of file is lost. And what they say meanwhile.
 """
 
-import hashlib
-import shlex
-import subprocess
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryFile
+from typing import Any, TypeVar
 
-import numpy as np
+from rich import progress as drawn
+from rich.console import Console
 
-from winch_friction.cli.console import progress, show_warnings
+from winch_friction.cli import Modes
+from winch_friction.cli.console import stderr
 from winch_friction.fleet.recordings import RUN_SUFFIXES, TRUTH
 from winch_friction.physics.errors import InputError, Problems
 
+T = TypeVar("T")
 
+
+# -- what they say meanwhile
+def show_warnings(warnings: Iterable[str]) -> None:
+    """Warnings on stderr, one line each."""
+    for warning in () if Modes.quiet else warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+
+
+def progress(items: Iterable[T], description: str, total: int | None = None) -> Iterator[T]:
+    """The items one by one, with a bar on stderr while a person is watching."""
+    if total is None and isinstance(items, Sized):
+        total = len(items)
+    with bar_of_work() as bar:
+        yield from bar.track(items, total=total, description=description)
+
+
+def bar_of_work() -> drawn.Progress:
+    """What is done of how much, for how long, and how long still; on a terminal only."""
+    columns = (
+        drawn.SpinnerColumn(),
+        drawn.TextColumn("{task.description}"),
+        drawn.BarColumn(),
+        drawn.MofNCompleteColumn(),
+        drawn.TimeElapsedColumn(),
+        drawn.TextColumn("left"),
+        drawn.TimeRemainingColumn(),
+    )
+    watched = stderr.is_terminal and not (Modes.quiet or Modes.plain)
+    # rich 13.7 (Ubuntu 24.04's) ends a bar that is not drawn with an empty line
+    console = stderr if watched else Console(quiet=True)
+    return drawn.Progress(*columns, console=console, transient=True, disable=not watched)
+
+
+# -- which runs, of which crane
 def run_paths(paths: Sequence[Path]) -> list[Path]:
     """Run files named one by one or by folder; a folder with metadata.yaml is a bag, truth files are no runs."""
     found: list[Path] = []
@@ -106,7 +141,7 @@ def refuse_copies(runs: Sequence[Any]) -> None:
     """Raise `InputError` where two runs hold the same samples: what a fit has seen would prove it."""
     seen: dict[bytes, Any] = {}
     for run in runs:
-        content = b"".join(np.ascontiguousarray(run[name], float).tobytes() for name in ("time", "motor_speed"))
+        content = b"".join(run[name].astype(float).tobytes() for name in ("time", "motor_speed"))
         other = seen.setdefault(sha256(content).digest(), run)
         if other is not run:
             raise InputError(
@@ -117,6 +152,8 @@ def refuse_copies(runs: Sequence[Any]) -> None:
 
 def _exchanged(one: Any, two: Any) -> str:
     """What is said of a copy in which somebody exchanged the ports of motor groups."""
+    import numpy as np
+
     groups = [
         group
         for group in one.groups
@@ -139,7 +176,7 @@ def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:
         return load_crane(crane)
     recorded, by = (model.crane, f"model '{model.name}'") if model is not None and model.crane else ("", "")
     if not recorded:
-        recorded, by = _crane_of_runs(paths)
+        recorded, by = recorded_crane(paths)
     if not recorded:
         raise InputError("which crane? Give --crane with a crane file or a shipped name (winch-friction init crane)")
     try:
@@ -150,12 +187,8 @@ def crane_of(crane: str, model: Any = None, paths: Sequence[Path] = ()) -> Any:
     return loaded
 
 
-def recorded_crane(paths: Sequence[Path]) -> str:
-    """The crane that the first run says it is of; '' where it says nothing."""
-    return _crane_of_runs(paths)[0]
-
-
-def _crane_of_runs(paths: Sequence[Path]) -> tuple[str, str]:
+def recorded_crane(paths: Sequence[Path]) -> tuple[str, str]:
+    """The crane that the first run says it is of, and in words which run that is; '' where it says nothing."""
     from winch_friction.records.runs import read_run
 
     for path in list(paths)[:1]:
@@ -193,33 +226,75 @@ def refuse_implausible(
     return {"forced": contradiction.sentence}
 
 
-# -- where a result comes from
-def provenance_of(paths: Sequence[Path], crane: str = "", model: str = "", seed: int | None = None) -> dict[str, Any]:
-    """What a result was made of: command, version, commit, crane, model, seed, and every file with its hash."""
-    from winch_friction import __version__
-
-    return {
-        "command": " ".join(["winch-friction", *map(shlex.quote, sys.argv[1:])]), "version": __version__,
-        "commit": _commit(), "crane": crane, "model": model, "seed": seed,
-        "files": [{"name": path.name, "sha256": _hash(path)} for path in paths],
-    }  # fmt: skip
+# -- where they write to
+_HEAD = 1 << 16  # bytes of a file, within which it says its schema or title
+PAGE = (".html", ".htm")
+MODEL = (".yaml", ".yml", "")
 
 
-def _hash(path: Path) -> str:
-    """Of a file, or of all files of a bag's folder in order."""
-    digest = hashlib.sha256()
-    for each in sorted(path.rglob("*")) if path.is_dir() else [path]:
-        if each.is_file():
-            with each.open("rb") as content:
-                while chunk := content.read(1 << 20):
-                    digest.update(chunk)
-    return digest.hexdigest()
+def refuse_input_as_output(out: Path | None, inputs: Iterable[Path | str | None]) -> None:
+    """Raise `InputError` where what is to be written is one of what is read."""
+    if out is None:
+        return
+    refuse_unwritable(out)
+    for each in inputs:
+        if each and Path(each).exists() and Path(each).resolve() == out.resolve():
+            raise InputError(f"--out {out}: is an input and would be overwritten; give another name")
 
 
-def _commit() -> str:
-    """Of the package's own repository, '' where it was installed without one."""
-    here = Path(__file__).resolve().parents[2]
-    if not (here / ".git").exists():
-        return ""
-    said = subprocess.run(["git", "-C", str(here), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return said.stdout.strip()
+def refuse_other_kind(out: Path | None, suffixes: tuple[str, ...], what: str) -> None:
+    """Raise `InputError` where a page or a model is to be written under the name of another kind of file."""
+    if out is not None and out.suffix.lower() not in suffixes:
+        raise InputError(f"--out {out}: {what} is written as {suffixes[0]}; give a name that ends so")
+    refuse_unwritable(out)
+
+
+def refuse_existing(overwrite: bool, *places: Path | None) -> None:
+    """Raise `InputError` where one of these is there already: before the work. A bag is never overwritten."""
+    for place in places:
+        if place is None or not place.exists():
+            continue
+        if place.is_dir() or place.suffix in (".mcap", ".db3"):
+            raise InputError(f"--out {place}: exists already, and a folder or bag is never replaced; give another name")
+        if not overwrite:
+            raise InputError(f"--out {place}: exists already; give another name, or --overwrite to replace it")
+
+
+def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: str = "", overwrite: bool = True) -> None:
+    """Raise `InputError` where a folder holds files that a verb writes, and they are not those of an earlier call.
+
+    An earlier call has left `mark`, which says `schema`; the names may be patterns. Without `overwrite` an earlier
+    result is refused as well. So is a folder that is to be made under the name of a file.
+    """
+    if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv"):
+        raise InputError(f"--out {out}: this verb writes a folder of files; give a name without {out.suffix}")
+    if out is None or not out.is_dir():
+        return
+    made = out / mark
+    if made.is_file() and schema.encode() in made.read_bytes()[:_HEAD]:
+        if overwrite:
+            return
+        raise InputError(
+            f"--out {out}: holds an earlier result ({mark}); give another folder, or --overwrite to replace it"
+        )
+    there = sorted(each.name for name in names for each in out.glob(name))
+    if there:
+        raise InputError(
+            f"--out {out}: holds {', '.join(there)}, no result of this verb: give a folder of its own, or move what is "
+            "there"
+        )
+
+
+def refuse_unwritable(*places: Path | None, option: str = "--out") -> None:
+    """Raise `InputError` where one of these files, given by `option`, cannot be written: before the work, not after."""
+    for place in places:
+        if place is None:
+            continue
+        folder = next(each for each in (place.absolute().parent, *place.absolute().parents) if each.exists())
+        if not folder.is_dir():
+            raise InputError(f"{option} {place}: {folder} is a file, no folder; give another place")
+        try:
+            with TemporaryFile(dir=folder):
+                pass
+        except OSError as error:
+            raise InputError(f"{option} {place}: cannot be written ({error.strerror}); give another place") from None

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from winch_friction.cli.console import show_warnings
+from winch_friction.cli.inputs import show_warnings
 from winch_friction.physics.errors import InputError
 from winch_friction.records.raw import RawMessage
 

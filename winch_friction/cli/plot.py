@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from winch_friction.cli.console import show_json, show_table, show_warnings
-from winch_friction.cli.inputs import load_terms
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import load_terms, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, Overwrite
 
@@ -32,8 +32,7 @@ def command(
 
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
-    from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind
-    from winch_friction.cli.inputs import read_all, read_inputs, run_paths
+    from winch_friction.cli.inputs import PAGE, read_all, read_inputs, refuse_existing, refuse_other_kind, run_paths
     from winch_friction.physics.errors import InputError
     from winch_friction.report.run_page import channel_rows, write_run_page
 

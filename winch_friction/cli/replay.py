@@ -9,7 +9,8 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from winch_friction.cli.console import show_json, show_table, show_warnings, stderr
+from winch_friction.cli.console import show_json, show_table, stderr
+from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalTexts, Overwrite
 
@@ -48,8 +49,14 @@ def command(
 
       winch-friction replay run.csv --crane crane_150t --model learned.yaml --params-file config/nodes/crane.yaml
     """
-    from winch_friction.cli.console import refuse_existing, refuse_input_as_output
-    from winch_friction.cli.inputs import load_terms, machine_of, provenance_of, refuse_implausible
+    from winch_friction.cli.inputs import (
+        load_terms,
+        machine_of,
+        refuse_existing,
+        refuse_implausible,
+        refuse_input_as_output,
+    )
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.model import ASSUMED_STD, unstated
     from winch_friction.records.input_mapping import bag_options_of

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import PAGE, refuse_existing, refuse_other_kind, show_json, show_table, show_warnings
-from winch_friction.cli.inputs import load_terms
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import PAGE, load_terms, refuse_existing, refuse_other_kind, show_warnings
 from winch_friction.cli.names import KINDS, SHOWN, complete_crane, complete_shown, kind_of, names_of
 from winch_friction.cli.optional import OptionalFloat, OptionalPath, Overwrite
 from winch_friction.physics.errors import InputError, meant

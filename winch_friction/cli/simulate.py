@@ -57,8 +57,8 @@ def command(
 
       winch-friction simulate ahc_irregular --hide presliding=0.5 --format mcap
     """
-    from winch_friction.cli.console import progress, refuse_unwritable, show_json, show_table, show_warnings
-    from winch_friction.cli.inputs import machine_of
+    from winch_friction.cli.console import show_json, show_table
+    from winch_friction.cli.inputs import machine_of, progress, refuse_unwritable, show_warnings
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     load_terms(terms_file)

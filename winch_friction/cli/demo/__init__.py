@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from winch_friction.cli.console import refuse_unwritable, show_json, show_table, stderr
+from winch_friction.cli.console import show_json, show_table, stderr
+from winch_friction.cli.inputs import refuse_unwritable
 from winch_friction.physics.errors import InputError
 
 PRODUCTS = ("bag", "legs", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
@@ -119,7 +120,7 @@ def _evaluate(plan: Any, search: Any, elapsed: float) -> dict[str, Any]:
     from winch_friction.cli.demo.page import sections
     from winch_friction.cli.demo.picture import draw
     from winch_friction.cli.demo.recording import read_recording
-    from winch_friction.cli.inputs import provenance_of
+    from winch_friction.cli.provenance import provenance_of
     from winch_friction.physics.friction.scaled import scaled_system
     from winch_friction.records.atomic import write_text
     from winch_friction.records.model_file import save_model

@@ -11,7 +11,8 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.adequacy import long_enough, of_records
 from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.detectors import flow_balance
-from winch_friction.discrepancy.detectors.flow_balance import ORDINARY, lost_speed
+from winch_friction.discrepancy.detectors.flow_balance import free_air, holds_on, is_air, leak_untestable, lost_speed
+from winch_friction.discrepancy.detectors.lost_flow import FEWEST_TO_FLIP, ORDINARY
 from winch_friction.discrepancy.detectors.ripple import (
     COMB_LINES,
     COMB_SHARE,
@@ -22,7 +23,6 @@ from winch_friction.discrepancy.detectors.ripple import (
     angle_ripple,
     one_of_a_comb,
 )
-from winch_friction.discrepancy.detectors.soft_oil import free_air
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.fluid import LEAKAGE_LAWS, leakage_per_coefficient
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -65,10 +65,10 @@ def test_a_leak_has_its_own_law_and_is_no_air(law, name):
     assert list(found.leakage) == [name]
     assert found.leakage[name][0] == pytest.approx(truth, rel=0.02)
     assert found.gain > 0.9
-    assert found.holds_on(runs[:4], prepared[:4])
+    assert holds_on(found, runs[:4], prepared[:4])
     assert [each.name for each in found.corrections] == [name]
     air = free_air(runs, prepared)
-    assert air is None or not air.found
+    assert air is None or not is_air(air)
 
 
 @pytest.mark.parametrize(("second", "laws"), [
@@ -117,9 +117,9 @@ def test_a_leak_shows_without_plateaus_where_the_speed_follows_its_command(effec
     assert len(found.beside) == 2  # the speed's scale and its lag
     assert found.found is leaks
     if leaks:
-        assert found.holds_on(runs[:4], prepared[:4])
+        assert holds_on(found, runs[:4], prepared[:4])
         assert found.slip == pytest.approx(whole.slip, rel=0.1)
-    assert flow_balance.untestable(runs, prepared) == []
+    assert leak_untestable(runs, prepared) == []
 
 
 def test_a_command_that_never_rests_is_said_to_hide_a_leak(monkeypatch):
@@ -127,7 +127,7 @@ def test_a_command_that_never_rests_is_said_to_hide_a_leak(monkeypatch):
     for name in ("STEADY_COMMAND", "SLOW_COMMAND"):
         monkeypatch.setattr(flow_balance, name, 0.0)
     assert lost_speed(runs, prepared) is None
-    (said,) = flow_balance.untestable(runs, prepared)
+    (said,) = leak_untestable(runs, prepared)
     assert said.name == "slip_leakage"
     assert "there are 0" in said.because
 
@@ -224,11 +224,11 @@ def test_on_few_locked_stretches_a_leak_makes_each_plainly_better(leak, holds, m
     tables = flow_balance._tables
     some = tables(runs, prepared, found.change)[:4]
     some[:, 1] *= leak / np.abs(some[:, 1]).max()
-    assert len(some) < flow_balance.FEWEST_TO_FLIP
+    assert len(some) < FEWEST_TO_FLIP
     monkeypatch.setattr(flow_balance, "_tables", lambda *_: some)
-    assert found.holds_on(runs, prepared) is holds
+    assert holds_on(found, runs, prepared) is holds
     monkeypatch.setattr(flow_balance, "_tables", lambda *_: some[:1])
-    assert not found.holds_on(runs, prepared)  # one stretch is nothing
+    assert not holds_on(found, runs, prepared)  # one stretch is nothing
 
 
 @pytest.mark.parametrize(("period", "kept"), [(0.201, True), (0.21, False)])

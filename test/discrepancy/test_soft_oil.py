@@ -8,8 +8,8 @@ import pytest
 from campaign.gap import owner_files
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN, make_dataset, world_of
-from winch_friction.discrepancy.detectors import soft_oil
-from winch_friction.discrepancy.detectors.soft_oil import free_air, untestable
+from winch_friction.discrepancy.detectors.flow_balance import EXPLAINS, air_untestable, free_air, holds_on, is_air
+from winch_friction.discrepancy.detectors.lost_flow import FreeAir
 from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.physics.fluid import air_compressed
 from winch_friction.physics.signals import Run
@@ -32,8 +32,8 @@ CRANES = [
 def test_the_volume_of_the_air_is_found(flavour, seed):
     runs, prepared = _data(flavour, seed, ("entrained_air", 1.0))
     found = free_air(runs, prepared)
-    assert found.found
-    assert found.holds_on(runs[9:], prepared[9:])
+    assert is_air(found)
+    assert holds_on(found, runs[9:], prepared[9:])
     assert found.volume == pytest.approx(0.01 * world_of(seed, flavour).line_volume, rel=0.3)
 
 
@@ -49,8 +49,8 @@ def test_the_volume_of_the_air_is_found(flavour, seed):
 def test_nothing_else_is_air(flavour, seed, effect):
     runs, prepared = _data(flavour, seed, *([(effect, 1.0)] if effect else []))
     found = free_air(runs, prepared)
-    assert found is None or not found.found
-    assert found is None or found.gain < 0.5 * soft_oil.EXPLAINS
+    assert found is None or not is_air(found)
+    assert found is None or found.gain < 0.5 * EXPLAINS
 
 
 def test_without_a_command_or_with_a_motor_that_swivels_nothing_can_be_said():
@@ -59,7 +59,7 @@ def test_without_a_command_or_with_a_motor_that_swivels_nothing_can_be_said():
     assert free_air(silent, prepared) is None
     swivels = [_with(run, lambda d: d * np.linspace(0.5, 1.0, len(d))) for run in runs]
     assert free_air(swivels, prepared) is None
-    assert [each.name for each in untestable(None)] == ["entrained_air"]
+    assert [each.name for each in air_untestable(None)] == ["entrained_air"]
 
 
 def test_a_hole_in_the_log_is_not_bridged():
@@ -78,7 +78,7 @@ def test_a_run_with_holes_in_its_values_spoils_no_other():
     columns = dict(runs[9].columns)
     columns["speed_reference"] = np.where(np.arange(len(runs[9])) == 700, np.nan, columns["speed_reference"])
     found = free_air([*runs[:9], Run("gap", columns), *runs[10:]], prepared)
-    assert found.found
+    assert is_air(found)
     assert found.volume == pytest.approx(free_air(runs, prepared).volume, rel=0.1)
 
 
@@ -86,15 +86,15 @@ def test_a_run_with_holes_in_its_values_spoils_no_other():
     (1e-5, 0.001, 0.09, True), (4e-5, 0.001, 0.09, False), (1e-5, 0.1, 0.09, False), (1e-5, 0.001, 0.099, False),
 ])  # fmt: skip
 def test_air_is_named_where_it_is_sure_and_explains_something(std, p_value, after, found):
-    assert soft_oil.FreeAir(2e-4, std, p_value, 0.1, after).found is found
+    assert is_air(FreeAir(2e-4, std, p_value, 0.1, after)) is found
 
 
 def test_what_would_not_have_shown_is_said():
     runs, prepared = _data("quiet", 17)
     sure = free_air(runs, prepared)
-    assert untestable(sure) == []
-    unsure = soft_oil.FreeAir(0.0, 1e-3, 1.0, 0.1, 0.1)
-    assert "0.006 m^3" in untestable(unsure)[0].because
+    assert air_untestable(sure) == []
+    unsure = FreeAir(0.0, 1e-3, 1.0, 0.1, 0.1)
+    assert "0.006 m^3" in air_untestable(unsure)[0].because
 
 
 def test_air_gives_way_as_an_adiabatic_gas_in_the_line_of_the_higher_pressure():

@@ -73,6 +73,7 @@ def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_sh
         return shows
 
     monkeypatch.setattr(module.angle, "holds_on", holds_on)
+    monkeypatch.setattr(module.flow_balance, "holds_on", lambda found, *more: holds_on(*more))
     other = SimpleNamespace(holds_on=holds_on)
     runs = [SimpleNamespace(name=name) for name in ("train", "locked")]
     given = SimpleNamespace(runs=runs, prepared=["of train", "of locked"], crane=None, model=None)

@@ -18,13 +18,12 @@ from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
 from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.catalogue import candidates_for, run_states, testable
-from winch_friction.discrepancy.detectors import flow_balance, soft_oil
+from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.delay import without_delay
-from winch_friction.discrepancy.detectors.flow_balance import Leakage
+from winch_friction.discrepancy.detectors.lost_flow import AIR, LEAK, FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
-from winch_friction.discrepancy.detectors.soft_oil import FreeAir
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, near
@@ -216,12 +215,13 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
         reversal = after_reversals(given, expansion, selection.final, usable, train, rng, cleaned)
-    leakage, air = flow_balance.detect(own_runs, own_prepared), soft_oil.free_air(own_runs, own_prepared)
-    flow = tuple(each for each in (leakage, air) if each is not None and each.found)
-    if any(each.name == soft_oil.NAME for each in usable):
-        blind += soft_oil.untestable(air)
-    if any(each.name == flow_balance.NAME for each in usable):
-        blind += flow_balance.untestable(own_runs, own_prepared)
+    leakage, air = flow_balance.lost_speed(own_runs, own_prepared), flow_balance.free_air(own_runs, own_prepared)
+    flow: list[Leakage | FreeAir] = [leakage] if leakage is not None and leakage.found else []
+    flow += [air] if air is not None and flow_balance.is_air(air) else []
+    if any(each.name == AIR for each in usable):
+        blind += flow_balance.air_untestable(air)
+    if any(each.name == LEAK for each in usable):
+        blind += flow_balance.leak_untestable(own_runs, own_prepared)
     if verdict.kind == NOTHING and (reversal or ripple or flow):
         verdict = Verdict(MISSING)
     return Search(
@@ -235,7 +235,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         verdict,
         reversal,
         ripple,
-        flow,
+        tuple(flow),
         tuple(blind),
     )
 

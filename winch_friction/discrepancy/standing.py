@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -168,7 +169,7 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
     ripple, reversal = search.ripple, search.reversal
     if ripple and not angle.holds_on(ripple, runs, prepared, given.crane, given.model):
         ripple = None
-    flow = tuple(each for each in search.flow if each.holds_on(runs, prepared))
+    flow = tuple(each for each in search.flow if flow_balance.holds_on(each, runs, prepared))
     if reversal and not reversal.holds_on(split.holdout, rng):
         reversal = None
     return replace(search, ripple=ripple, flow=flow, reversal=reversal)

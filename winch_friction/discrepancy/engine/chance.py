@@ -227,3 +227,9 @@ def least_part(cross: CrossFit, every: Explanation, names: Iterable[str]) -> flo
     saved = max(cross.explain(()).loss - every.loss, 1e-9)
     rests = [tuple(slot for slot in every.slots if slot.name != name) for name in names]
     return min((cross.explain(rest).loss - every.loss) / saved for rest in rests)
+
+
+def sign_flip_p_value(gains: FloatArray, flips: int = 2000) -> float:
+    """Sign-flip p-value of a positive mean gain over segments."""
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(flips, len(gains)))
+    return float((1 + (signs @ gains >= gains.sum()).sum()) / (1 + flips))

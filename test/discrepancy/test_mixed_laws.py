@@ -265,8 +265,26 @@ def test_a_transducer_of_one_group_and_the_feedback_of_another_are_two_causes(
     assert stroke == pytest.approx(2.0 * CM3_PER_REV, abs=0.1 * CM3_PER_REV)
 
 
+def test_a_span_that_shifts_with_the_oil_is_the_transducers_gain(crane_150t, crane2_model):
+    """Data sheets state it beside the zero's shift; an examiner's was four effects at once, and no name."""
+
+    def shown(run):
+        gain = 1.0 + 6e-4 * (run["oil_temperature"] - 40.0)
+        columns = {name: values * gain if "pressure_" in name else values for name, values in run.columns.items()}
+        return replace(run, columns=columns)
+
+    runs = [shown(run) for run in runs_with(4419, "quiet")]
+    found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
+    (effect,) = found.effects
+    assert (effect.name, effect.law_name) == ("pressure_scale", "thermal span shift")
+    assert effect.parameters["e_T"].value == pytest.approx(6e-4, rel=0.15)
+    assert at_the_floor(found.holdout)
+    assert "pressure_thermal_span" in {each.name for each in found.model.corrections}
+
+
 SHARP = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of a ratio of 0.05: what a load on a rope leaves
 LIKE_A_FILTER = (0.6, 0.5, 0.45, 0.42, 0.4, 0.38, 0.35, 0.32, 0.3, 0.3, 0.3)
+PLAIN = (3.9, 1.2, 0.2, 0.03, 0.05, 0.18, 0.35, 0.53, 0.7, 0.83, 0.9)  # where it is most of what the gap holds
 STIFF = 5e4 * 9.0 * 200.0  # N: 3 rad/s of 50 t on 200 m
 
 
@@ -281,6 +299,8 @@ def ringing(off, ratio=0.05, left=SHARP, length=200.0):
         ([ringing(1.0), ringing(1.004, length=320.0)], 0.05),
         ([ringing(1.0, 0.046), ringing(0.99, 0.054, length=90.0)], 0.05),
         ([ringing(1.0)], 0.23),  # one alone may be chance
+        ([ringing(1.0, left=PLAIN)], 0.05),  # unless next to nothing of it is left
+        ([ringing(1.0, left=PLAIN), prepared(Mode(3.0, 0.0), RUNG, length=200.0)], 0.23),  # nor where another denies it
         ([ringing(1.0), ringing(1.05)], 0.23),  # no wire has both
         ([ringing(1.0, 0.035), ringing(1.0, 0.07)], 0.23),  # nor both dampers
         ([ringing(1.0), ringing(1.0, left=LIKE_A_FILTER)], 0.23),  # any damping leaves as much

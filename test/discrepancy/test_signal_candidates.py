@@ -24,13 +24,14 @@ from winch_friction.discrepancy.candidates.signals import (
     scale_columns,
     signal_candidates,
     warm_columns,
+    warm_scale_columns,
 )
 from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.corrections import straight, unbent, unswung
-from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.correction import DECLARED, Correction
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
 
@@ -126,6 +127,20 @@ def test_a_zero_that_bends_with_the_warmth_has_its_square_and_asks_for_cold_and_
     ]
     assert own.untestable(logs) is None
     assert own.untestable(logs[:2]).needs == "runs of colder and warmer oil"
+
+
+@pytest.mark.parametrize("port_a", [0.0, 1.0])
+def test_a_span_that_shifts_with_the_oil_is_the_torque_that_its_correction_takes_out(port_a):
+    oil, gain = np.array([40.0, 55.0, 10.0]), np.array([0.0, 15.0, -30.0])
+    warm = SimpleNamespace(**vars(run()) | {"channels": {"oil_temperature": oil}})
+    columns = warm_scale_columns(warm, {"groups": ALL, "port_a": port_a})
+    np.testing.assert_array_equal(columns[:, :1], scale_columns(run(), {"groups": ALL, "port_a": port_a}))
+    shown = (A - B * (1.0 if port_a == 0.0 else 0.0)) * 1e-3 * gain
+    np.testing.assert_allclose(1e-3 * columns[:, 1], MOTORS * SWASH * shown, rtol=1e-9)
+    name = "pressure_thermal_span_a" if port_a else "pressure_thermal_span"
+    assert Correction(name, 1e-3).error(np.zeros(3), oil) == pytest.approx(1e-3 * gain)
+    assert DECLARED[name].live
+    assert len(DECLARED[name].channels) == 2 - port_a
 
 
 def test_a_gain_that_bends_is_both_its_parts():

@@ -85,7 +85,8 @@ def spoiled(run, correction):
                     ((begin, end),) = correction.during
                     columns[name] = true + e * np.interp(run.time, [begin, end], [0.0, 1.0])
             elif action is Action.SCALE:
-                columns[name] = true * (1.0 + e)
+                warmer = columns["oil_temperature"] - 40.0 if correction.declared.reads else 1.0
+                columns[name] = true * (1.0 + e * warmer)
             elif action is Action.CURVATURE:
                 columns[name] = true * (1.0 + e * true)
             elif action is Action.BEND:

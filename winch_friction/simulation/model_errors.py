@@ -53,7 +53,7 @@ def _put_signal(correction: Correction, scenario: Scenario, channels: Channels) 
         if correction.declared.action is Action.OFFSET:
             row["offset"] += correction.error(scenario.start_time, oil)
         elif correction.declared.action is Action.SCALE:
-            row["scale"] *= 1.0 + correction.value
+            row["scale"] *= 1.0 + correction.error(scenario.start_time, oil)
         elif correction.declared.action is Action.CURVATURE:
             row["curvature"] += correction.value
         elif correction.declared.action is Action.BEND:

@@ -62,6 +62,7 @@ c_p = Parameter(
     doc="gain error of the transducers per pressure",
 )  # fmt: skip
 e_p = Parameter("e_p", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the transducers")
+e_T = Parameter("e_T", "1/K", 5e-4, lower=-0.01, upper=0.01, doc="thermal span shift of the transducers")
 tau = Parameter("tau", "s", 0.05, lower=-0.5, upper=0.5, doc="delay of the speed behind the pressures")
 
 
@@ -132,6 +133,11 @@ def scale_columns(run: PreparedRun, values: Values) -> FloatArray:
 def curved_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Gain error that grows with the pressure, of both transducers of a group or of that at port A alone."""
     return group_columns(_curve_a if values["port_a"] else _curve, run, values)
+
+
+def warm_scale_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """A gain error and what the oil's warmth adds to it, N m, shape (samples, 2)."""
+    return warm_columns(_scale_a if values["port_a"] else _scale, run, values)
 
 
 def bent_columns(run: PreparedRun, values: Values) -> FloatArray:
@@ -217,6 +223,11 @@ def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     return [correction(name, found[e_p.name], groups=groups_of(shape, sides))]
 
 
+def _to_warm_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
+    name = "pressure_thermal_span_a" if shape.values["port_a"] else "pressure_thermal_span"
+    return [*_to_scale(found, shape, sides), correction(name, found[e_T.name], groups=groups_of(shape, sides))]
+
+
 def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     name = "pressure_curvature_a" if shape.values["port_a"] else "pressure_curvature"
     return [correction(name, found[c_p.name], groups=groups_of(shape, sides))]
@@ -250,6 +261,8 @@ def signal_candidates() -> list[Candidate]:
         in_groups(ZERO, offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
+        in_groups("pressure_scale", offset + r"\Delta p_g(e_p + e_T(\vartheta-40))", (e_p, e_T), warm_scale_columns,
+                  _scale_shapes, _to_warm_scale, law_name="thermal span shift", needs=OIL),
         in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
                   law_name="grows with the pressure"),
         in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,

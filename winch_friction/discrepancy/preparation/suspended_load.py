@@ -138,6 +138,7 @@ SWINGS_LEFT = 0.01  # of the swinging: what is left of it by less is told from n
 # a damping ratio that leaves so many times what a rope's leaves where a load rings on it: what is damped by a filter is
 # left alike by both. Relative: what half a percent of the length and of the load moves a frequency by, twice over
 BLUNT, SHARP, IN_TUNE = 0.3, 1.6, 0.02
+PLAIN = 0.1  # of what swings in a run that tells alone: by 0.01 to 0.03 of it plain ones did, by 0.2 what is blurred
 STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
 # of what a mode that is damped like a filter leaves of all runs together: winches whose motion sensor's noise was most
 # of it left 0.9 and more by any rope's damping, those whose load plainly swings 0.03 to 0.7
@@ -206,22 +207,23 @@ def ringing_damping(
     modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], length: Sequence[float]
 ) -> tuple[Callable[[float, float], float], float] | None:
     """What damps the wire and its stiffness times its length, N, from runs that ring: a sharp resonance, of one damping
-    and at the frequencies that one wire gives their loads and lengths. None of fewer than two, or where as many runs
-    say that the wire does not give.
+    and at the frequencies that one wire gives their loads and lengths. None of fewer than two, unless the one rings so
+    plainly that next to nothing of it is left, or where as many runs say that the wire does not give.
 
     What an edge of the sensors or a motion sensor's noise looks like is damped more, fits anything alike, and moves
     with neither load nor length. `modes` and `left` as in `shared_damping`, `length` of the wire in m (nan: unknown).
     """
     sharp = [k for k, own in enumerate(left) if len(own) and 0.0 < modes[k][1] < MOST_DAMPED / 2.0 and
              min(own) <= LEAST_GAIN and _left_by(own, BLUNT) >= SHARP * min(own) and length[k] > 0.0]  # fmt: skip
-    if len(sharp) < 2:
+    alone = len(sharp) == 1 and min(left[sharp[0]]) <= PLAIN
+    if len(sharp) < 2 and not alone:
         return None
     frequency, ratio, mass = np.array([modes[k] for k in sharp]).T
     stiffness = frequency**2 * mass * np.array([length[k] for k in sharp])
     off = np.abs(np.log(stiffness[:, None] / stiffness)) <= 2.0 * IN_TUNE
     same = off & (np.abs(np.log(ratio[:, None] / ratio)) <= ALIKE)
     alike = same[np.argmax(same.sum(axis=1))]
-    if alike.sum() < 2:
+    if alike.sum() < 2 and not alone:
         return None
     # one damper or one ratio: two runs of like loads and lengths do not tell, what all of them leave does
     known = [(mode, own) for mode, own in zip(modes, left, strict=True) if len(own) and mode[0] > 0.0]

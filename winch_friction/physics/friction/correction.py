@@ -23,7 +23,7 @@ class Action(Enum):
     """What an error of value e does; the true value stands on the right."""
 
     OFFSET = "offset"  # measured = true + e (times a power of the oil's degrees above 40 degC where that is named)
-    SCALE = "scale"  # measured = true (1 + e)
+    SCALE = "scale"  # measured = true (1 + e), e times the oil's degrees above 40 degC where that is named
     CURVATURE = "curvature"  # measured = true (1 + e true)
     BEND = "bend"  # measured = true + e (true - beyond) from `beyond` on, true below
     S_SHAPE = "s_shape"  # measured = true + e s(x), s = 6 sqrt(3) x (1 - x) (1 - 2 x), x = true / beyond: at most e
@@ -82,6 +82,13 @@ def _signal(
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
 
 
+def _gains(name: str, action: Action, *size: Any, per: str = "", **more: Any) -> tuple[DeclaredCorrection, ...]:
+    """Of both transducers of a group, and of that at port A alone; `size`: unit, typical and largest value."""
+    both, one = f"gain error of the transducers at both ports{per}", f"gain error of the transducer at port A{per}"
+    own = _signal(name, action, *size, both, *_PRESSURES, **more)
+    return own, _signal(f"{name}_a", action, *size, one, "pressure_a", **more)
+
+
 def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> DeclaredCorrection:
     # a running node does not know when the gas was last at rest
     return DeclaredCorrection(
@@ -104,16 +111,10 @@ _DECLARED = (
             "zero error of the transducers at port A per degree of the oil above 40 degC", "pressure_a", reads=_OIL),
     _signal("pressure_thermal_bow", Action.OFFSET, "Pa/K^2", 5e-3 * BAR, 0.2 * BAR,
             "the same per square degree", "pressure_a", reads=_OIL, by_warmth=2),
-    _signal("pressure_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducers at both ports", *_PRESSURES),
-    _signal("pressure_scale_a", Action.SCALE, "1", 0.01, 0.2, "gain error of the transducer at port A", "pressure_a"),
-    _signal(
-        "pressure_curvature", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR),
-        "gain error of the transducers at both ports per pressure", *_PRESSURES,
-    ),
-    _signal(
-        "pressure_curvature_a", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR),
-        "gain error of the transducer at port A per pressure", "pressure_a",
-    ),
+    *_gains("pressure_scale", Action.SCALE, "1", 0.01, 0.2),
+    *_gains("pressure_thermal_span", Action.SCALE, "1/K", 5e-4, 0.01, per=" per degree of the oil above 40 degC",
+            reads=_OIL),
+    *_gains("pressure_curvature", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR), per=" per pressure"),
     _signal(
         "pressure_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the transducers at both ports beyond a pressure",
         *_PRESSURES, bends_in="Pa",

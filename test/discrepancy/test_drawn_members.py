@@ -94,6 +94,7 @@ def test_a_loss_of_the_flow_through_each_motor_is_a_lines_and_a_ports():
 
 @pytest.mark.parametrize(("name", "values"), [
     ("low_displacement_each_way", (3.0, 1.0, 1.0, 2.0)), ("viscosity_each_way", (0.03, 0.01, 40.0)),
+    ("brake_each_way", (3.0, 1.0)),
 ])  # fmt: skip
 def test_a_loss_of_another_amount_each_way_is_three_times_as_much_hoisting(name, values):
     term = term_named(name)
@@ -102,3 +103,22 @@ def test_a_loss_of_another_amount_each_way_is_three_times_as_much_hoisting(name,
     up, down = (float(term.equation.subs({**at, symbols.s: way})) for way in (1.0, -1.0))
     assert up == pytest.approx(3.0 * down)
     assert down > 0.0
+
+
+def test_what_a_line_takes_goes_with_the_flow_and_with_how_thick_the_oil_is():
+    """Of ISO VG 46 by Walther's law: at 20 degC 2.7 times the 46 cSt that it has at 40."""
+    term = term_named("line_laminar")
+    known = {symbols.n: 4.0, symbols.D: 1e-5, symbols.w: 50.0, term.parameters[0].symbol: 4e5}
+
+    def torque(**other):
+        at = {
+            **known,
+            symbols.oil_temperature: 40.0,
+            **{getattr(symbols, name): value for name, value in other.items()},
+        }
+        return float(term.equation.subs(at))
+
+    assert torque() == pytest.approx(4e5 * (4.0 * 1e-5 * 50.0 / 0.02) * 1e-5)
+    assert torque(w=100.0) == pytest.approx(2.0 * torque())
+    assert torque(oil_temperature=20.0) == pytest.approx(2.7 * torque(), rel=0.1)
+    assert [each.name for each in module.literature() if each.law_name == "line_laminar"] == ["line_pressure_drop"]

@@ -45,14 +45,14 @@ def literature() -> list[Candidate]:
             needs=OIL),
         _of("viscosity_temperature", "viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK[1:]}, needs=OIL),
         _of("viscosity_temperature", "viscosity_each_way", {"T_vu": TEMPERATURES}, needs=OIL, continuous=("T_vu",)),
-        _of("stribeck", "stribeck_gauss", {"v_g": STRIBECK}),
-        _of("stribeck", "stribeck_lorentz", {"v_l": STRIBECK}),
+        *(_of("stribeck", f"stribeck_{curve}", {f"v_{curve[0]}": STRIBECK}) for curve in ("gauss", "lorentz")),
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
         wear("wear_saturating", shapes=friction.lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
         wear("wear_sudden", shapes=friction.between_runs),
         _of("brake_drag", "wear_sudden", presumes=COULOMB, shapes=friction.between_runs),  # that drags since a date
+        _of("brake_drag", "brake_each_way", presumes=COULOMB),
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("low_displacement_loss", "low_displacement_each_way", {"a_lu": (0.5, 1.0), "b_lu": (1.0, 2.0, 3.0)}),
@@ -76,8 +76,8 @@ def literature() -> list[Candidate]:
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
         _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},
             law_name="cracking pressure one way", continuous=("n_l",)),
-        _of("case_pressure", "case_high_port"),
-        _of("case_pressure", "case_ports"),
+        _of("line_pressure_drop", "line_laminar", needs=OIL),
+        *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
         _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=friction.no_load),
         # of shorter films Stribeck's curve speaks
         _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=friction.no_load, continuous=()),

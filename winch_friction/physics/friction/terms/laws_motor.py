@@ -125,6 +125,7 @@ a_na = Parameter("a_na", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="expone
 p_l = Parameter(  # of a small winch, whose flow never comes near, it is the law carried on to there
     "p_l", "Pa", 2e5, upper=1e9, doc="pressure lost between transducer and motor at 0.02 m^3/s"
 )
+p_lv = Parameter("p_lv", "Pa", 2e5, upper=1e9, doc="pressure lost at 0.02 m^3/s of oil at 40 degC")
 n_l = Parameter("n_l", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
 b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
@@ -202,6 +203,10 @@ notch_any_stroke = _motor(
 line_pressure_power = _motor(
     "line_pressure_power", p_l.symbol * D * (n * D * w / FULL_FLOW + _TINY) ** n_l.symbol * (1 + b_l.symbol * s),
     (p_l, n_l, b_l), "Blasius 1913 for 1.75, Hagen-Poiseuille for 1; a check valve opens one way", "fluid",
+)  # fmt: skip
+line_laminar = _motor(
+    "line_laminar", p_lv.symbol * D * (n * D * w / FULL_FLOW) * viscosity(oil_temperature) / NU_40, (p_lv,),
+    "Hagen-Poiseuille, of an oil that is as thick as it is cold (Walther, ASTM D341)", "fluid",
 )  # fmt: skip
 line_each_motor = _motor(
     "line_each_motor", p_le.symbol * D * (_x * _w + _TINY) ** n_le.symbol * (1 + b_le.symbol * s), (p_le, n_le, b_le),

@@ -39,6 +39,8 @@ c_gs = Parameter("c_gs", "N*m", 5.0, upper=200.0, doc="loss per motor at a large
 T_gs = Parameter("T_gs", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
 c_ss = Parameter("c_ss", "N*m", 20.0, upper=1e3, doc="loss at a large load")
 T_ss = Parameter("T_ss", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
+C_bu = Parameter("C_bu", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, hoisting")
+C_bd = Parameter("C_bd", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, lowering")
 C_st = Parameter("C_st", "N*m", 30.0, upper=1e3, doc="loss whatever hangs there, at the shaft")
 e_gp = Parameter("e_gp", "1", 0.01, lower=-0.2, upper=0.2, doc="one-way loss at 500 kN m, share of T_d/i")
 n_ep = Parameter("n_ep", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
@@ -123,6 +125,12 @@ sheave_saturating = register(
     Term(
         "sheave_saturating", c_ss.symbol * (1 - sp.exp(-T_d / T_ss.symbol)), (c_ss, T_ss), Scope.SHAFT,
         "the same between wires, which slip no more once the rope is taut", "gear and drum",
+    )
+)  # fmt: skip
+brake_each_way = register(
+    Term(
+        "brake_each_way", C_bu.symbol * (1 + s) / 2 + C_bd.symbol * (1 - s) / 2, (C_bu, C_bd), Scope.SYSTEM,
+        "Euler-Eytelwein: a band's pull grows around the drum, so that it drags more one way", "gear and drum",
     )
 )  # fmt: skip
 sheave_stiffness = register(

@@ -48,6 +48,7 @@ class Hidden(NamedTuple):
     winch_amount: float = 0.0  # N m at the shaft under the largest load
     winch_load: float = 0.0  # exponent of the load
     winch_load0: float = 0.0  # share of the largest load from which on it counts
+    winch_hill: float = 0.0  # share of the largest load at which half of it is there, 0: it only grows
     winch_w: float = 0.0  # exponent of speed over 2000 rpm
     winch_fade: float = 0.0  # rad/s of an exponential decay with speed, 0: none
     winch_side: float = 0.0  # 0: both directions, 1: hoisting alone, -1: lowering alone

@@ -110,7 +110,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "gear_load_loss": (
         Law("mixed_film", _winch(150.0, load=1.0, fade=110.0)),
-        Law("mesh_bends", _winch(160.0, load=1.0, load0=0.4), held_out=True),
+        Law("mesh_bends", _winch(160.0, load=1.0, load0=0.4)),
+        Law("mesh_settles", _winch(160.0, load=3.0, hill=0.5), held_out=True),
     ),
     "layer_radius": (
         Law("one_layer", lambda s, rng, f: {"radius_step": -0.04 * s}),
@@ -118,7 +119,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
     ),
     "sheave_bending": (
         Law("stiff_rope", _winch(70.0, load=0.0)),
-        Law("leaves_its_groove", _winch(150.0, load=1.0, load0=0.5), held_out=True),
+        Law("leaves_its_groove", _winch(150.0, load=1.0, load0=0.5)),
+        Law("finds_its_groove", _winch(130.0, load=3.0, hill=0.4), held_out=True),
     ),
     "wear_drift": (
         Law("saturating", _drift(1.0)), Law("logarithmic", _drift(2.0)), Law("run_in", _drift(0.0, -0.25)),

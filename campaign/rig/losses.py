@@ -75,6 +75,8 @@ def extra_loss(h, w, speed, share):
     if h.winch_amount == 0.0 or h.winch_side * speed < 0.0:
         return 0.0
     loss = h.winch_amount * _beyond(share, h.winch_load0, 1.0, h.winch_load) * _beyond(w, 0.0, FULL_SPEED, h.winch_w)
+    if h.winch_hill > 0.0:  # an S of the load
+        loss /= h.winch_hill**h.winch_load + share**h.winch_load
     return loss * exp(-w / h.winch_fade) if h.winch_fade > 0.0 else loss
 
 

@@ -122,3 +122,21 @@ def test_what_a_line_takes_goes_with_the_flow_and_with_how_thick_the_oil_is():
     assert torque(w=100.0) == pytest.approx(2.0 * torque())
     assert torque(oil_temperature=20.0) == pytest.approx(2.7 * torque(), rel=0.1)
     assert [each.name for each in module.literature() if each.law_name == "line_laminar"] == ["line_pressure_drop"]
+
+
+@pytest.mark.parametrize(("name", "share"), [("gear_load_onset", 1.0), ("sheave_onset", 1.0 / 250.0)])
+def test_from_a_load_on_a_loss_grows_with_what_is_beyond(name, share):
+    term = term_named(name)
+    amount, onset = (p.symbol for p in term.parameters)
+
+    def torque(load):
+        at = {amount: 3.0 * (1.0 if name == "gear_load_onset" else 1e-5), onset: 4e5, symbols.gear_ratio: 250.0}
+        return float(term.equation.subs({**at, symbols.T_d: load}))
+
+    size = 3.0 if name == "gear_load_onset" else 3e-5 * 5e5 * share
+    assert torque(3e5) == torque(4e5) == 0.0
+    assert torque(9e5) == pytest.approx(size)
+    assert torque(1.4e6) == pytest.approx(2.0 * size)
+    tried = [each for each in module.literature() if each.law_name == name]
+    runs = [SimpleNamespace(drum_torque=np.array([1e5, 1e6]))]
+    assert [shape.values[onset.name] for shape in tried[0].shapes(runs)] == pytest.approx([1.5e5, 3e5, 4.5e5, 6e5])

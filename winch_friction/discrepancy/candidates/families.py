@@ -5,10 +5,10 @@ repaired model as a term of its own. Shapes are grids over decades of what is ph
 """
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,7 +37,7 @@ RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose ze
 
 def literature() -> list[Candidate]:
     """The other laws of the literature, under the names of their causes."""
-    wear = partial(_of, "wear_drift", presumes=COULOMB)
+    wear, line = partial(_of, "wear_drift", presumes=COULOMB), partial(_of, "line_pressure_drop")
     return [
         _of("viscosity_temperature", "viscosity_reference", {"T_vw": TEMPERATURES}, needs=OIL, continuous=("T_vw",)),
         _of("viscosity_temperature", "viscosity_vogel", {"T_vv": TEMPERATURES, "B_vv": (550.0, 1100.0)}, needs=OIL),
@@ -68,27 +68,18 @@ def literature() -> list[Candidate]:
         _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
-        _of("line_pressure_drop", "line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)},
-            continuous=("n_l",)),
+        line("line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, 0.0, 1.0)}, continuous=("n_l",)),
         # of the flow through each motor it is a port's loss as well, by whatever exponent
         *(_of(cause, "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, -0.5, 0.0, 0.5, 1.0)},
               continuous=("n_le",)) for cause in ("line_pressure_drop", "port_turbulence")),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
-        _of("line_pressure_drop", "line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)},
-            law_name="cracking pressure one way", continuous=("n_l",)),
-        _of("line_pressure_drop", "line_laminar", needs=OIL),
+        line("line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)}, law_name="cracking pressure one way",
+             continuous=("n_l",)),
+        line("line_laminar", needs=OIL),
         *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
-        _of("gear_load_loss", "gear_load_power", {"n_gp": POWERS}, blind=friction.no_load),
-        # of shorter films Stribeck's curve speaks
-        _of("gear_load_loss", "gear_load_film", {"w_gf": (40.0, 100.0, 250.0)}, blind=friction.no_load, continuous=()),
-        _of("sheave_bending", "sheave_power", {"n_sp": POWERS}, presumes=("gear_load_loss",), blind=friction.no_load),
-        _of("sheave_bending", "sheave_film", {"w_sf": (40.0, 100.0, 250.0)}, presumes=("gear_load_loss",),
-            blind=friction.no_load, continuous=()),
+        *_by_load("gear_load_loss", "gear_load", "g"),
+        *_by_load("sheave_bending", "sheave", "s", presumes=("gear_load_loss",)),
         _of("sheave_bending", "sheave_stiffness", presumes=COULOMB),
-        _of("gear_load_loss", "gear_load_saturating", shapes=friction.loads("T_gs"), continuous=("T_gs",),
-            blind=friction.no_load),
-        _of("sheave_bending", "sheave_saturating", shapes=friction.loads("T_ss"), continuous=("T_ss",),
-            presumes=("gear_load_loss",), blind=friction.no_load),
         _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
         _of("gear_asymmetry", "gear_one_way", {"n_gw": (0.5, 2.0), "b_gw": (-1.0, 1.0)}, continuous=("n_gw",),
             blind=friction.one_load),
@@ -102,6 +93,15 @@ def literature() -> list[Candidate]:
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
             blind=friction.no_load),
     ]  # fmt: skip
+
+
+def _by_load(cause: str, stem: str, x: str, **more: Any) -> list[Candidate]:
+    """A cause that reads the load alone: a power, a film of it, a contact that closes, an onset."""
+    of: Callable[..., Candidate] = partial(_of, cause, blind=friction.no_load, **more)
+    points = {f"T_{x}s": ("saturating", friction.SATURATED), f"T_{x}o": ("onset", friction.ONSET)}
+    films = of(f"{stem}_film", {f"w_{x}f": (40.0, 100.0, 250.0)}, continuous=())  # of shorter Stribeck's curve speaks
+    bent = [of(f"{stem}_{law}", shapes=friction.loads(at, own), continuous=(at,)) for at, (law, own) in points.items()]
+    return [of(f"{stem}_power", {f"n_{x}p": POWERS}), films, *bent]
 
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:

@@ -37,6 +37,7 @@ COULOMB = ("coulomb", "motor_coulomb")
 STRIBECK_SHARES = (0.05, 0.075, 0.11, 0.17)  # of the largest speed
 BRISTLE_TRAVEL = (0.009, 0.02, 0.04, 0.09)  # rad of the shaft, 0.5 to 5 degrees
 AT_ONCE = 16384  # samples: what an equation makes on the way is then 128 KB a piece, and stays in the processor's cache
+ONSET = (0.15, 0.3, 0.45, 0.6)  # of the largest load: from less on it is in proportion, from more on few runs have any
 SATURATED = (0.1, 0.3)  # of the largest load: less is Coulomb friction in all runs, more is in proportion to it
 LOADS_APART = 1.3  # times the least load, for a law of the load to have a shape
 TYPICAL_DRUM_TORQUE = 4e5  # N m, to weigh the two coefficients of a Stribeck curve
@@ -172,12 +173,12 @@ def lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
     return shapes
 
 
-def loads(name: str) -> Shapes:
+def loads(name: str, shares: Sequence[float]) -> Shapes:
     """Drum torques N m as shares of the largest that was run."""
 
     def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
         top = max(max(float(np.max(run.drum_torque)) for run in runs), 1.0)
-        return [Shape(label_of({name: top * share}), {name: top * share}) for share in SATURATED]
+        return [Shape(label_of({name: top * share}), {name: top * share}) for share in shares]
 
     return shapes
 

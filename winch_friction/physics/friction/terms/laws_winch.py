@@ -39,6 +39,10 @@ c_gs = Parameter("c_gs", "N*m", 5.0, upper=200.0, doc="loss per motor at a large
 T_gs = Parameter("T_gs", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
 c_ss = Parameter("c_ss", "N*m", 20.0, upper=1e3, doc="loss at a large load")
 T_ss = Parameter("T_ss", "N*m", 1e5, lower=1e2, upper=1e7, shape=True, doc="drum torque of one e-fold")
+c_go = Parameter("c_go", "N*m", 5.0, upper=200.0, doc="loss per motor at 500 kN m beyond the onset")
+T_go = Parameter("T_go", "N*m", 1.5e5, lower=1e2, upper=1e8, shape=True, doc="drum torque of the onset")
+c_so = Parameter("c_so", "1", 0.02, upper=0.5, doc="loss at 500 kN m beyond the onset, share of T_d/i")
+T_so = Parameter("T_so", "N*m", 1.5e5, lower=1e2, upper=1e8, shape=True, doc="drum torque of the onset")
 C_bu = Parameter("C_bu", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, hoisting")
 C_bd = Parameter("C_bd", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, lowering")
 C_st = Parameter("C_st", "N*m", 30.0, upper=1e3, doc="loss whatever hangs there, at the shaft")
@@ -121,6 +125,22 @@ gear_load_saturating = _system(
     (c_gs, T_gs),
     "a contact that the load closes: Greenwood and Williamson 1966, until it is complete",
 )
+
+
+def _load_beyond(onset: Parameter) -> sp.Expr:
+    return sp.Piecewise((0.0, T_d <= onset.symbol), (T_d - onset.symbol, True)) / LOAD_SCALE
+
+
+gear_load_onset = _system(
+    "gear_load_onset", c_go.symbol * _load_beyond(T_go), (c_go, T_go),
+    "a frame that bends from a load on, so that the mesh runs on its edge (Niemann and Winter 2003)",
+)  # fmt: skip
+sheave_onset = register(
+    Term(
+        "sheave_onset", c_so.symbol * LOAD_SCALE / gear_ratio * _load_beyond(T_so), (c_so, T_so), Scope.SHAFT,
+        "a rope that leaves its groove's ground from a tension on", "gear and drum",
+    )
+)  # fmt: skip
 sheave_saturating = register(
     Term(
         "sheave_saturating", c_ss.symbol * (1 - sp.exp(-T_d / T_ss.symbol)), (c_ss, T_ss), Scope.SHAFT,

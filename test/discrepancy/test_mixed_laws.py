@@ -265,6 +265,7 @@ def test_a_transducer_of_one_group_and_the_feedback_of_another_are_two_causes(
     assert stroke == pytest.approx(2.0 * CM3_PER_REV, abs=0.1 * CM3_PER_REV)
 
 
+@pytest.mark.long
 def test_a_span_that_shifts_with_the_oil_is_the_transducers_gain(crane_150t, crane2_model):
     """Data sheets state it beside the zero's shift; an examiner's was four effects at once, and no name."""
 
@@ -280,6 +281,25 @@ def test_a_span_that_shifts_with_the_oil_is_the_transducers_gain(crane_150t, cra
     assert effect.parameters["e_T"].value == pytest.approx(6e-4, rel=0.15)
     assert at_the_floor(found.holdout)
     assert "pressure_thermal_span" in {each.name for each in found.model.corrections}
+
+
+@pytest.mark.long
+def test_a_clock_that_drifts_is_a_delay_that_grows_in_every_run(crane_150t, crane2_model):
+    """Two loggers that are set when a run begins: one delay for all of it left a fifth of the gap, and no name."""
+
+    def shown(run):
+        time = run.time - run.time[0]
+        late = time - 1.5e-3 * time
+        names = [name for name in run.columns if "pressure_" in name]
+        return replace(run, columns={**run.columns, **{name: np.interp(late, time, run[name]) for name in names}})
+
+    runs = [shown(run) for run in runs_with(4421, "quiet", length=0.6)]
+    found = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))
+    (effect,) = found.effects
+    assert effect.name == "signal_delay"
+    (clock,) = [each for each in found.model.corrections if each.name == "pressure_clock"]
+    assert clock.value == pytest.approx(1.5e-3, rel=0.05)
+    assert at_the_floor(found.holdout)
 
 
 SHARP = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of a ratio of 0.05: what a load on a rope leaves

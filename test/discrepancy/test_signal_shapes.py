@@ -174,6 +174,8 @@ def test_pressures_that_are_late_are_corrected_as_such(late, name, value):
     found = {"tau": ParameterEstimate(0.1, 0.01, "s")}
     (own,) = module._to_delay(found, Shape("", {"late": late}), SIDES)
     assert (own.name, own.value, own.std) == (name, value, 0.01)
+    (clock,) = module._to_delay(found, Shape("", {"late": late, "by_time": 1.0}), SIDES)  # by 0.1 s after 100 s
+    assert (clock.name, clock.value) == (name.replace("delay", "clock"), pytest.approx(value / 100.0))
 
 
 @pytest.mark.parametrize(("which", "groups"), [(ALL, ()), (BALANCING, ("active",)), (OTHER, ("passive",))])

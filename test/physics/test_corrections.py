@@ -95,7 +95,7 @@ def spoiled(run, correction):
                 x = true / correction.beyond
                 columns[name] = true + e * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
             elif action is Action.DELAY:
-                columns[name] = np.interp(time - e, time, true)
+                columns[name] = np.interp(time - e * (time if correction.declared.by_time else 1.0), time, true)
             elif action is Action.MASS:
                 columns[name] = true - e * (columns["wire_out"] if correction.declared.reads else 1.0)
             elif action is Action.WARMTH:

@@ -170,10 +170,11 @@ def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
         late += [name for name in columns if name.endswith("_simulated")]
     if not late or len(time) < 2:
         return columns
-    inside = (time + c.value <= time[-1]) & (time + c.value >= time[0])
+    at = time + (c.value * (time - time[0]) / (1.0 - c.value) if c.declared.by_time else c.value)
+    inside = (at <= time[-1]) & (at >= time[0])
     if inside.sum() < 2:
         raise InputError(f"{run.name}: too short for a {c.name} of {c.value:g} s")
-    shifted = {name: np.interp(time + c.value, time, columns[name]) for name in late}
+    shifted = {name: np.interp(at, time, columns[name]) for name in late}
     return {name: values[inside] for name, values in (columns | shifted).items()}
 
 
@@ -189,11 +190,10 @@ def _warmth(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 def _heat(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     assert c.time_constant is not None
-    changed = {
+    return columns | {
         name: columns[name] * (1.0 - c.value * relaxed_compression(columns["time"], columns[name], c.time_constant))
         for name in affected(c, run.groups)
     }
-    return columns | changed
 
 
 def _slip(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:

@@ -29,10 +29,10 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
         if not each.holds(scenario.start_time):
             continue
         action = each.declared.action
-        if action in _OF_THE_PLANT:
+        if action in _OF_THE_PLANT or each.declared.by_time:
             raise InputError(
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
-                f"of the model and use --hide {_OF_THE_PLANT[action]}"
+                f"of the model and use --hide {_OF_THE_PLANT.get(action, 'signal_delay')}"
             )
         if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY):
             _put_signal(each, scenario, channels)

@@ -47,6 +47,7 @@ SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics war
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
+CLOCKED = 100.0  # s from a run's beginning, by when a clock that drifts is late by what is said of it
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 
 p_T = Parameter(
@@ -239,9 +240,10 @@ def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
 
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     """A speed that comes late, or pressures that do, which is a speed that comes early."""
+    kind, factor = ("clock", 1.0 / CLOCKED) if shape.values.get("by_time") else ("delay", 1.0)
     if shape.values["late"] == SPEED:
-        return [correction("signal_delay", found[tau.name])]
-    return [correction("pressure_delay", found[tau.name], -1.0)]
+        return [correction(f"signal_{kind}", found[tau.name], factor)]
+    return [correction(f"pressure_{kind}", found[tau.name], -factor)]
 
 
 def signal_candidates() -> list[Candidate]:

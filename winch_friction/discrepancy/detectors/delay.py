@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values
-from winch_friction.discrepancy.candidates.signals import DELAY, PRESSURES, tau
+from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, tau
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -20,6 +20,7 @@ from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
+GROWING = (0.8, 1.0, 1.25)  # the same of a clock that drifts
 AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
 REACH = 1.1  # times a delay: half way to the next one
 
@@ -27,27 +28,31 @@ REACH = 1.1  # times a delay: half way to the next one
 def without_delay(
     given: Given, candidates: Sequence[Candidate], suspect: Slot, cross: CrossFit, fitted: Explanation
 ) -> list[Candidate]:
-    """The candidates, the `suspect` delay as what its signals are without it."""
-    late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted)
+    """The candidates, the `suspect` delay as what its signals are without it, and without one that grows in each run:
+    two loggers' clocks are set when a run begins, and drift."""
+    half = 0.5 * float(np.median([run.time[-1] for run in given.prepared]))  # s, when one that grows is its mean
+    late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted, half)
     shapes = [_shape(size * factor, late) for factor in AROUND]
-    columns: dict[tuple[str, float], FloatArray] = {}
+    shapes += [_shape(size * factor * CLOCKED / half, late, by_time=True) for factor in GROWING]
+    columns: dict[tuple[str, float, bool], FloatArray] = {}
 
-    def taken_out(delay: float) -> FrictionModel:
-        return replace(given.model, corrections=(_delay(delay, late),))  # those that it has are out of these runs
+    def taken_out(delay: float, by_time: bool = False) -> FrictionModel:
+        return replace(given.model, corrections=(_delay(delay, late, by_time),))  # what it has is out of these runs
 
-    def keep(delay: float, without: Iterable[PreparedRun]) -> None:
+    def keep(delay: float, by_time: bool, without: Iterable[PreparedRun]) -> None:
         for old, new in zip(given.prepared, without, strict=True):
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
-            columns[old.name, delay] = (old.gap - gap)[:, None] / delay
+            columns[old.name, delay, by_time] = (old.gap - gap)[:, None] / delay
 
     # a swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay differs
     met = meet(given.runs, given.crane, taken_out(size), ()).prepared
     modes = {run.name: run.wire_mode for run in met}
-    keep(size, met)
+    keep(size, False, met)
     del met  # its gaps are all that is needed
     for shape in shapes:
-        if (delay := shape.values["delay"]) != size:
-            keep(delay, met_in_turn(given, taken_out(delay), modes))
+        delay, by_time = shape.values["delay"], "by_time" in shape.values
+        if by_time or delay != size:
+            keep(delay, by_time, met_in_turn(given, taken_out(delay, by_time), modes))
     return [
         replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
         if each.name == DELAY and not each.law_name
@@ -56,24 +61,29 @@ def without_delay(
     ]
 
 
-def _size(slot: Slot, cross: CrossFit, fitted: Explanation) -> float:
-    """The delay in s, of the speed behind the pressures: as fitted, or as its shape has it."""
+def _size(slot: Slot, cross: CrossFit, fitted: Explanation, half: float) -> float:
+    """The delay in s, of the speed behind the pressures: as fitted, or as its shape has it; of one that grows what it
+    is after `half` s."""
+    values = slot.origin[1].values
+    size = values["ahead"] - values["behind"]
     if slot in fitted.slots:
         at = cross.problem.columns(fitted.slots).index(slot.columns[0])
-        return float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
-    values = slot.origin[1].values
-    return values["ahead"] - values["behind"]
+        size = float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
+    return size * half / CLOCKED if "by_time" in values else size
 
 
-def _shape(delay: float, late: float) -> Shape:
+def _shape(delay: float, late: float, by_time: bool = False) -> Shape:
+    """One of `delay` s, or that has grown to it `CLOCKED` s after a run began."""
     values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay}
+    values |= {"by_time": 1.0} if by_time else {}
     reach = sorted((delay / REACH / tau.typical, delay * REACH / tau.typical))
-    signal = "pressures" if late == PRESSURES else "speed"
-    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms", values, (reach[0], reach[1]))
+    signal, when = "pressures" if late == PRESSURES else "speed", f" after {CLOCKED:g} s" if by_time else ""
+    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms{when}", values, (reach[0], reach[1]))
 
 
-def _delay(delay: float, late: float) -> Correction:
-    name, value = ("pressure_delay", -delay) if late == PRESSURES else ("signal_delay", delay)
+def _delay(delay: float, late: float, by_time: bool) -> Correction:
+    side, value = ("pressure", -delay) if late == PRESSURES else ("signal", delay)
+    name, value = (f"{side}_clock", value / CLOCKED) if by_time else (f"{side}_delay", value)
     return Correction(name, float(np.clip(value, *Correction(name, 0.0).bounds)))
 
 
@@ -82,7 +92,7 @@ def _shapes(candidate: Candidate, exact: Sequence[Shape], runs: Sequence[Prepare
 
 
 def _columns(
-    candidate: Candidate, exact: Mapping[tuple[str, float], FloatArray], run: PreparedRun, values: Values
+    candidate: Candidate, exact: Mapping[tuple[str, float, bool], FloatArray], run: PreparedRun, values: Values
 ) -> FloatArray:
-    own = exact.get((run.name, values.get("delay", 0.0)))
+    own = exact.get((run.name, values.get("delay", 0.0), "by_time" in values))
     return candidate.columns(run, values) if own is None else own

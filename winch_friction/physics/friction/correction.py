@@ -60,6 +60,7 @@ class DeclaredCorrection:
     live: bool = True
     grows: bool = False
     bends_in: str = ""  # unit of `beyond`
+    by_time: bool = False  # whether a delay is so much per second since the run began
     by_warmth: int = 1  # power of what the oil is above 40 degC, where that is read
 
     @property
@@ -89,6 +90,15 @@ def _gains(name: str, action: Action, *size: Any, per: str = "", **more: Any) ->
     return own, _signal(f"{name}_a", action, *size, one, "pressure_a", **more)
 
 
+def _late(name: str, unit: str, typical: float, reach: float, doc: str, **more: Any) -> tuple[DeclaredCorrection, ...]:
+    """Of the speed, and of the pressures or what else tells the drive's torque."""
+    size, more = (Action.DELAY, unit, typical, reach), {"live": False, **more}
+    return (
+        _signal(f"signal_{name}", *size, doc.format("the speed is"), *_SPEED, **more),
+        _signal(f"pressure_{name}", *size, doc.format("the pressures (or the motor torque) are"), *_DRIVE, **more),
+    )
+
+
 def _gas(name: str, action: Action, typical: float, reach: float, doc: str) -> DeclaredCorrection:
     # a running node does not know when the gas was last at rest
     return DeclaredCorrection(
@@ -115,39 +125,26 @@ _DECLARED = (
     *_gains("pressure_thermal_span", Action.SCALE, "1/K", 5e-4, 0.01, per=" per degree of the oil above 40 degC",
             reads=_OIL),
     *_gains("pressure_curvature", Action.CURVATURE, "1/Pa", 0.01 / (200 * BAR), 0.1 / (200 * BAR), per=" per pressure"),
-    _signal(
-        "pressure_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the transducers at both ports beyond a pressure",
-        *_PRESSURES, bends_in="Pa",
-    ),
+    _signal("pressure_bend", Action.BEND, "1", 0.02, 0.5,
+            "gain error of the transducers at both ports beyond a pressure", *_PRESSURES, bends_in="Pa"),
     _signal("displacement_offset", Action.OFFSET, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
             "zero error of the displacement feedback", "displacement"),
-    _signal(
-        "displacement_thermal_zero", Action.OFFSET, "m^3/rad/K", 0.1 * CM3_PER_REV, 2.0 * CM3_PER_REV,
-        "zero error of the displacement feedback per degree of the oil above 40 degC", "displacement", reads=_OIL,
-    ),
-    _signal(
-        "pressure_creep", Action.OFFSET, "Pa", 3.0 * BAR, 50 * BAR,
-        "zero error of the transducers at port A that has come within the given time, and stays", "pressure_a",
-        grows=True,
-    ),
+    _signal("displacement_thermal_zero", Action.OFFSET, "m^3/rad/K", 0.1 * CM3_PER_REV, 2.0 * CM3_PER_REV,
+            "zero error of the displacement feedback per degree of the oil above 40 degC", "displacement", reads=_OIL),
+    _signal("pressure_creep", Action.OFFSET, "Pa", 3.0 * BAR, 50 * BAR,
+            "zero error of the transducers at port A that has come within the given time, and stays", "pressure_a",
+            grows=True),
     _signal("displacement_scale", Action.SCALE, "1", 0.01, 0.2, "gain error of the displacement feedback",
             "displacement"),
-    _signal(
-        "displacement_curvature", Action.CURVATURE, "rad/m^3", 100.0, 1e4,
-        "gain error of the displacement feedback per displacement", "displacement",
-    ),
-    _signal(
-        "displacement_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the feedback beyond a displacement",
-        "displacement", bends_in="m^3/rad",
-    ),
+    _signal("displacement_curvature", Action.CURVATURE, "rad/m^3", 100.0, 1e4,
+            "gain error of the displacement feedback per displacement", "displacement"),
+    _signal("displacement_bend", Action.BEND, "1", 0.02, 0.5, "gain error of the feedback beyond a displacement",
+            "displacement", bends_in="m^3/rad"),
     _signal("displacement_s_shape", Action.S_SHAPE, "m^3/rad", CM3_PER_REV, 20 * CM3_PER_REV,
             "error of the feedback at a fifth of a stroke, the opposite at four fifths, none at half and at its ends",
             "displacement", bends_in="m^3/rad"),
-    _signal("signal_delay", Action.DELAY, "s", 0.05, 0.5, "how late the speed is logged", *_SPEED, live=False),
-    _signal(
-        "pressure_delay", Action.DELAY, "s", 0.05, 0.5, "how late the pressures (or the motor torque) are logged",
-        *_DRIVE, live=False,
-    ),
+    *_late("delay", "s", 0.05, 0.5, "how late {} logged"),
+    *_late("clock", "1", 1e-3, 5e-3, "how late {} logged, per second since the run began", by_time=True),
     DeclaredCorrection(
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),
         "geometry", Action.RADIUS, by_layer=True,

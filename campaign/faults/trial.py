@@ -14,9 +14,10 @@ from campaign.faults.plain_kinds import NEEDED
 from campaign.faults.voyages import MESSAGES, PERIOD, Voyage
 from campaign.faults.watch import OutputWatch, Row
 from winch_friction.compensation import CompensatorConfig, Feedforward
-from winch_friction.online.compensator import CompensatorService, parse
+from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
+from winch_friction.online.intake import parse
 from winch_friction.physics.errors import InputError
 from winch_friction.records.model_file import model_to_text
 

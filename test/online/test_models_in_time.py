@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 from sea import CRANE, PERIOD, SEED, START, TOPICS, swell
 
-from winch_friction.online.compensator import LARGEST, LEARNED_AT, CompensatorService, ModelIntake, parse
+from winch_friction.online.compensator import LEARNED_AT, CompensatorService
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.intake import LARGEST, ModelIntake, parse
 from winch_friction.physics.errors import InputError
 from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.model_file import model_to_text

@@ -3,10 +3,11 @@
 import math
 
 import pytest
-from sea import CRANE, PERIOD, Fed, check_invariants, swell
+from sea import CRANE, PERIOD, SEED, TOPICS, Fed, check_invariants, swell
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.online.compensator import HEARTBEAT
+from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
 from winch_friction.records.bag_write import MESSAGES
 
@@ -244,3 +245,23 @@ def test_a_clock_that_is_set_back_and_then_silence_ends_at_zero(fed: Fed) -> Non
 def test_a_watchdog_that_takes_time_for_simulated_is_a_hazard_beside_a_machine(timeout, simulated, said):
     """Nothing was said of it, and whoever wanted more patience had data obeyed however late they came."""
     assert ("never beside a machine" in ServiceOptions(watchdog_timeout=timeout).hazard(simulated)) is said
+
+
+def test_what_waits_for_a_speed_says_what_is_missing_and_where_it_is_told_why(fed: Fed) -> None:
+    """A bare 'stale' or 'waiting' told an operator nothing."""
+    assert fed.service.status(fed.now)["missing"] == ""
+    fed.wait(1.0)
+    silent = fed.service.status(fed.now)
+    assert (silent["state"], silent["missing"]) == ("stale", "motor_speed ('inputs' says why)")
+    fresh = Fed()
+    assert fresh.service.status(fresh.now)["missing"] == "motor_speed ('inputs' says why)"
+
+
+def test_an_estimator_that_waits_for_a_speed_says_what_is_missing() -> None:
+    each, now = EstimatorService(CRANE, SEED, TOPICS), 0.0
+    assert each.status(now)["state"] == "waiting"
+    assert each.status(now)["missing"] == "motor_speed ('inputs' says why)"
+    for topic, message in TOPICS.encode(swell(1000.0), MESSAGES):
+        each.take(TOPICS.inputs[topic], message, 1000.0, now)
+    assert each.status(now)["missing"] == ""
+    assert each.status(now + 1.0)["missing"] == "motor_speed ('inputs' says why)"

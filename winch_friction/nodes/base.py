@@ -14,6 +14,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
+from winch_friction.nodes.beside import read_terms
 from winch_friction.nodes.inputs import Polled, diagnostic_array, diagnostic_status
 from winch_friction.nodes.loop import Clocks, Guarded, answered, said_aloud
 from winch_friction.nodes.options import FIXED, NodeOptions
@@ -21,7 +22,6 @@ from winch_friction.nodes.parameters import OptionParameters, check_qualities, d
 from winch_friction.nodes.qos import fresh
 from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.term import load_file
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -105,15 +105,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
 
     def load_terms(self) -> None:
         """Register the terms of `terms_file` and declare what can be set for them; `InputError` when there are none."""
-        if self.options.terms_file:
-            try:
-                load_file(self.options.terms_file)
-            except (SystemExit, KeyboardInterrupt, GeneratorExit) as error:
-                raise InputError(f"{self.options.terms_file}: it wants to end the program (sys.exit)") from error
-            except InputError:
-                raise
-            except BaseException as error:  # whatever its author derived from the root of all exceptions
-                raise InputError(f"{self.options.terms_file}: {type(error).__name__}: {error}") from error
+        if read_terms(self.options.terms_file):
             declare_all(self, self._settings)
 
     # -- lifecycle

@@ -12,13 +12,16 @@ from std_msgs.msg import String
 
 from winch_friction.compensation import CompensatorConfig, Feedforward
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
+from winch_friction.nodes.beside import Beside, read_terms
 from winch_friction.nodes.inputs import ROS, Inputs, pressure_message
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.rates import InputHealth
 from winch_friction.nodes.run import run
-from winch_friction.online.compensator import CompensatorService, ModelIntake, mark
+from winch_friction.online.compensator import CompensatorService, mark
 from winch_friction.online.inputs import ServiceOptions
+from winch_friction.online.intake import ModelIntake
+from winch_friction.online.readiness import ANSWERING, make_ready
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel, registered_terms
 from winch_friction.physics.winch.crane import Crane
@@ -52,6 +55,7 @@ class CompensatorNode(WinchNode):
         )  # they change the pressure at once, which no ramp bounds
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
+        self._files: Beside[FrictionModel] = Beside()
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("compensator", self._config, self._own, **node_arguments)
 
@@ -60,7 +64,7 @@ class CompensatorNode(WinchNode):
         self.own, config = self._own.read(self), self._config.read(self)
         topics = self.options.topics(crane)
         _check_pressure_group(config.pressure_group, topics.groups)
-        model.compile(len(topics.groups))  # now, not while the first sample waits
+        make_ready(model, crane, len(topics.groups), ANSWERING)  # now, not while the first sample waits
         self.service = CompensatorService(crane, model, topics, config, self._service_options(), since=self.ros_now())
         self.service.set_enabled(self._wanted)
         if past := self.service.law.status()["past_corrections"]:
@@ -69,7 +73,7 @@ class CompensatorNode(WinchNode):
             self.get_logger().warning(str(withheld))
         if hazard := self.service.options.hazard(bool(self.get_parameter("use_sim_time").value)):
             self.get_logger().warning(hazard)
-        self.models = ModelIntake(beside=self.service.options.paced, clock=self.steady_now)
+        self.models = ModelIntake(self._make_ready, self.service.options.paced, self.steady_now)
         self.inputs = Inputs(self, self.service, self._answer, self._latest(config))
         patience = self.options.watchdog_timeout
         self._input_health = InputHealth(self.service.inputs, self.inputs, self._needed, self.service_now, patience)
@@ -150,10 +154,24 @@ class CompensatorNode(WinchNode):
         return "feedforward starts anew"
 
     def _load_model(self) -> str:
-        self.load_terms()
-        model = load_model(self.options.model_file)
+        """The files are read, and the terms made ready, beside the control; the inputs go on meanwhile."""
+        model = self._files.get(self._read_model, self.guarded(self._go_on))
+        self.load_terms()  # read by now: what can be set for them is declared
         self.service.load_model(model)
         return f"model '{model.name}' in use"
+
+    def _read_model(self) -> FrictionModel:
+        read_terms(self.options.terms_file)
+        model = load_model(self.options.model_file)
+        self._make_ready(model)
+        return model
+
+    def _make_ready(self, model: FrictionModel) -> None:
+        make_ready(model, self.crane, len(self.service.inputs.topics.groups), ANSWERING)
+
+    def _go_on(self) -> None:
+        self.inputs.work()
+        self._watch()
 
     # -- outputs
     def _refused(self, reason: str) -> None:

@@ -20,6 +20,7 @@ from winch_friction.nodes.run import run
 from winch_friction.online.compensator import mark
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
+from winch_friction.online.readiness import LEARNING, make_ready
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
@@ -61,7 +62,7 @@ class EstimatorNode(WinchNode):
         """The filter on its seed, what an earlier run left, and the outputs."""
         self.own = self._own.read(self)
         topics = self.options.topics(crane)
-        model.compile(len(topics.groups))  # now, not while the first sample waits
+        make_ready(model, crane, len(topics.groups), LEARNING)  # now, not while the second sample waits
         options = ServiceOptions(self.options.watchdog_timeout, self.options.stamp_window)
         periods = {"model_period": self.own.model_period, "max_age": self.own.max_age, "since": self.ros_now()}
         self.service = EstimatorService(crane, model, topics, self._config.read(self), options, **periods)

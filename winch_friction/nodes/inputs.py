@@ -210,11 +210,18 @@ class Inputs:
             for message, info in drain(subscription):
                 self._service.take(source, message, receipt, now, sent_at(info))
 
+    def work(self) -> None:
+        """Take in the speeds that wait, and all else that has come: for whoever keeps the executor from it."""
+        if self.speed is not None and (waiting := list(drain(self.speed))):
+            self._take_in(waiting)
+
     def _on_speed(self, message: Any, info: Any) -> None:
+        self._take_in([(message, info), *drain(self.speed)])
+
+    def _take_in(self, waiting: list[tuple[Any, Any]]) -> None:
         """The others first, all that have come: stamps decide what belongs to which speed."""
         topics = self._service.inputs.topics
         source = topics.inputs[topics.speed_topic]
-        waiting = [(message, info), *drain(self.speed)]
         self.poll()
         receipt, now = self.node.ros_now(), self.node.service_now()
         for each, sent in self._in_time(source, waiting):

@@ -1,26 +1,22 @@
 """The compensator as a service: what the node and the replay share. It knows no ROS; it is told what time it is.
 
-A model that was learned elsewhere takes effect at a sample that a replay finds again. One that arrives as text is
-parsed beside the control thread; texts are bounded in size and rate, and the newest one is kept. The validity and the
-number of a torque travel in `header.frame_id`, `valid 1234` or `invalid 1235`: fields of the standard message that
+A model that was learned elsewhere takes effect at a sample that a replay finds again. The validity and the number of a
+torque travel in `header.frame_id`, `valid 1234` or `invalid 1235`: fields of the standard message that
 carry no measurement.
 """
 
 import math
-import threading
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.inputs import SILENT, InputGate, ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.model_file import model_from_text
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
 
@@ -66,70 +62,6 @@ def _learned_at(model: FrictionModel) -> float:
     if not date < math.inf:
         raise InputError(f"model '{model.name}': {LEARNED_AT} must be a time in s, found {str(found)[:40]!r}")
     return date
-
-
-# -- models that arrive as text
-LARGEST = 96 * 1024  # characters; a model of 30 parameters with its correlations has 20 thousand
-MOST_BRACKETS, DEEPEST = 2000, 100  # lists and mappings that open (a correlation has one a parameter), columns
-PERIOD = 1.0  # s between two models that are looked at
-
-
-def parse(text: str, where: str) -> FrictionModel:
-    """A model from text of unknown origin; raises `InputError` for whatever is wrong with it."""
-    if len(text) > LARGEST:
-        raise InputError(f"{where}: {len(text)} characters are no model; the largest has {LARGEST}")
-    if text.count("[") + text.count("{") > MOST_BRACKETS or "\n" + DEEPEST * " " in text:
-        raise InputError(f"{where}: nested too deeply for a model")
-    try:
-        return model_from_text(text, where)
-    except InputError:
-        raise
-    except Exception as error:  # a parser meets what nobody thought of: RecursionError, OverflowError
-        raise InputError(f"{where}: not a model ({type(error).__name__})") from error
-
-
-@dataclass
-class ModelIntake:
-    """Takes texts in, hands models and refusals out.
-
-    `beside`: a thread of its own parses, one text every `PERIOD` s, the newest that came; else `offer` parses at once,
-    as a simulation that runs faster than the clock needs it.
-    """
-
-    where: str = "friction_model"
-    beside: bool = True
-    clock: Callable[[], float] = lambda: 0.0
-    _text: str | None = field(default=None, init=False)
-    _done: deque[FrictionModel | InputError] = field(default_factory=deque, init=False)  # never replaced: two threads
-    _worker: threading.Thread | None = field(default=None, init=False)
-    _looked: float = field(default=float("-inf"), init=False)
-
-    def offer(self, text: str) -> None:
-        """A text has come; it replaces one that waits."""
-        self._text = text
-        if not self.beside:
-            self._parse()
-
-    @property
-    def waiting(self) -> bool:
-        """Whether there is anything to `take`."""
-        return self._text is not None or bool(self._done)
-
-    def take(self) -> list[FrictionModel | InputError]:
-        """What has been parsed since; starts on what waits. To be called often: it never waits."""
-        busy = self._worker is not None and self._worker.is_alive()
-        if self._text is not None and not busy and self.clock() - self._looked >= PERIOD:
-            self._looked = self.clock()
-            self._worker = threading.Thread(target=self._parse, name="model", daemon=True)
-            self._worker.start()
-        return [self._done.popleft() for _ in range(len(self._done))]
-
-    def _parse(self) -> None:
-        text, self._text = self._text, None
-        try:
-            self._done.append(parse(text or "", self.where))
-        except InputError as error:
-            self._done.append(error)
 
 
 # -- the service
@@ -278,8 +210,10 @@ class CompensatorService:
     def status(self, now: float) -> dict[str, Any]:
         """The law's state and counts, told true: a silence is stale, whatever the law last said."""
         status = dict(self.law.status())
-        if self.inputs.silence(now) > self.options.watchdog_timeout and math.isfinite(self._last_stamp):
-            status["state"] = "stale"
+        if not math.isfinite(self._last_stamp):
+            status["missing"] = SILENT
+        elif self.inputs.silence(now) > self.options.watchdog_timeout:
+            status["state"], status["missing"] = "stale", SILENT
         status["contradictions"] = "; ".join(self.contradictions)
         return status
 

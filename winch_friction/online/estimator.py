@@ -13,7 +13,7 @@ from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.doubt import LoadAgainstDrive, LoadBalance, StandingReadings, span
 from winch_friction.online.inertia_balance import InertiaBalance
-from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.inputs import SILENT, InputGate, ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -152,13 +152,15 @@ class EstimatorService:
     def status(self, now: float) -> dict[str, Any]:
         """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""
         status = dict(self.law.status())
-        if self.inputs.silence(now) > self.options.watchdog_timeout or self.missing:
+        silent = self.last is None or self.inputs.silence(now) > self.options.watchdog_timeout
+        if silent or self.missing:
             status["state"] = "waiting"
         elif self.contradiction:
             status["state"] = "contradicted"
         elif self.last is not None and not self.last.accepted:
             status["state"] = "rejected"
-        status["missing"], status["contradictions"] = ", ".join(self.missing), self.contradiction
+        status["missing"] = SILENT if silent else ", ".join(self.missing)
+        status["contradictions"] = self.contradiction
         status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
         status["suspicion"] = self._balance.suspicion
         return status

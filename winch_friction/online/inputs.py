@@ -102,6 +102,7 @@ class Plausibility:
 
 
 # -- all of them
+SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed is believed
 TWO_VOICES = "two values under one stamp"
 UNREADABLE = "late, or without the joint that it should show"
 

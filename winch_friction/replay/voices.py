@@ -3,9 +3,10 @@
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
-from winch_friction.online.compensator import CompensatorService, parse
+from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
+from winch_friction.online.intake import parse
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample

@@ -1,0 +1,91 @@
+"""What a sample does not wait for: the functions of a model are compiled before it comes."""
+
+import pytest
+
+from winch_friction.compensation import FeedforwardCompensator
+from winch_friction.estimation import FrictionEstimator
+from winch_friction.online.intake import ModelIntake
+from winch_friction.online.readiness import ANSWERING, LEARNING, make_ready
+from winch_friction.physics.friction import FrictionModel, compiled, term_named
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.records.model_file import model_to_text
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The functions that are made from now on, by name; none is at hand from before."""
+    compiled.compiled.cache_clear()
+    names: list[str] = []
+    make = compiled.CompiledTerms._function
+
+    def noted(self: compiled.CompiledTerms, part: str, dialect: str) -> object:
+        names.append(part)
+        return make(self, part, dialect)
+
+    monkeypatch.setattr(compiled.CompiledTerms, "_function", noted)
+    return names
+
+
+def sample(crane, time: float) -> Sample:
+    groups = {
+        "active": GroupSample(100e5, 25e5, crane.max_displacement),
+        "passive": GroupSample(300e5, 25e5, crane.max_displacement / 3.0),
+    }
+    speed = 100.0 + time
+    return Sample(time=time, motor_speed=speed, speed_reference=speed, hook_load=55e3, groups=groups)
+
+
+@pytest.fixture
+def remembering(crane2_model) -> FrictionModel:
+    """The seed beside a term that has a memory."""
+    own = term_named("presliding")
+    values = (*crane2_model.values, *(each.typical for each in own.parameters))
+    return FrictionModel("remembering", (*crane2_model.terms, own), values, constants=crane2_model.constants)
+
+
+def test_the_feedforward_compiles_nothing_at_its_samples(made, crane_150t, crane2_model) -> None:
+    make_ready(crane2_model, crane_150t, 2, ANSWERING)
+    assert made
+    made.clear()
+    each = FeedforwardCompensator(crane_150t, crane2_model)
+    for k in range(5):
+        each.step(sample(crane_150t, 0.02 * k))
+    assert made == []
+
+
+def test_the_estimator_compiles_nothing_at_its_samples(made, crane_150t, crane2_model) -> None:
+    make_ready(crane2_model, crane_150t, 2, LEARNING)
+    assert made
+    made.clear()
+    each = FrictionEstimator(crane_150t, crane2_model)
+    for k in range(5):
+        each.step(sample(crane_150t, 0.02 * k))
+    assert made == []
+
+
+def test_a_memory_is_ready_as_well(made, crane_150t, remembering) -> None:
+    make_ready(remembering, crane_150t, 2, ANSWERING)
+    made.clear()
+    each = FeedforwardCompensator(crane_150t, remembering)
+    for k in range(5):
+        each.step(sample(crane_150t, 0.02 * k))
+    assert made == []
+
+
+def test_a_model_that_is_taken_over_is_ready_before(crane2_model) -> None:
+    """A learned model of other terms was compiled at the sample that took it over, 0.1 s by an active compensator."""
+    ready: list[FrictionModel] = []
+    intake = ModelIntake(ready.append, beside=False)
+    intake.offer(model_to_text(crane2_model))
+    assert [each.values for each in ready] == [crane2_model.values]
+    assert intake.take() == ready
+
+
+def test_a_model_that_cannot_be_made_ready_is_refused(crane2_model) -> None:
+    def fails(model: FrictionModel) -> None:
+        raise ZeroDivisionError
+
+    intake = ModelIntake(fails, beside=False)
+    intake.offer(model_to_text(crane2_model))
+    (refused,) = intake.take()
+    assert "not a model (ZeroDivisionError)" in str(refused)

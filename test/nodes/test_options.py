@@ -1,6 +1,7 @@
 """Parameters come from the option dataclasses, bounded and described."""
 
 import pytest
+from rclpy.exceptions import ParameterUninitializedException
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.nodes.options import NodeOptions
@@ -26,6 +27,8 @@ class Board:
         self.descriptors[name] = descriptor
 
     def get_parameter(self, name: str) -> object:
+        if self.values[name] is None:
+            raise ParameterUninitializedException(name)
         return type("P", (), {"value": self.values[name]})()
 
 
@@ -111,3 +114,16 @@ def test_a_quality_of_service_that_there_is_not_is_refused_by_its_parameter(
 )
 def test_a_quality_of_service_that_there_is_passes(policy: str, value: object) -> None:
     check_qualities(overridden(policy, value))
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("groups", r'must be a list of texts, found none, or \[\].*\[""\] stands for none'),
+        ("crane", "must be a text, found none$"),
+    ],
+)
+def test_a_list_without_entries_is_told_by_its_parameter(name: str, said: str) -> None:
+    """ROS tells no type of [], and of the parameter that has none it said "is not initialized: groups"."""
+    with pytest.raises(InputError, match=rf"^board: parameter '{name}' {said}"):
+        OptionParameters(NodeOptions).declare(Board({name: None}))

@@ -292,7 +292,7 @@ def test_what_a_bag_holds_beside_the_winch_is_read_past_and_said(tmp_path):
             )
             writer.write("/arm/joint_states", joint_state(MESSAGES, header, "boom", velocity=1.0), 1000.0 + 0.02 * k)
     with open_bag(tmp_path / "bag") as bag:
-        assert bag.warnings == ["bag: topics that are not the winch's, read past: /arm/joint_states"]
+        assert bag.warnings == ["bag: topics that are no inputs of the winch's, read past: /arm/joint_states"]
 
 
 def spoken(tmp_path, crane, joint, name="bag"):

@@ -56,6 +56,8 @@ class CompensatorNode(WinchNode):
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         self._files: Beside[FrictionModel] = Beside()
+        self._said = ""  # why a learned model was refused, by the log
+        self._models: Any = None  # the subscription of learned models, while active
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("compensator", self._config, self._own, **node_arguments)
 
@@ -94,16 +96,17 @@ class CompensatorNode(WinchNode):
     def start(self) -> None:
         """Let the inputs and the models in, watch over both."""
         self.inputs.open()
-        models = self.create_subscription(
+        self._models = self.create_subscription(
             String, "friction_model", self.guarded(self._on_model), fresh(LATCHED), qos_overriding_options=overridable()
         )
-        self.while_active(models)
+        self.while_active(self._models)
         share = 0.2 * self.options.watchdog_timeout
         self._watchdog = self.every(min(max(self.service.options.watch_period, share), LONGEST_WATCH), self._watch)
 
     def stop(self) -> None:
         """Shut the inputs out and publish the ramp to zero."""
         self.inputs.close()
+        self._models = None
         began = time.monotonic()
         for after, feedforward in self.service.ending(self.service_now()):
             time.sleep(max(0.0, began + after - time.monotonic()))
@@ -137,7 +140,7 @@ class CompensatorNode(WinchNode):
     def _take_models(self) -> None:
         for each in self.models.take():
             if isinstance(each, InputError):
-                self._refused(str(each))
+                self.service.refuse(str(each))
             else:
                 self.service.offer(each)
         while self.service.refused_models:
@@ -158,7 +161,9 @@ class CompensatorNode(WinchNode):
         model = self._files.get(self._read_model, self.guarded(self._go_on))
         self.load_terms()  # read by now: what can be set for them is declared
         self.service.load_model(model)
-        return f"model '{model.name}' in use"
+        learned = self.own.follow_model_topic and self._models is not None and self._models.get_publisher_count()
+        until = "; what an estimator learns of its terms replaces it (follow_model_topic)" if learned else ""
+        return f"model '{model.name}' in use{until}"
 
     def _read_model(self) -> FrictionModel:
         read_terms(self.options.terms_file)
@@ -175,6 +180,10 @@ class CompensatorNode(WinchNode):
 
     # -- outputs
     def _refused(self, reason: str) -> None:
+        """Said once: an estimator that goes on publishes it every few seconds, and the diagnostics hold it."""
+        if reason == self._said:
+            return
+        self._said = reason
         self.get_logger().warning(f"model refused, '{self.service.law.model.name}' kept: {reason}")
 
     def _publish(self, feedforward: Feedforward) -> None:
@@ -222,7 +231,10 @@ class CompensatorNode(WinchNode):
         never = state == "waiting" and now - self._activated > self.options.diagnostics_period
         level = ERROR if state == "stale" or never else {"waiting": WARN}.get(state, OK)
         why = status["contradictions"] or (status["missing"] if state in ("stale", "waiting") else "")
-        feedforward = Health("feedforward", level, f"{state}: {why}" if why else state, status)
+        said = f"{state}: {why}" if why else state
+        if refusal := status["learned_model_refused"]:
+            level, said = max(level, WARN), f"{said}; learned model refused: {refusal}"
+        feedforward = Health("feedforward", level, said, status)
         return [self.alone(feedforward, self._torque), self._input_health.report()]
 
 

@@ -6,7 +6,11 @@ from dataclasses import fields
 from typing import Any, Generic, TypeVar
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.exceptions import (
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterUninitializedException,
+)
 
 from winch_friction.physics.errors import InputError, Limits, Problems, default_of, from_mapping, limits_of, meant
 
@@ -123,7 +127,13 @@ def declare(node: Any, name: str, default: Any, limits: Limits, read_only: bool 
         given = _overrides(node).get(name)
         said = _must_be(given.value, default, limits) if given is not None else f": {_one_line(error)}"
         raise InputError(f"{node.get_name()}: parameter '{name}'{said}") from error
-    value = node.get_parameter(name).value
+    try:
+        value = node.get_parameter(name).value
+    except ParameterUninitializedException:  # [], whose type rclpy cannot tell
+        none = ', found none, or [] (of which ROS tells no type): [""] stands for none'
+        words = none if isinstance(default, list) else ", found none"
+        kind = _KINDS.get(type(default), type(default).__name__)
+        raise InputError(f"{node.get_name()}: parameter '{name}' must be {kind}{words}") from None
     if limits.choices and value != default and value not in limits.choices:
         words = f"must be one of {', '.join(limits.choices)}, found {value!r}"
         raise InputError(f"{node.get_name()}: parameter '{name}' {words}")

@@ -64,6 +64,22 @@ def _learned_at(model: FrictionModel) -> float:
     return date
 
 
+def refuse_other_terms(learned: FrictionModel, given: FrictionModel) -> None:
+    """Raise `InputError` for a learned model that has other terms or corrections than the one that was given.
+
+    An estimator learns values, never terms. One that was started on another model would take terms away, which is more
+    than any range around the seed allows, and would undo a repaired model that was loaded meanwhile.
+    """
+    own, others = ({*each.term_names, *(one.name for one in each.corrections)} for each in (learned, given))
+    differences = {"lacks": others - own, "has besides": own - others}
+    said = [f"{words} {', '.join(sorted(names))}" for words, names in differences.items() if names]
+    if said:
+        raise InputError(
+            f"model '{learned.name}' was learned of another one than '{given.name}': it {' and it '.join(said)}; "
+            f"start the estimator on the model_file of '{given.name}'"
+        )
+
+
 # -- the service
 HEARTBEAT = 25  # steps of the watchdog between two zeros, once the ramp is over
 LONGEST_END = 2.0  # s that the last ramp may take: whoever ends the process waits five
@@ -97,7 +113,9 @@ class CompensatorService:
         self._silence = _Silence()
         self._last_stamp = math.nan
         self.contradictions: tuple[str, ...] = ()
+        self._given = seed  # by whoever runs the node: what is learned is learned of its terms
         self.refused_models: list[str] = []
+        self.refusal = ""  # of the last learned model; empty once one is taken over
 
     # -- what comes in
     def take(
@@ -154,19 +172,27 @@ class CompensatorService:
         try:
             self.schedule.offer(model)
         except InputError as error:
-            self.refused_models.append(str(error))
+            self.refuse(str(error))
 
     def load_model(self, model: FrictionModel) -> None:
         """Use a model from the next sample on, without a bump; `InputError` keeps the one in use."""
         self.law.load_model(model)
+        self._given, self.refusal = model, ""
+
+    def refuse(self, reason: str) -> None:
+        """A learned model was refused, here or by whoever read it."""
+        self.refused_models.append(reason)
+        self.refusal = reason
 
     def _take_over(self, model: FrictionModel | None) -> None:
         if model is None:
             return
         try:
+            refuse_other_terms(model, self._given)
             self.law.load_model(model)
+            self.refusal = ""
         except InputError as error:
-            self.refused_models.append(str(error))
+            self.refuse(str(error))
 
     def set_enabled(self, enabled: bool) -> None:
         """Fade in or out from the next sample on."""
@@ -215,6 +241,7 @@ class CompensatorService:
         elif self.inputs.silence(now) > self.options.watchdog_timeout:
             status["state"], status["missing"] = "stale", SILENT
         status["contradictions"] = "; ".join(self.contradictions)
+        status["learned_model_refused"] = self.refusal
         return status
 
 

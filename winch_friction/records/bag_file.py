@@ -276,7 +276,9 @@ def _passed_over(name: str, reader: Any, typestore: Any, used: set[str]) -> list
         for topic, kind in unknown.items()
     ]
     known = [topic for topic in rest if topic not in unknown]
-    return said + ([f"{name}: topics that are not the winch's, read past: {', '.join(known)}"] if known else [])
+    return said + (
+        [f"{name}: topics that are no inputs of the winch's, read past: {', '.join(known)}"] if known else []
+    )
 
 
 def _clock_offset(bag: Bag) -> tuple[float, bool]:

@@ -8,6 +8,7 @@ from sea import CRANE, TOPICS, swell
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online.agreement import (
     CHATTER_TIME,
+    CONFIRMED_AFTER,
     CONFIRMED_BY,
     DOUBTED,
     TOGETHER,
@@ -55,6 +56,14 @@ def test_stray_stamps_that_do_not_advance_together_set_no_clock(stray):
     own, stamp, now = watch()
     worths = {own.judge(stamp + 7200.0 + stray(k), now + k * PERIOD) for k in range(1, 4 * CONFIRMED_BY)}
     assert worths == {Stamp.AHEAD}
+
+
+def test_a_stray_stamp_that_is_repeated_and_then_another_one_set_no_clock():
+    """Of five messages four were one and the same: they show no clock that goes on."""
+    own, stamp, now = watch()
+    same = {own.judge(stamp + 7200.0, now + k * PERIOD) for k in range(1, CONFIRMED_BY)}
+    assert same == {Stamp.AHEAD}
+    assert own.judge(stamp + 7200.0 + CONFIRMED_AFTER + 0.01, now + CONFIRMED_BY * PERIOD) is Stamp.AHEAD
 
 
 # -- voices

@@ -1,6 +1,6 @@
 """Cases, rows and scores of the closed-loop study (`campaign.loop`)."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import FrictionEstimator
+from winch_friction.estimation.dynamics import FIRST_PARAMETER
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
@@ -164,17 +165,34 @@ def tuned_efficiency(drive: str, truth: FrictionModel) -> float:
 @dataclass(frozen=True)
 class Learned:
     """A learned model, the worst error of its friction over the visited speed bins, and the NIS share inside its
-    band; NEES of all parameters together, and the share of them within three stated sigma of the truth."""
+    band; NEES of all parameters together, what it is on average where the stated covariance is true, and the share of
+    them within three stated sigma of the truth."""
 
     model: FrictionModel
     worst_bin: float
     nis_inside: float
     nees: float
+    honest: float
     within: float
 
 
-def learn(drive: str, load: float, sea: Sea, truth: FrictionModel, **changes: Any) -> Learned:
-    """Twenty wave periods of the estimator beside the seed's feedforward, on a sea that is not scored."""
+def honest_nees(covariance: FloatArray, sensitivity: FloatArray, errors: Sequence[float]) -> float:
+    """The mean NEES of a filter that is right, where the considered errors are what they are.
+
+    `covariance` (m, m) is the parameters' without them, `sensitivity` (k, m) what one sigma of each does to the
+    parameters, `errors` how many sigma each is. Averaged over errors that are drawn it is m; without any, less: the
+    stated covariance holds room for what is not there.
+    """
+    stated = covariance + sensitivity.T @ sensitivity
+    there = sensitivity * np.asarray(errors, float)[:, None]
+    return float(np.trace(np.linalg.solve(stated, covariance)) + np.trace(there @ np.linalg.solve(stated, there.T)))
+
+
+def learn(
+    drive: str, load: float, sea: Sea, truth: FrictionModel, considered: Mapping[str, float] = {}, **changes: Any
+) -> Learned:
+    """Twenty wave periods of the estimator beside the seed's feedforward, on a sea that is not scored; `considered`
+    errors of these changes, by name, in their own unit."""
     case = scenario(drive, load, sea, duration=LEARNING_PERIODS * sea.period, **changes)
     estimator = FrictionEstimator(CRANE, SEED)
     crane = closed_loop(case, truth, LEARNING_SEED, compensator(SEED), watch=estimator.step)
@@ -183,7 +201,16 @@ def learn(drive: str, load: float, sea: Sea, truth: FrictionModel, **changes: An
     off = np.array(model.values) - np.array(truth.values)
     nees = float(off @ np.linalg.solve(model.covariance, off))
     within = float(np.mean(np.abs(off) < 3.0 * model.std))
-    return Learned(model, max(map(abs, errors.values())), float(estimator.consistency.share_inside), nees, within)
+    own = {
+        "speed_delay": estimator.config.speed_delay_std,
+        "displacement_scale": estimator.config.displacement_scale_std,
+    }
+    sigmas = [considered.get(name, 0.0) / std for name, std in own.items()]
+    inner = estimator._filter
+    one_sigma = inner.sensitivity[:, FIRST_PARAMETER:] * np.array(list(own.values()))[:, None]
+    honest = honest_nees(inner.phi_covariance, one_sigma, sigmas)
+    inside = float(estimator.consistency.share_inside)
+    return Learned(model, max(map(abs, errors.values())), inside, nees, honest, within)
 
 
 def friction_errors(run: Run, truth: FrictionModel, model: FrictionModel) -> dict[int, float]:

@@ -66,12 +66,14 @@ def consistency(learned: Iterable[Learned], truth: FrictionModel, quick: bool) -
     for scale in (1.01, 0.99):
         error = {"sensors.displacement_scale": {f"{group}.displacement": scale for group in BOTH}}
         cases = [(drive, load, sea) for drive in DRIVES for load in LOADS for sea in SEAS][: 2 if quick else None]
-        rows[f"displacements x {scale:g}"] = [learn(*case, truth, **error) for case in cases]
+        off = {"displacement_scale": scale - 1.0}
+        rows[f"displacements x {scale:g}"] = [learn(*case, truth, off, **error) for case in cases]
     lines = []
     for name, each in rows.items():
         nees, within = [one.nees for one in each], [one.within for one in each]
         worst = f"{max(nees):.0f}, {100.0 * min(within):.0f} %"
-        lines.append([name, str(len(each)), f"{mean(nees):.1f}", f"{100.0 * mean(within):.0f} %", worst])
+        honest = f"{mean(one.honest for one in each):.1f}"
+        lines.append([name, str(len(each)), f"{mean(nees):.1f}", honest, f"{100.0 * mean(within):.0f} %", worst])
     return lines
 
 

@@ -265,3 +265,9 @@ def test_an_estimator_that_waits_for_a_speed_says_what_is_missing() -> None:
         each.take(TOPICS.inputs[topic], message, 1000.0, now)
     assert each.status(now)["missing"] == ""
     assert each.status(now + 1.0)["missing"] == "motor_speed ('inputs' says why)"
+
+
+def test_a_lateness_of_the_speed_stands_beside_what_else_is_suspicious(monkeypatch: pytest.MonkeyPatch) -> None:
+    each = EstimatorService(CRANE, SEED, TOPICS)
+    monkeypatch.setattr(type(each.law._filter.considered), "lateness", (0.5, 0.01))
+    assert each.status(0.0)["suspicion"].startswith("motor_speed seems late by about 0.5")

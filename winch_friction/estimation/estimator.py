@@ -206,7 +206,6 @@ class FrictionEstimator:
         self._state = "restarted"
         return self._estimate(sample, True, NAN, NAN, NAN)
 
-    # -- small quantities
     @property
     def _load_is_known(self) -> bool:
         """An electric drive without a hook load lifts nothing; its load torque is 0 and stays so."""
@@ -261,6 +260,7 @@ class FrictionEstimator:
             "nis_windows": self.consistency.windows,
             "nis_share_inside": self.consistency.share_inside,
             **self._conflict.status(),
+            **self._filter.considered.status(),
             **self.counts,
         }
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.considered import ConsideredErrors
 from winch_friction.estimation.dynamics import (
     ENCODER_CHANGE,
     FIRST_PARAMETER,
@@ -55,6 +56,7 @@ class StateFilter:
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
+        self.considered = ConsideredErrors(sensors, config.speed_delay_std > 0.0)
         # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, x; a sensor
         # error and what is known to act enter where the noises do
         noisy, carried = size + NOISES, len(sensors) + 1
@@ -168,6 +170,8 @@ class StateFilter:
 
         In `stick` the load is considered as well: a brake may carry it, and for as long as it likes.
         """
+        if learning and not stick:
+            self.considered.step(self._seen[self.size : -1], innovation, variance)
         inside = self._take_in(innovation, variance, learning, stick)
         self._learned_for = self._unfaded
         if learning and not inside:

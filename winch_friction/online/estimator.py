@@ -162,7 +162,7 @@ class EstimatorService:
         status["missing"] = SILENT if silent else ", ".join(self.missing)
         status["contradictions"] = self.contradiction
         status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
-        status["suspicion"] = self._balance.suspicion
+        status["suspicion"] = "; ".join(filter(None, (self._balance.suspicion, str(status["lateness"]))))
         return status
 
     @property

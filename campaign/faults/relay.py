@@ -15,14 +15,17 @@ from functools import partial
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
 
 from winch_friction.nodes.inputs import message_type
 from winch_friction.nodes.qos import OUTPUT, fresh
+from winch_friction.nodes.run import Ending
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.topics import crane_topics
 
 PERIOD = 0.002  # s between two looks at what is due
+LONGEST_WAIT = 0.1  # s after which it is looked whether it is to end
 
 
 class Relay:
@@ -56,14 +59,17 @@ def main() -> int:
     for name in ("loss", "delay", "jitter"):
         parser.add_argument(f"--{name}", type=float, default=0.0)
     options = parser.parse_args()
-    rclpy.init(args=[])
+    # rclpy's own handlers take the context away from under the executor, which then ends in a traceback
+    ending = Ending()
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node("relay", start_parameter_services=False)
-    relay, executor = Relay(node, options), SingleThreadedExecutor()
+    _relay, executor = Relay(node, options), SingleThreadedExecutor()
     executor.add_node(node)
-    try:
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        del relay
+    while not ending.asked:
+        executor.spin_once(timeout_sec=LONGEST_WAIT)
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown()
     return 0
 
 

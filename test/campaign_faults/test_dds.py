@@ -67,7 +67,8 @@ def test_the_relay_loses_and_delays(probe):
         bench.spin(0.5)
     finally:
         relay.terminate()
-        relay.wait(10.0)
+        ended = relay.wait(10.0)
+    assert ended == 0  # one time in three it was a traceback out of the executor
     numbers = [int(number) for _, number in came]
     assert 60 < len(numbers) < 140
     assert numbers != sorted(numbers)  # they overtake each other

@@ -131,3 +131,14 @@ def test_a_bias_is_found_by_weighted_least_squares_beside_what_else_is_considere
 def test_only_what_is_surely_more_than_what_is_considered_is_said(share, std, said):
     assert bool(ConsideredErrors((0.15,), late=True)._words(share, std)) is said
     assert bool(ConsideredErrors((0.15,), late=True)._words(-share, std)) is said
+
+
+def test_what_inputs_in_doubt_have_told_is_forgotten_with_what_was_learned_of_them(crane, seed):
+    case = load_scenario("ahc_irregular").override({"duration": 30.0, "sensors.rate": 10.0})
+    each = FrictionEstimator(crane, seed)
+    before = each.snapshot()
+    for sample in late(list(simulate(case, crane, seed, seed=7).run.samples()), 10.0):
+        each.step(sample)
+    assert np.isfinite(each.status()["speed_late"])
+    each.take_back(before)
+    assert np.isnan(each.status()["speed_late"])

@@ -37,6 +37,10 @@ class ConsideredErrors:
             for j, other in enumerate(seen):
                 row[j] += weight * other
 
+    def anew(self) -> "ConsideredErrors":
+        """The same errors, of which nothing is known yet."""
+        return ConsideredErrors(self._std, self._late)
+
     @property
     def lateness(self) -> tuple[float, float]:
         """By which share of the time between two samples the speed is later than it is said to be, and the standard

@@ -56,7 +56,7 @@ class StateFilter:
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
-        self.considered = ConsideredErrors(sensors, config.speed_delay_std > 0.0)
+        self.considered = ConsideredErrors(self._sensors.tolist(), config.speed_delay_std > 0.0)
         # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, x; a sensor
         # error and what is known to act enter where the noises do
         noisy, carried = size + NOISES, len(sensors) + 1
@@ -235,8 +235,8 @@ class StateFilter:
 
     def take_parameters(self, x: FloatArray, covariance: FloatArray, sensitivity: FloatArray) -> None:
         """Other parameters, out of a state (n,) with its covariance (n, n) and sensitivity (errors, n); the states that
-        move are kept, correlated with none of them."""
-        phi = self._phi
+        move are kept, correlated with none of them; what the innovations since have told of sensor errors is not."""
+        phi, self.considered = self._phi, self.considered.anew()
         self.P[:, phi] = self.P[phi, :] = 0.0
         self.P[phi, phi], self.sensitivity[:, phi] = covariance[phi, phi], sensitivity[:, phi]
         self._flat[phi] = self.parameters.projected(x, covariance, FIRST_PARAMETER)[phi]

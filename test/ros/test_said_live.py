@@ -87,3 +87,16 @@ def test_a_speed_that_is_published_before_the_rest_of_its_instant_is_said(bench:
     bench.publish = lambda sample, namespace="": speed_first(sample)  # type: ignore[method-assign]
     bench.drive(3.2)
     assert "winch/reference: comes after the speed of its own instant" in said()
+
+
+def test_a_clock_that_stops_under_the_watchdog_is_said(bench: Bench) -> None:
+    """The torque stood at 155 N m for ever and the state was 'active', for the watchdog goes by that clock."""
+    bench.start("compensator", ramp_time=0.3, use_sim_time=True, watchdog_clock="ros")
+    said = bench.listen("/diagnostics", DiagnosticArray, 10)
+    clock = bench.node.create_publisher(Clock, "/clock", 10)
+    bench.announce()
+    bench.drive(1.5, lambda sample: clock.publish(clock_message(sample.time)))
+    assert "stands still" not in diagnostics(said, "feedforward")["message"]
+    assert bench.spin(4.0, lambda: "/clock stands still" in diagnostics(said, "feedforward")["message"])
+    bench.drive(1.5, lambda sample: clock.publish(clock_message(sample.time)))
+    assert "stands still" not in diagnostics(said, "feedforward")["message"]

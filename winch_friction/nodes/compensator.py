@@ -28,6 +28,7 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import joint_state, stamp_header
 
+STANDS_STILL = 1.0  # s without a new time of the watchdog's clock; the slowest recording's clock goes at some Hz
 LONGEST_WATCH = 0.1  # s between two looks of the watchdog where the time-out is long
 
 
@@ -56,6 +57,7 @@ class CompensatorNode(WinchNode):
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
         self._own = OptionParameters(CompensatorNodeOptions)
         self._files: Beside[FrictionModel] = Beside()
+        self._moved = math.nan, math.inf  # the watchdog's clock when it moved last, and the steady one then, s
         self._said = ""  # why a learned model was refused, by the log
         self._models: Any = None  # the subscription of learned models, while active
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
@@ -221,7 +223,14 @@ class CompensatorNode(WinchNode):
         """Whether anything is fed forward, and what is not there for it."""
         status = self.service.status(self.service_now())
         at_work = status["state"] in ("active", "fading", "disabled")
-        return at_work, status["contradictions"], self._input_health.silent()
+        return at_work, status["contradictions"], self._input_health.silent(), self._clock_stands()
+
+    def _clock_stands(self) -> bool:
+        """Whether the watchdog's clock has stopped: then nothing falls silent, and the torque stays where it is."""
+        now, steady = self.service_now(), self.steady_now()
+        if now != self._moved[0]:
+            self._moved = now, steady
+        return steady - self._moved[1] > STANDS_STILL
 
     def health(self) -> Sequence[Health]:
         """The feedforward's state and the inputs' rates and ages."""
@@ -234,6 +243,11 @@ class CompensatorNode(WinchNode):
         said = f"{state}: {why}" if why else state
         if refusal := status["learned_model_refused"]:
             level, said = max(level, WARN), f"{said}; learned model refused: {refusal}"
+        if self._clock_stands():
+            level, said = (
+                max(level, WARN),
+                f"{said}; /clock stands still: until it goes on the torque stays (watchdog_clock: ros)",
+            )
         feedforward = Health("feedforward", level, said, status)
         return [self.alone(feedforward, self._torque), self._input_health.report()]
 

@@ -65,6 +65,24 @@ def test_single_samples_that_jump_are_lost_telegrams(value):
     )  # fmt: skip
 
 
+def test_the_friction_of_a_reversal_is_no_lost_telegram():
+    """In a sparse log a ramp's inertia rises to the reversal, where twice the friction is gone within a sample."""
+    time = 0.08 * np.arange(1000)
+    speed = 60.0 * np.cos(0.5 * time)
+    after = np.flatnonzero(np.diff(np.sign(speed)) != 0.0)[1::2] + 1  # from lowering to hoisting
+    noise = 2e4 * np.random.default_rng(1).standard_normal((2, len(time)))
+    pressure = 2e7 + 1.2e6 * np.sign(speed) + noise[0]
+    pressure[after - 1] += 4e6  # the ramp's last sample
+    columns = {"time": time, "motor_speed": speed, "main.pressure_a": pressure, "main.pressure_b": 2e6 + noise[1]}
+    assert len(after) > 3
+    assert mended(Run("r.csv", columns)) == ({}, [])
+    columns["main.pressure_a"][after[0] + 30] = 0.0  # away from it one is
+    assert mended(Run("r.csv", columns)) == (
+        {"main.pressure_a": 1},
+        ["r.csv: main.pressure_a jumps in 1 single sample"],
+    )
+
+
 def test_what_jumps_in_more_than_one_of_a_hundred_is_how_the_sensor_is():
     assert mended(log(main__pressure_a=(slice(10, None, 50), 0.0)))[0] == {}
 

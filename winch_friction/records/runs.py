@@ -213,11 +213,13 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
     for run in runs:
         own = {name: run[name] for name in run.columns if name.rpartition(".")[2] in MEASURED}
         changes = {name: np.abs(np.diff(values)) > 0.0 for name, values in own.items()}
+        turning = _turning(own[SPEED]) if SPEED in own else np.zeros(len(run), bool)
         mended = dict(run.columns)
         for name, values in own.items():
             others = [each for other, each in changes.items() if other != name]
             find = _standing if name.rpartition(".")[2] in LIVING else _hanging
             still, jumping = find(run.time, values, changes[name], others), _jumping(values)
+            jumping &= ~turning | (find is _hanging)
             if still.any():
                 told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
             if jumping.any():
@@ -276,6 +278,13 @@ def _jumping(values: FloatArray) -> np.ndarray:
     if len(steps):
         none[1:-1] = off > JUMPS * float(np.median(steps))
     return none if none.mean() <= MOST else np.zeros(len(values), bool)
+
+
+def _turning(speed: FloatArray) -> np.ndarray:
+    """Two samples (samples,) on either side of a reversal: in a sparse log what carries the winch steps there by twice
+    the friction, between two ramps, and stands out from both of its neighbours."""
+    turns = np.concatenate([[False], speed[:-1] * speed[1:] < 0.0, [False]])
+    return np.asarray(np.convolve(turns, np.ones(4), "same")[1:] > 0.5)
 
 
 def _length(time: FloatArray, marked: np.ndarray) -> float:

@@ -17,12 +17,20 @@ def likeliest_mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
     """What the balance says, or that no single mistake closes it; nothing where the runs fit as they stand.
 
     Of a hydraulic winch it is known what friction is ordinary; of another drive, whose friction and inertia may be most
-    of its torque, a misfit is worth a word and refutes nothing.
+    of its torque, a misfit is worth a word and refutes nothing; but neither turns a sign round in some of the runs.
     """
     findings = _mistake(diagnosis, crane)
-    if crane.drive.hydraulic:
+    if crane.drive.hydraulic or _turned_in_some(diagnosis):
         return findings
     return [replace(each, severity="warning") if each.contradicts else each for each in findings]
+
+
+def _turned_in_some(diagnosis: Diagnosis) -> bool:
+    """Whether a sign is the other way round in some of the runs alone, and all of them fit once it is turned back."""
+    best = diagnosis.best
+    if best is None or best.mistake.cause != "sign":
+        return False
+    return len(best.runs) < len(diagnosis.names) and max(best.scores) <= CONTRADICTS
 
 
 def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:

@@ -1120,6 +1120,21 @@ def test_what_no_search_looks_for_is_asked_of_whatever_is_tied_to_it(monkeypatch
     assert _company(None, found) == ("asked" if asked else Company(names[1:], (), ("fourth",)))
 
 
+@pytest.mark.parametrize(("estimated", "partners", "asked"), [
+    ("ab", (), True), ("a", (), False), ("a", ("a partner",), True), ("a_shape", (), False),
+])  # fmt: skip
+def test_what_is_known_together_is_asked_of_two_estimates_and_of_what_is_tied(monkeypatch, estimated, partners, asked):
+    """A shape that was chosen from a grid is no estimate that another may be tied to."""
+    known = {"ab": ("a", "b"), "a": ("a",), "a_shape": ("a", "k")}[estimated]
+    linear = tuple(SimpleNamespace(name=name) for name in "ab")
+    candidate = SimpleNamespace(name="one", linear=linear, latex="", law_name="", free=False)
+    found = Finding(Slot("one", "", (0,), origin=(candidate, None)), (), 0.0, 0.1, 1.0)
+    monkeypatch.setattr(workflow_module, "known_combination", lambda *_: "a + 2 b")
+    repaired = SimpleNamespace(parameters={"one": dict.fromkeys(known, 1.0)}, model=None)
+    effect = workflow_module._effect(None, [found], repaired, Company((), partners))
+    assert effect.combination == ("a + 2 b" if asked else None)
+
+
 @pytest.mark.parametrize(("left_out", "told"), [(3, True), (4, False)])
 def test_a_set_that_leaves_out_more_names_than_it_has_room_for_is_no_answer(monkeypatch, left_out, told):
     """Neither of the search nor, where others are dropped after it, of the proof."""

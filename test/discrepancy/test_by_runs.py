@@ -155,3 +155,17 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
     after = again.by_groups(STUDY, before)
     assert (after is other) is taken
     assert asked == [("one",)] * two
+
+
+@pytest.mark.parametrize(("kind", "laws", "left", "may"), [
+    (UNEXPLAINED, 0, 3.0, True),
+    (MISSING, 1, 3.0, True),  # a name whose law is not exact
+    (MISSING, 1, 0.1, False),
+    (MISSING, 2, 3.0, False),
+])  # fmt: skip
+def test_surfaces_are_drawn_where_nothing_is_named_or_one_law_is_not_exact(kind, laws, left, may):
+    search = SimpleNamespace(
+        verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(slots=("slot",) * laws),
+        cross=SimpleNamespace(excess=lambda _: left),
+    )  # fmt: skip
+    assert workflow._surfaces_may_say_more(search) is may

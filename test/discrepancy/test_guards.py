@@ -854,6 +854,18 @@ def test_no_law_is_asked_where_a_curve_leaves_nothing_of_any_run(train, locked, 
     assert _needs_a_rival_law(Trial(search, None, *sides)) is asked
 
 
+@pytest.mark.parametrize(("slots", "left", "asked"), [
+    ((), 3.0, False), (SLOTS[:1], 3.0, True), (SLOTS[:1], 0.1, False), (SLOTS, 0.1, True),
+])  # fmt: skip
+def test_several_names_and_one_whose_law_is_not_exact_are_held_against_the_laws_of_the_grammar(slots, left, asked):
+    cross = SimpleNamespace(excess=lambda _: left)
+    far = SimpleNamespace(size_after=Size(3.0, (3.0, 3.0)), floor=1.0)
+    trial = SimpleNamespace(
+        search=SimpleNamespace(explanation=SimpleNamespace(slots=slots), cross=cross), train=far, holdout=far
+    )
+    assert _needs_a_rival_law(trial) is asked
+
+
 def leaving(rms):
     """Locked runs with so much left, bar, of quiet sensors, where no balance closes better than 0.1 bar."""
     return replace(side(noise(), noise(1)), size_after=Size(rms, (rms, rms)), noise_floor=0.07, least_noise=0.1)

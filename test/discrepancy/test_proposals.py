@@ -168,10 +168,12 @@ def test_a_law_for_its_own_runs_alone_or_that_a_refit_nearly_replaces_is_not_pro
     monkeypatch.setattr(proposals, "declare", lambda *_: declared)
     monkeypatch.setattr(proposals, "in_words", lambda *_: "a law")
     monkeypatch.setattr(proposals, "replace", lambda of, **_: of)
-    search = SimpleNamespace(given=SimpleNamespace(crane=SimpleNamespace(drive=SimpleNamespace(unit="bar"))))
+    monkeypatch.setattr(proposals, "expand_around", lambda *_: expansion)
+    crane = SimpleNamespace(drive=SimpleNamespace(unit="bar"))
+    search = SimpleNamespace(given=SimpleNamespace(crane=crane), expansion=None, cross=cross)
     refit, scored = SimpleNamespace(search=search, holdout=None), SimpleNamespace(law=law, amount=0.1)
     rng = np.random.default_rng(0)
-    proposal = proposals._proven(refit, ("run",), scored, 0.0, lambda *_: expansion, lambda _: trial, rng)
+    proposal = proposals._proven(refit, ("run",), scored, 0.0, lambda _: trial, rng)
     assert (proposal is not None) is said
 
 

@@ -60,9 +60,9 @@ def command(
     from winch_friction.physics.errors import InputError, Problems
     from winch_friction.physics.friction.model import ASSUMED_STD, unstated
     from winch_friction.records.input_mapping import bag_options_of
-    from winch_friction.records.runs import refuse_unknown_kind
-    from winch_friction.replay.recording import replay_recording
-    from winch_friction.replay.settings import settings_from_file
+    from winch_friction.records.runs import is_bag, refuse_unknown_kind
+    from winch_friction.replay.recording import replay_recording, replay_run
+    from winch_friction.replay.settings import ReplaySettings, settings_from_file
     from winch_friction.replay.summary import summary
 
     if recording.is_dir() and any(each.suffix.lower() in (".csv", ".parquet", ".pq") for each in recording.iterdir()):
@@ -94,7 +94,10 @@ def command(
     forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}
     settings = _settings_for(recording, run, settings)
     with stderr.status("replaying"):
-        result = replay_recording(recording, winch, seed, settings, learn=learn, **options)
+        if run is None or is_bag(recording):
+            result = replay_recording(recording, winch, seed, settings, learn=learn, **options)
+        else:
+            result = replay_run(run, winch, seed, settings or ReplaySettings(), learn=learn)
     show_warnings(result.warnings)
     if out is not None:
         from winch_friction.replay.outputs import write_outputs

@@ -1,4 +1,4 @@
-"""What is believed: a stamp that advances, a sender with one voice, and inputs that fit each other.
+"""What is believed: a stamp that advances, a reading that may be, a sender with one voice, inputs that fit each other.
 
 The last are the command and the speed; the load and the drive's torque are in `doubt`.
 """
@@ -9,11 +9,13 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+import numpy as np
+
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, span
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.physics.winch.operating_point import Change, ChannelRanges
 from winch_friction.records.topics import Input, stamp_time
 
 # -- the stamp of a message
@@ -84,6 +86,57 @@ class StampWatch:
         if len(others) >= CONFIRMED_BY and advanced >= CONFIRMED_AFTER - ROUNDING and came >= CAME_OVER:
             return self._believe(stamp, now, Stamp.JUMP)
         return worth
+
+
+# -- a single reading
+UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
+
+
+@dataclass
+class Plausibility:
+    """Judges single readings; keeps the last accepted one of each column."""
+
+    ranges: ChannelRanges
+    _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
+
+    def refusal(self, column: str, stamp: float, value: float) -> str:
+        """Why a reading is not believed, in a few words; empty when it is."""
+        if value != value:
+            return "no number"
+        known = self._known.get(column)
+        if known is None:
+            known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
+        lower, upper, change = known
+        if not lower <= value <= upper:
+            return f"{value:.4g} is outside {lower:.4g} ... {upper:.4g}"
+        if change is not None:
+            last = self._last.get(column)
+            if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
+                return f"{value:.4g} is {abs(value - last[1]):.3g} from the last"
+            self._last[column] = (stamp, value)
+        return ""
+
+    def believes(self, column: str, time: FloatArray, values: FloatArray) -> bool:
+        """Whether `refusal` would say nothing of any of these readings, (samples,), the first being the first."""
+        lower, upper = self.ranges.range(column)
+        if column in self._last or not ((values >= lower) & (values <= upper)).all():  # false for NaN
+            return False
+        change, passed = self.ranges.change(column), np.diff(time)
+        if change is None:
+            return True
+        most = change.at_once + change.per_second * np.maximum(passed, 0.0)
+        near = (passed > -UNKNOWN_AFTER) & (passed < UNKNOWN_AFTER)
+        return not bool((near & (np.abs(np.diff(values)) > most)).any())
+
+    def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
+        if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
+            return False
+        return abs(difference) > change.at_once + change.per_second * max(passed, 0.0)
+
+    def forget(self) -> None:
+        """Another time begins."""
+        self._last.clear()
 
 
 # -- one sender

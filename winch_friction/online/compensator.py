@@ -123,19 +123,19 @@ class CompensatorService:
     ) -> Feedforward | None:
         """One message; an answer to each speed that may be believed."""
         sample = self.inputs.take(source, message, receipt, now, sent)
-        return None if sample is None else self._answer(sample, now)
+        return None if sample is None else self.answer(sample, now)
 
     def take_row(self, sample: Sample, now: float | None = None) -> Feedforward:
         """One row of a run, as if all its values had come at once."""
-        now = sample.time if now is None else now
-        return self._answer(self.inputs.fill(sample, now), now)
+        return self.answer(self.inputs.fill(sample, now), sample.time if now is None else now)
 
-    def _answer(self, sample: Sample, now: float) -> Feedforward:
+    def answer(self, sample: Sample, now: float) -> Feedforward:
+        """The answer to a sample of `inputs`."""
         self._take_over(self.schedule.due(sample.time))
         self.contradictions = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
         self._silence = _Silence(sample.time + self.law.config.max_age)
         self._last_stamp = sample.time
-        asked = self.inputs.hold.stamp("speed_reference", sample.time)
+        asked = self.inputs.stamp("speed_reference", sample.time)
         return self.law.step(sample, now if self.options.paced else None, self.contradictions, asked)
 
     # -- silence

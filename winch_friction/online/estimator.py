@@ -62,13 +62,14 @@ class EstimatorService:
     ) -> Estimate | None:
         """One message; an estimate to each speed that may be believed."""
         sample = self.inputs.take(source, message, receipt, now, sent)
-        return None if sample is None else self._learn(sample)
+        return None if sample is None else self.learn(sample)
 
     def take_row(self, sample: Sample, now: float | None = None) -> Estimate:
         """One row of a run, as if all its values had come at once."""
-        return self._learn(self.inputs.fill(sample, now))
+        return self.learn(self.inputs.fill(sample, now))
 
-    def _learn(self, sample: Sample) -> Estimate:
+    def learn(self, sample: Sample) -> Estimate:
+        """What a sample of `inputs` tells."""
         standing = (f"{name} cannot be taken out" for name in self.law.uncorrectable(sample))
         self.missing = (
             *self.law.crane.drive.lacking(sample),

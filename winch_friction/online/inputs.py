@@ -5,17 +5,24 @@ Readings are obeyed inside the crane's ranges, where they do not change faster t
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from winch_friction.online.agreement import Stamp, StampWatch, Voices
+from winch_friction.online.agreement import Plausibility, Stamp, StampWatch, Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.errors import check, option
-from winch_friction.physics.signals import NAN, Sample
+from winch_friction.physics.signals import NAN, Run, Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import Change, ChannelRanges
-from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, SampleStream
+from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.records.sample_stream import (
+    SIMULTANEOUS,
+    InputHold,
+    SampleStream,
+    group_columns,
+    shown_columns,
+    without_holes,
+)
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- how time is judged
@@ -62,45 +69,6 @@ class ServiceOptions:
         return min(WATCH_PERIOD, WATCH_SHARE * self.watchdog_timeout)
 
 
-# -- a single reading
-UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
-
-
-@dataclass
-class Plausibility:
-    """Judges single readings; keeps the last accepted one of each column."""
-
-    ranges: ChannelRanges
-    _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
-    _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
-
-    def refusal(self, column: str, stamp: float, value: float) -> str:
-        """Why a reading is not believed, in a few words; empty when it is."""
-        if value != value:
-            return "no number"
-        known = self._known.get(column)
-        if known is None:
-            known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
-        lower, upper, change = known
-        if not lower <= value <= upper:
-            return f"{value:.4g} is outside {lower:.4g} ... {upper:.4g}"
-        if change is not None:
-            last = self._last.get(column)
-            if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
-                return f"{value:.4g} is {abs(value - last[1]):.3g} from the last"
-            self._last[column] = (stamp, value)
-        return ""
-
-    def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
-        if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
-            return False
-        return abs(difference) > change.at_once + change.per_second * max(passed, 0.0)
-
-    def forget(self) -> None:
-        """Another time begins."""
-        self._last.clear()
-
-
 # -- all of them
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed is believed
 TWO_VOICES = "two values under one stamp"
@@ -139,6 +107,7 @@ class InputGate:
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit, on_held=self._note_arrival)
         self._refusal = ""
+        self._whole: Run | None = None  # at hand, each row of which shows all there is
         self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
         self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
 
@@ -251,18 +220,40 @@ class InputGate:
     # -- rows of a run
     def fill(self, sample: Sample, now: float | None = None) -> Sample:
         """A run's row as the messages of one instant: implausible values out, holes filled by what is held."""
-        for name in SAMPLE_SCALARS:
-            if not self._admit_quietly(name, sample.time, getattr(sample, name)):
-                setattr(sample, name, NAN)
+        self._strip(sample, zip(SAMPLE_SCALARS, SAMPLE_SCALARS, strict=True), sample.time)
         for group, member in sample.groups.items():
-            for channel in GROUP_CHANNELS:
-                if not self._admit_quietly(f"{group}.{channel}", sample.time, getattr(member, channel)):
-                    setattr(member, channel, NAN)
+            self._strip(member, zip(group_columns(group), GROUP_CHANNELS, strict=True), sample.time)
         self.last_stamp, self.last_arrival = sample.time, sample.time if now is None else now
         return self.hold.fill(sample)
 
-    def _admit_quietly(self, column: str, stamp: float, value: float) -> bool:
-        return value != value or not self._plausible.refusal(column, stamp, value)
+    def rows(self, run: Run) -> Iterator[Sample]:
+        """What `fill` makes of a run's rows, one by one; nothing is held where the run is the first thing that comes
+        and all its values are believed."""
+        if not self._believes(run):
+            yield from map(self.fill, run.samples())
+            return
+        self._whole = run
+        for sample in run.samples():
+            self.last_stamp = self.last_arrival = sample.time
+            yield sample
+        self._whole = None
+
+    def _believes(self, run: Run) -> bool:
+        """Whether every channel of a run shows at every row what is believed; those that it lacks it may lack."""
+        fresh = run.groups == self.hold.groups and not self.hold.ages(0.0)
+        return (
+            fresh
+            and without_holes(run)
+            and all(self._plausible.believes(each, run.time, run[each]) for each in shown_columns(run))
+        )
+
+    def _strip(self, shown: Any, names: Iterable[tuple[str, str]], stamp: float) -> None:
+        """Make what is not believed missing; `names`: the columns, and their fields."""
+        refusal = self._plausible.refusal
+        for column, name in names:
+            value = getattr(shown, name)
+            if value == value and refusal(column, stamp, value):
+                setattr(shown, name, NAN)
 
     # -- time
     def silence(self, now: float) -> float:
@@ -285,6 +276,12 @@ class InputGate:
         self.last_stamp = -math.inf
 
     # -- what is known of the inputs
+    def stamp(self, column: str, time: float) -> float:
+        """Stamp in s of what the sample at `time` s shows of a column; NaN for nothing."""
+        if self._whole is not None:
+            return time if column in self._whole else NAN
+        return self.hold.stamp(column, time)
+
     def ages(self) -> dict[str, float]:
         """Age of every held input at the last speed, s."""
         return self.hold.ages(self.last_stamp)

@@ -1,9 +1,12 @@
 """Run files as CSV: one header line with units, one row per sample; comma, semicolon or tab. Needs no library."""
 
+import codecs
 import csv
 import io
+import itertools
+from array import array
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +20,7 @@ from winch_friction.records.run_checks import Place, checked_run
 from winch_friction.records.unit_names import conversion_to_si
 
 _SHOWN = 3  # places named of one kind of problem
+BLOCK = 10_000  # rows that are texts at one time: 20 MB of a log with 30 columns
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-nan")
 
 
@@ -67,26 +71,25 @@ def header_text(column: str) -> str:
 
 def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
     """A run from a CSV file; raises `InputError` with line and column for whatever cannot be read."""
-    lines, rows = _rows(path, _text(path))
+    table = _Table(path)
     problems = Problems()
     with problems:
-        _check_width(path, lines, rows)
+        table.check_width()
     ragged = bool(problems.found)
-    headers = read_headers(path, rows[0], problems)
+    headers = read_headers(path, table.header, problems)
     if ragged:
         problems.say()
-    place: Place = lambda row: f"line {lines[row + 1]}"
-    cells = list(zip(*rows[1:], strict=True)) or [()] * len(headers)
+    place: Place = lambda row: f"line {table.lines[row]}"
     columns, aside = {}, {}
     bare = [header.name for header in headers if header.known and not header.unit]
-    for header, values in zip(headers, cells, strict=True):
+    for header, cells in zip(headers, table.columns, strict=True):
         if header.known:
-            numbers = _numbers(path, header, values, place, problems)
+            numbers = _numbers(path, header, cells, place, problems)
             columns[header.name] = numbers
             with problems:
                 columns[header.name] = header.to_si(numbers, str(path))
         else:
-            aside[header.text] = _numbers_or_text(values)
+            aside[header.text] = cells.numbers_or_text()
     with problems:
         run = checked_run(
             path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare,
@@ -128,18 +131,20 @@ def with_count(said: list[str], count: int, of: str) -> list[str]:
     return [*said[:-1], f"{said[-1]} (and {more} more {of})"] if more else said
 
 
-def _text(path: Path) -> str:
+def _content(path: Path) -> bytes:
+    """The file in UTF-8, without a mark in front and blank lines behind: those are nobody's data."""
+    content = path.read_bytes()
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        blank = not content.strip() or not (content.isascii() or content.decode("utf-8-sig").strip())
     except UnicodeDecodeError as error:
         raise InputError(
             f"{path}: not a text file (byte {error.start} is not UTF-8); expected CSV (import reads others)"
         ) from error
-    if "\0" in text:
+    if b"\0" in content:
         raise InputError(f"{path}: not a text file (it holds zero bytes); expected CSV")
-    if not text.strip():
+    if blank:
         raise InputError(f"{path}: the file is empty; expected a header line with column names")
-    return text.rstrip("\r\n") + "\n"  # blank lines at the end are nobody's data
+    return content.removeprefix(codecs.BOM_UTF8).rstrip(b"\r\n") + b"\n"
 
 
 def separator_of(header: str) -> str:
@@ -147,20 +152,91 @@ def separator_of(header: str) -> str:
     return max(",;\t", key=header.count)
 
 
-def _rows(path: Path, text: str) -> tuple[list[int], list[list[str]]]:
-    """The number of each row's last line, and its cells."""
-    header = text.partition("\n")[0]
-    # a StringIO would hold four bytes a letter
-    stream = io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8", newline="")
-    reader = csv.reader(stream, delimiter=separator_of(header))
-    lines, rows = [], []
-    try:
-        for row in reader:
-            lines.append(reader.line_num)
+@dataclass
+class _Cells:
+    """A column's cells, block by block: as numbers where all of a block are, else as they stand."""
+
+    known: bool  # what the contract does not know may be text anywhere, and stays as it stands
+    blocks: list[Any] = field(default_factory=list)
+
+    def add(self, texts: Sequence[str]) -> None:
+        """The next block."""
+        try:
+            self.blocks.append(as_floats(texts) if self.known else texts)
+        except ValueError:  # a cell that is empty, or no number
+            self.blocks.append(texts)
+
+    def numbers(self) -> tuple[FloatArray, list[tuple[int, str]]]:
+        """All as numbers, and the row and text of each cell that is none: NaN there, and where a cell is empty."""
+        parts, bad, first = [np.empty(0)], list[tuple[int, str]](), 0
+        for block in self.blocks:
+            numbers = block if isinstance(block, np.ndarray) else [_number(text) for text in block]
+            bad += [(first + k, block[k]) for k, number in enumerate(numbers) if number is None]
+            parts.append(np.array(numbers, dtype=float))  # NaN for None
+            first += len(block)
+        return np.concatenate(parts), bad
+
+    def numbers_or_text(self) -> Any:
+        """All as numbers where all are or are empty, else as texts."""
+        texts = list(itertools.chain.from_iterable(self.blocks))
+        try:
+            return as_floats([text or "nan" for text in texts])
+        except ValueError:
+            return np.array(texts, dtype=object)
+
+
+class _Table:
+    """A file's cells by columns, read a block of rows at a time: as texts those of a million rows would take ten times
+    what the file does.
+
+    `header`: the cells of its first line; `lines`: the number of each further row's last line.
+    """
+
+    def __init__(self, path: Path) -> None:
+        content = _content(path)
+        separator = separator_of(content.partition(b"\n")[0].decode())
+        reader = csv.reader(io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline=""), delimiter=separator)
+        del content  # the stream's own now
+        self._path, self.lines, self._ragged = path, array("q"), list[tuple[int, int]]()
+        try:
+            self.header = next(reader)
+            named = (cell.partition("[")[0].strip() for cell in self.header)
+            self.columns = [_Cells(column_unit(name) is not None) for name in named]
+            while rows := self._block(reader):
+                self._add(rows)
+        except csv.Error as error:
+            raise InputError(f"{path}: line {reader.line_num}: {error}") from error
+
+    def _block(self, reader: Any) -> list[list[str]]:
+        rows = []
+        for row in itertools.islice(reader, BLOCK):
+            self.lines.append(reader.line_num)
             rows.append(row)
-    except csv.Error as error:
-        raise InputError(f"{path}: line {reader.line_num}: {error}") from error
-    return lines, rows
+        return rows
+
+    def _add(self, rows: list[list[str]]) -> None:
+        width, first = len(self.header), len(self.lines) - len(rows)
+        self._ragged += [(self.lines[first + k], len(row)) for k, row in enumerate(rows) if len(row) != width]
+        if not self._ragged:
+            for cells, texts in zip(self.columns, zip(*rows, strict=True), strict=True):
+                cells.add(texts)
+
+    def check_width(self) -> None:
+        """Raise `InputError` for a first line that is no header, and for rows of another length."""
+        path, width = self._path, len(self.header)
+        if self.header and self.header[0].startswith("#"):
+            raise InputError(
+                f"{path}: line 1 is a remark; a run's first line is its header (winch-friction import reads logs with "
+                "lines above it; a supplier's table is for winch-friction identify motor)"
+            )
+        if not width:
+            raise InputError(f"{path}: line 1 is blank; expected the header line there")
+        said = [
+            f"{path}: line {line}: {count} values for {width} columns" if count else f"{path}: line {line}: blank line"
+            for line, count in self._ragged[:_SHOWN]
+        ]
+        if said:
+            raise InputError(*with_count(said, len(self._ragged), "lines"))
 
 
 def read_headers(path: Path, cells: Sequence[str], problems: Problems) -> list[Header]:
@@ -176,41 +252,19 @@ def read_headers(path: Path, cells: Sequence[str], problems: Problems) -> list[H
     return headers
 
 
-def _check_width(path: Path, lines: Sequence[int], rows: Sequence[Sequence[str]]) -> None:
-    width = len(rows[0])
-    if rows[0] and rows[0][0].startswith("#"):
-        raise InputError(
-            f"{path}: line 1 is a remark; a run's first line is its header (winch-friction import reads logs with "
-            "lines above it; a supplier's table is for winch-friction identify motor)"
-        )
-    if not width:
-        raise InputError(f"{path}: line 1 is blank; expected the header line there")
-    bad = [(line, row) for line, row in zip(lines, rows, strict=True) if len(row) != width]
-    if bad:
-        said = [
-            f"{path}: line {line}: {len(row)} values for {width} columns" if row else f"{path}: line {line}: blank line"
-            for line, row in bad[:_SHOWN]
-        ]
-        raise InputError(*with_count(said, len(bad), "lines"))
-
-
-def _numbers(path: Path, header: Header, values: Sequence[str], place: Place, problems: Problems) -> FloatArray:
+def _numbers(path: Path, header: Header, cells: _Cells, place: Place, problems: Problems) -> FloatArray:
     """A column's numbers; a cell that is none is gathered, and NaN."""
-    try:
-        return as_floats(values)
-    except ValueError:  # a cell that is empty, or no number
-        numbers = [_number(text) for text in values]
-    bad = [row for row, number in enumerate(numbers) if number is None]
+    numbers, bad = cells.numbers()
     if bad:
-        at = [f"{path}: {place(row)}, column '{header.text}': '{values[row].strip()[:40]}'" for row in bad[:_SHOWN]]
-        foreign = len(bad) == len(values) or _number(values[bad[0]].replace(",", ".")) is not None
+        at = [f"{path}: {place(row)}, column '{header.text}': '{text.strip()[:40]}'" for row, text in bad[:_SHOWN]]
+        foreign = len(bad) == len(numbers) or _number(bad[0][1].replace(",", ".")) is not None
         advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
-        if all(_number(values[row].replace("_", "")) is not None for row in bad[:_SHOWN]):
+        if all(_number(text.replace("_", "")) is not None for _, text in bad[:_SHOWN]):
             advice = "write it without '_'"
         said = [f"{each} is not a number; {advice}" for each in at]
         with problems:
             raise InputError(*with_count(said, len(bad), "like it in this column"))
-    return np.array([np.nan if number is None else number for number in numbers])
+    return numbers
 
 
 def as_floats(values: Sequence[str]) -> FloatArray:
@@ -228,13 +282,6 @@ def _number(text: str) -> float | None:
         return None if "_" in text else float(text)
     except ValueError:
         return None
-
-
-def _numbers_or_text(values: Sequence[str]) -> Any:
-    try:
-        return as_floats([text or "nan" for text in values])
-    except ValueError:
-        return np.array(values, dtype=object)
 
 
 def _written(values: Any) -> list[Any]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, limits_of, plausible
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, limits_of
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
@@ -23,6 +23,7 @@ from winch_friction.records.topics import Input, TopicMap, stamp_time
 SIMULTANEOUS = 1e-6  # s; below it two stamps differ by their rounding alone (a Unix time has 2e-7 s)
 DEPTH = 1024  # values kept per input: all that a node which was paused for five seconds at 200 Hz finds waiting
 NOTHING = math.nan, math.nan  # stamp and value of an input that shows nothing
+NO_GROUP = GroupSample()  # ... of a motor group that a sample does not have
 MOST_STROKE = 2.0  # of max_displacement: a feedback in per cent shows more, and no scale that is off so much
 
 
@@ -54,16 +55,6 @@ class InputHold:
         held.append((time, value))
         return True
 
-    def put_sample(self, sample: Sample) -> None:
-        """Take every finite value of a sample at the sample's own time."""
-        for name in SAMPLE_SCALARS:
-            self.put(name, sample.time, getattr(sample, name))
-        for group, member in sample.groups.items():
-            if group not in self.groups:
-                self.groups = (*self.groups, group)
-            for channel in GROUP_CHANNELS:
-                self.put(f"{group}.{channel}", sample.time, getattr(member, channel))
-
     def sample(self, time: float) -> Sample:
         """The winch at `time` s: every held value that is young enough, NaN elsewhere."""
         scalars = {name: self._value(name, time) for name in SAMPLE_SCALARS}
@@ -73,19 +64,29 @@ class InputHold:
         return Sample(time=time, groups=members, **scalars)
 
     def fill(self, sample: Sample) -> Sample:
-        """`sample` with its holes filled by what is held; what it brings itself is never replaced."""
-        self.put_sample(sample)
-        held = self.sample(sample.time)
-        for name in SAMPLE_SCALARS:
-            _keep(sample, held, name)
-        for group, member in sample.groups.items():
-            for channel in GROUP_CHANNELS:
-                _keep(member, held.groups[group], channel)
-        return held
+        """`sample` with its holes filled by what is held; what it brings itself is held, and never replaced."""
+        for group in sample.groups:
+            if group not in self.groups:
+                self.groups = (*self.groups, group)
+        time, take = sample.time, self._take
+        scalars = {name: take(name, time, getattr(sample, name)) for name in SAMPLE_SCALARS}
+        members = {}
+        for group in self.groups:
+            own, columns = sample.groups.get(group, NO_GROUP), group_columns(group)
+            members[group] = GroupSample(
+                *[take(column, time, getattr(own, name)) for column, name in zip(columns, GROUP_CHANNELS, strict=True)]
+            )
+        return Sample(time=time, groups=members, **scalars)
+
+    def _take(self, column: str, time: float, value: float) -> float:
+        """A value that is held from now on; what is held, where it is one that no sensor can mean."""
+        self.put(column, time, value)
+        lower, upper = limits_of(column)
+        return value if lower <= value <= upper else self._value(column, time)
 
     def samples(self, run: Run) -> Iterator[Sample]:
         """A run's samples with NaN entries filled the same way."""
-        if self.groups in ((), run.groups) and _without_holes(run):
+        if self.groups in ((), run.groups) and without_holes(run):
             yield from run.samples()
             return
         for sample in run.samples():
@@ -139,23 +140,21 @@ def group_columns(group: str) -> tuple[str, ...]:
     return tuple(f"{group}.{channel}" for channel in GROUP_CHANNELS)
 
 
-def _without_holes(run: Run) -> bool:
+def shown_columns(run: Run) -> list[str]:
+    """The columns of a run that its samples show; of a motor group all, whether they are there or not."""
+    return [name for name in SAMPLE_SCALARS if name in run] + [c for g in run.groups for c in group_columns(g)]
+
+
+def without_holes(run: Run) -> bool:
     """Whether every channel of a run that is there says something plausible at every row: nothing is held then."""
-    names = [name for name in SAMPLE_SCALARS if name in run] + [c for g in run.groups for c in group_columns(g)]
     return all(
         name in run and bool(((run[name] >= limits_of(name)[0]) & (run[name] <= limits_of(name)[1])).all())
-        for name in names
+        for name in shown_columns(run)
     )
 
 
 def _stamp(held: tuple[float, float]) -> float:
     return held[0]
-
-
-def _keep(own: Any, held: Any, name: str) -> None:
-    value = getattr(own, name)
-    if plausible(name, value):
-        setattr(held, name, value)
 
 
 # -- from messages to samples

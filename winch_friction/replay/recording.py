@@ -72,9 +72,7 @@ def replay_run(
     begin = float(run.time[0])
     compensator = CompensatorVoice(crane, seed, topics, settings, begin)
     estimator = EstimatorVoice(crane, seed, topics, settings, begin)
-    for given, learnt_from in zip(run.samples(), run.samples(), strict=True):
-        compensator.take_row(given)
-        learned = estimator.take_row(learnt_from)
+    for _, learned in zip(compensator.take_rows(run), estimator.take_rows(run), strict=True):
         if learned is not None and learn:
             compensator.offer(learned)
     return _replayed(run.name, compensator, estimator, run.warnings)

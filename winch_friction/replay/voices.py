@@ -1,5 +1,6 @@
 """The two services along a recording: what they say, sample by sample and in the silences."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
@@ -9,7 +10,7 @@ from winch_friction.online.inputs import ServiceOptions
 from winch_friction.online.intake import parse
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_file import Message
 from winch_friction.records.topics import TopicMap
@@ -79,9 +80,11 @@ class CompensatorVoice:
         last = self.service.inputs.last_stamp
         return isfinite(last) and stamp - last > PAUSE
 
-    def take_row(self, sample: Sample) -> None:
-        """One row of a run."""
-        self.steps.take(self.service.take_row(sample))
+    def take_rows(self, run: Run) -> Iterator[None]:
+        """A run, one row at a step."""
+        for sample in self.service.inputs.rows(run):
+            self.steps.take(self.service.answer(sample, sample.time))
+            yield
 
 
 @dataclass
@@ -109,7 +112,8 @@ class EstimatorVoice:
         self.record.take(estimate)
         return self.service.model_due(now)
 
-    def take_row(self, sample: Sample) -> FrictionModel | None:
-        """One row of a run; the model that the node would have published after it."""
-        self.record.take(self.service.take_row(sample))
-        return self.service.model_due(sample.time)
+    def take_rows(self, run: Run) -> Iterator[FrictionModel | None]:
+        """A run, one row at a step; the model that the node would have published after each."""
+        for sample in self.service.inputs.rows(run):
+            self.record.take(self.service.learn(sample))
+            yield self.service.model_due(sample.time)

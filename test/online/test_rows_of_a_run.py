@@ -1,0 +1,86 @@
+"""A whole run in one go: what its rows one by one would have given, however sound they are."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sea import CRANE, SEED
+
+from winch_friction import simulate
+from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.physics.channels import SLOW_INPUTS
+from winch_friction.physics.signals import Run
+from winch_friction.records.sample_stream import InputHold
+from winch_friction.records.topics import TopicMap
+
+SOUND = simulate("ahc_55t_215", CRANE, SEED, duration=2.0).run
+ROW = 40
+
+
+def _gate(run: Run) -> InputGate:
+    return InputGate(
+        CRANE, TopicMap(groups=run.groups), InputHold(run.groups, 0.1, dict(SLOW_INPUTS)), ServiceOptions(), list
+    )
+
+
+def _with(column: str, value: float) -> Run:
+    values = SOUND[column].copy()
+    values[ROW] = value
+    return replace(SOUND, columns={**SOUND.columns, column: values})
+
+
+def _without(*columns: str) -> Run:
+    return replace(SOUND, columns={name: values for name, values in SOUND.columns.items() if name not in columns})
+
+
+LATER = SOUND.time > 1.0
+SPEED = float(SOUND["motor_speed"][ROW])
+RUNS = {
+    "sound": SOUND,
+    "a hole": _with("active.pressure_a", np.nan),
+    "a slow channel": _with("hook_load", np.nan),
+    "no sensor can say it": _with("passive.pressure_a", 1e12),
+    "not this crane's": _with("active.displacement", 25.0 * CRANE.max_displacement),
+    "too fast": _with("motor_speed", SPEED + 150.0),
+    "too fast, downwards": _with("motor_speed", SPEED - 150.0),
+    "other oil after a pause": replace(
+        SOUND,
+        columns={
+            **SOUND.columns,
+            "time": SOUND.time + np.where(LATER, 3.0, 0.0),
+            "oil_temperature": SOUND["oil_temperature"] + np.where(LATER, 30.0, 0.0),
+        },
+    ),
+    "no command": _without("speed_reference"),
+    "no load": _without("hook_load"),
+    "no pressure": _without("passive.pressure_b"),
+}
+
+
+@pytest.mark.parametrize("which", RUNS)
+def test_a_run_in_one_go_is_its_rows_one_by_one(which: str) -> None:
+    run = RUNS[which]
+    whole, single = _gate(run), _gate(run)
+    columns = ["speed_reference", "hook_load"]
+    count = 0
+    for fast, row in zip(whole.rows(run), run.samples(), strict=True):
+        slow = single.fill(row)
+        assert repr(fast) == repr(slow)
+        assert [str(whole.stamp(c, fast.time)) for c in columns] == [str(single.stamp(c, slow.time)) for c in columns]
+        assert (whole.last_stamp, whole.last_arrival) == (single.last_stamp, single.last_arrival)
+        count += 1
+    assert count == len(SOUND)
+
+
+@pytest.mark.parametrize("which", RUNS)
+def test_only_a_run_without_a_hole_or_a_doubt_goes_through_unheld(which: str) -> None:
+    gate = _gate(RUNS[which])
+    assert len(list(gate.rows(RUNS[which]))) == len(SOUND)
+    assert (not gate.ages()) == (which in ("sound", "other oil after a pause", "no command", "no load"))
+
+
+def test_a_run_after_a_message_is_taken_row_by_row() -> None:
+    """What is held may fill its first rows."""
+    gate = _gate(SOUND)
+    gate.hold.put("rope_force", float(SOUND.time[0]), 5e5)
+    assert [sample.rope_force for sample in gate.rows(SOUND)][:2] == [5e5, 5e5]

@@ -187,7 +187,10 @@ def _model_of(
     return Repair(model, parameters, tuple(cut))
 
 
-def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: Sequence[str], crane: Crane) -> Repair:
+def polished(
+    drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: Sequence[str], crane: Crane,
+    known: Given | None = None,
+) -> Repair:  # fmt: skip
     """The model fitted once more to the runs of these names along the path by which its file will be read.
 
     All runs are prepared at first, for all of them decide whether their wire gives, and by fewer it may be otherwise.
@@ -196,7 +199,7 @@ def polished(drafted: Repair, seed: FrictionModel, runs: Sequence[Run], train: S
     shrink the gap are not taken. The covariance is the last fit's, wider where more than noise is left.
     """
     best = drafted
-    now = meet(runs, crane, best.model, train).only(train)
+    now = meet(runs, crane, best.model, train, known).only(train)
     prior, loose = _prior(drafted, seed)
     for _ in range(LIMITS.polishing):
         step, covariance, deviations = _step(now, prior, loose)

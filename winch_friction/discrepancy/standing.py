@@ -194,8 +194,8 @@ def tried(study: Study, search: Search) -> Trial:
     """The repaired model of a search and what it leaves of all runs, read back from its file."""
     search, split = placed(search, study.split), study.split
     repaired = draft(search, search.explanation, _provenance(study, search))
-    repaired = polished(repaired, search.given.model, split.runs, split.train, study.crane)
-    after = meet(split.runs, study.crane, read_back(repaired.model), ())
+    repaired = polished(repaired, search.given.model, split.runs, split.train, study.crane, search.given)
+    after = meet(split.runs, study.crane, read_back(repaired.model), (), search.given)
     sides = (compare(search.given, after, names, study.rng) for names in (split.train, split.holdout))
     return Trial(search, repaired, *sides)
 

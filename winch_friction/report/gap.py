@@ -11,6 +11,7 @@ import numpy as np
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
+from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
 from winch_friction.physics.friction.table import FACTORS, at_knots, in_windows, tabulated
 from winch_friction.report.base import Section, TextSection, write_report
@@ -58,8 +59,8 @@ def gap_sections(result: GapResult, provenance: Mapping[str, Any] | None = None)
 
 
 def _subtitle(result: GapResult) -> str:
-    learned, locked = len(result.train.runs), len(result.holdout.runs)
-    return f"Model {result.seed_model.name}; {learned} runs learned from, {locked} locked for the proof."
+    learned, locked = counted(len(result.train.runs), "run", "runs"), len(result.holdout.runs)
+    return f"Model {result.seed_model.name}; {learned} learned from, {locked} locked for the proof."
 
 
 def _physics(result: GapResult) -> str:
@@ -171,7 +172,7 @@ def _proof(result: GapResult) -> str:
         return ""
     rows = [
         ("model as given", side.size_before.value, _interval(side.size_before.interval)),
-        ("repaired model", side.size_after.value, _interval(side.size_after.interval)),
+        ("model.yaml, read back", side.size_after.value, _interval(side.size_after.interval)),
         ("independent noise", side.noise_floor, "–"),
     ]
     locked = ", ".join(run.name for run in side.runs)
@@ -202,11 +203,24 @@ def _regions(result: GapResult) -> str:
 
 
 def _proposals(result: GapResult) -> str:
+    proposals = result.content()["proposals"]
+    if not proposals:
+        return ""
+    unit = shown_unit(result)
+    said = "".join(
+        paragraph(f"{p['sentence'][:1].upper()}{p['sentence'][1:]}.")
+        + latex_html(p["latex"])
+        + table_html(
+            ("parameter", "value", "σ", "unit"),
+            [(name, e["value"], e["std"], for_people(e["unit"])) for name, e in p["parameters"].items()], digits=4,
+        )
+        for p in proposals
+    )  # fmt: skip
     rows = [(p["equation"], p["holdout"]["before"], p["holdout"]["after"],
              100.0 * min(p["holdout"]["closed"], 1.0), p["terms_file"], p["model_file"])
-            for p in result.content()["proposals"]]  # fmt: skip
-    columns = ("equation, SI", "gap before", "gap after", "closed [%]", "terms", "model")
-    return table_html(columns, rows, "Laws proposed for what has no name; locked runs", 3) if rows else ""
+            for p in proposals]  # fmt: skip
+    columns = ("equation, SI", f"gap before [{unit}]", f"gap after [{unit}]", "closed [%]", "terms", "model")
+    return said + table_html(columns, rows, "Laws proposed for what has no name; locked runs", 3)
 
 
 def _adequacy(result: GapResult) -> str:
@@ -251,6 +265,8 @@ def _plan(result: GapResult) -> str:
         return ""
     rows = list(plan["considered"].items())
     note = paragraph(str(plan["note"])) if plan.get("note") else ""
+    if not rows:
+        return note
     return table_html(("scenario", "expected separation [σ]"), rows, "Experiments that were weighed", 3) + note
 
 

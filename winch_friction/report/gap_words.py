@@ -7,6 +7,7 @@ import numpy as np
 from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
+from winch_friction.physics.errors import counted
 from winch_friction.report.tables import number
 
 if TYPE_CHECKING:
@@ -20,18 +21,28 @@ FAST = 0.9  # quantile of speed from which blocks count as top speed
 
 def verdict_sentence(result: "GapResult") -> str:
     """The verdict in one sentence."""
-    titles = " and ".join(f"{e.name}, {_lowered(effect_text(e.name).title)}" for e in result.effects)
+    titles = "; ".join(f"{e.name} ({_lowered(effect_text(e.name).title)})" for e in result.effects)
     if result.verdict == "nothing_missing":
         return "Nothing is missing: what is left is noise and parameters within the model's own uncertainty."
     if result.verdict == "unexplained":
         signals = ", ".join(each.signal for each in result.depends) or "no recorded signal"
-        return f"Something is missing that no named effect explains; it depends on {signals} ({result.refused})."
+        said = f"Something is missing that no named effect explains; it depends on {signals} ({result.refused})."
+        return f"{said} {_proposed(result)}".rstrip()
     if result.verdict == "insufficient":
         return f"These runs cannot answer the question: {result.refused}."
     if result.verdict == "ambiguous":
         rivals = "; ".join(f"{e.name} or {' or '.join(e.rivals)}" for e in result.effects if e.rivals)
         return f"Missing: {titles}. These runs cannot tell apart: {rivals}."
     return f"Missing: {titles}."
+
+
+def _proposed(result: "GapResult") -> str:
+    """The simplest law that is proposed, in a sentence; nothing without one."""
+    if not result.proposals:
+        return ""
+    first, more = result.proposals[0].sentence, len(result.proposals) - 1
+    others = f" ({counted(more, 'other law does', 'other laws do')} about as well)" if more else ""
+    return f"A law is proposed{others}: {first}."
 
 
 def _lowered(title: str) -> str:
@@ -133,10 +144,28 @@ def next_steps(result: "GapResult") -> list[str]:
             "compensator load it (`winch-friction load model.yaml`); it takes over without a bump."
         )
     if result.verdict == "insufficient":
-        steps += [f"Bring runs with more of it: {each.sentence}." for each in result.adequacy if not each.met]
+        lacking = [each for each in result.adequacy if not each.met]
+        steps += [
+            f"Bring {'' if each.sentence == each.what else 'runs with more of it: '}{each.sentence}."
+            for each in lacking
+        ]
     if result.verdict == "unexplained":
-        steps.append("Plot the residual below over the named signals, or declare a term of your own and pass it with "
-                     "--effects.")  # fmt: skip
+        steps += _after_no_name(result)
     if result.verdict == "nothing_missing":
         steps.append("Nothing needs to be done: keep the model.")
     return steps
+
+
+def _after_no_name(result: "GapResult") -> list[str]:
+    """What to do where no effect has the gap's name."""
+    if not result.proposals:
+        return [
+            "Plot what is left, below, over the signals that it depends on, or declare a term of your own and pass it "
+            "with --effects."
+        ]
+    files = "--model proposal_1.yaml --terms-file proposal_1.py"
+    return [
+        "Ask what on this crane could act as the proposed law does: it names no cause.",
+        f"To use it without a cause: `winch-friction replay BAG {files}`; model.yaml does not hold it. Runs of another "
+        "day tell whether it lasts: `winch-friction gap RUNS --model proposal_1.yaml --effects proposal_1.py`.",
+    ]

@@ -5,6 +5,7 @@ so; the damping is nobody's datum and is chosen by what leaves least swinging in
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -96,7 +97,7 @@ def swinging_load(
     judge = _Judge(gap, counts, partial(change, None), besides)
     first = min(len(besides), 1)
     if len(frequencies) == 1 and _changes(length):  # one that pays out twice its length swings by none in the middle
-        followed = _Judge(gap, counts, partial(change, length), besides)
+        followed = judge.of(partial(change, length))
         judge = min((judge, followed), key=lambda each: min(each.by_damping(first, frequencies[0])))
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
@@ -104,7 +105,7 @@ def swinging_load(
             if len(frequencies) > 1:
                 return Swing(on_the_wire(rigid, dt, frequency, ratio), Mode(frequency, ratio))
             lengths: list[FloatArray | None] = [None, *([length] if _changes(length) else [])]
-            judges = [_Judge(gap, counts, partial(change, own), besides) for own in lengths]
+            judges = [judge.of(partial(change, own)) for own in lengths]
             tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
             own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
@@ -204,6 +205,12 @@ class _Judge:
         self._axes = self._orthonormal([column for each in besides for column in each.T])
         self._rigid = self._components(self._gap)
         self._seen: dict[tuple[float, float], tuple[float, FloatArray]] = {}
+
+    def of(self, change: Callable[[float, float], FloatArray]) -> "_Judge":
+        """The same samples and the same beside them, for another change that a mode makes."""
+        other = copy(self)
+        other._change, other._seen = change, {}
+        return other
 
     def left(self, parts: int, frequency: float, ratio: float) -> float:
         """The share of the swinging's variance that a mode leaves beside the first so many parts."""

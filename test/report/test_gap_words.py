@@ -1,0 +1,57 @@
+"""What the page of `gap` says in sentences: each is to be understood without the others, and says what to do."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from winch_friction.report.gap_words import next_steps, verdict_sentence
+
+LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
+
+
+def result(verdict, **more):
+    base = {"effects": [], "depends": (SimpleNamespace(signal="wire_out"),), "refused": "why", "proposals": (),
+            "next_experiment": None, "adequacy": ()}  # fmt: skip
+    return SimpleNamespace(verdict=verdict, **(base | more))
+
+
+def effect(name, *rivals):
+    return SimpleNamespace(name=name, rivals=rivals, law_name=name)
+
+
+def test_several_effects_stand_apart_each_with_its_title():
+    found = result("ambiguous", effects=[effect("coulomb", "dwell_stiction"), effect("inertia_error")])
+    assert verdict_sentence(found) == (
+        "Missing: coulomb (constant friction); inertia_error (inertia differs from the crane file's). These runs "
+        "cannot tell apart: coulomb or dwell_stiction."
+    )
+
+
+@pytest.mark.parametrize(("count", "others"), [(1, ""), (2, " (1 other law does about as well)")])
+def test_a_proposed_law_is_part_of_the_decision_and_of_what_to_do(count, others):
+    found = result("unexplained", proposals=(LAW,) * count)
+    assert verdict_sentence(found).endswith(f"(why). A law is proposed{others}: {LAW.sentence}.")
+    said = " ".join(next_steps(found))
+    assert "--model proposal_1.yaml --terms-file proposal_1.py" in said
+    assert "declare a term" not in said
+
+
+def test_without_a_law_the_user_looks_and_declares_one():
+    found = result("unexplained")
+    assert verdict_sentence(found) == (
+        "Something is missing that no named effect explains; it depends on wire_out (why)."
+    )
+    (said,) = next_steps(found)
+    assert "declare a term of your own" in said
+
+
+@pytest.mark.parametrize(
+    ("what", "sentence", "step"),
+    [
+        ("runs that tell more effects apart (a or b)", None, "Bring runs that tell more effects apart (a or b)."),
+        ("moving time", "moving time: 3 s, needed 15 s", "Bring runs with more of it: moving time: 3 s, needed 15 s."),
+    ],
+)
+def test_what_is_lacking_is_asked_for_in_words(what, sentence, step):
+    check = SimpleNamespace(what=what, sentence=sentence or what, met=False)
+    assert next_steps(result("insufficient", adequacy=(check,))) == [step]

@@ -253,3 +253,30 @@ def test_every_number_of_a_crane_that_cannot_be_is_told_at_once(tmp_path):
         load_crane(path)
     for key in ("gear_ratio", "layer_radii", "max_displacement", "absolute_torque_limit"):
         assert sum(key in each for each in caught.value.problems) == 1
+
+
+@pytest.mark.parametrize(
+    ("written", "instead", "said"),
+    [
+        ("{value: 1.54, ", "{value: 1,54, ", "inertia: 'value: 1,' ends there in YAML; write a decimal point"),
+        ("gear_ratio: 250", "gear_ratio: 250,5", "gear_ratio must be a finite number.*write a decimal point: 250.5"),
+        (
+            "{value: 24.5, unit: kg/m}", "24.5 kg/m",
+            "wire_mass: '24.5 kg/m' is one text; write {value: 24.5, unit: kg/m}",
+        ),
+        ("name: crane_150t", "name: no", "name must be a string, found False .bool.; put it in quotes"),
+        ("name: crane_150t", "name: 2026-01-01", "name must be a string.*; put it in quotes"),
+    ],
+)  # fmt: skip
+def test_how_a_number_or_a_name_is_to_be_written_is_said(written, instead, said):
+    text = (config_directory() / "cranes" / "crane_150t.yaml").read_text()
+    assert written in text
+    with pytest.raises(InputError, match=said):
+        crane_from_content(parse_yaml(text.replace(written, instead, 1), "crane.yaml"), "crane.yaml")
+
+
+def test_a_number_and_an_entry_without_a_value_are_no_decimal_comma():
+    text = "schema: winch_friction.crane/1\nname: x\ngear_ratio: 250\nnotes:\n"
+    with pytest.raises(InputError) as caught:
+        crane_from_content(parse_yaml(text, "crane.yaml"), "crane.yaml")
+    assert "decimal" not in str(caught.value)

@@ -3,6 +3,7 @@ refused in one line that says where.
 """
 
 import contextlib
+import itertools
 import math
 import re
 import sys
@@ -38,6 +39,9 @@ class Section:
     def __init__(self, content: Any, where: str) -> None:
         if not isinstance(content, Mapping):
             raise InputError(f"{where}: expected a mapping of keys (YAML), found {_said(content)}")
+        for (key, value), (after, nothing) in itertools.pairwise(content.items()):
+            if type(value) is type(after) is int and nothing is None:
+                raise InputError(f"{where}: '{key}: {value},' ends there in YAML; write a decimal point, not a comma")
         self.content = content
         self.where = where
         self._asked: set[str] = set()
@@ -66,7 +70,8 @@ class Section:
         """A string."""
         value = self.get(key, default) if default is not None else self.need(key)
         if not isinstance(value, str):
-            raise InputError(f"{self.where}: {key} must be a string, found {_said(value)}")
+            kept = "" if isinstance(value, (list, Mapping)) else "; put it in quotes, as it was meant"
+            raise InputError(f"{self.where}: {key} must be a string, found {_said(value)}{kept}")
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
@@ -95,7 +100,9 @@ def finite(value: Any, where: str) -> float:
         with contextlib.suppress(ValueError, OverflowError):
             value = float(value)
     if not isinstance(value, float) or not math.isfinite(value):
-        raise InputError(f"{where} must be a finite number, found {_said(value)}")
+        comma = isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
+        advice = f"; write a decimal point: {value.strip().replace(',', '.')}" if comma else ""
+        raise InputError(f"{where} must be a finite number, found {_said(value)}{advice}")
     return float(value)
 
 
@@ -109,6 +116,8 @@ def spread(section: Section, key: str = "std") -> float:
 
 def as_quantity(content: Any, si_unit: str, where: str) -> float:
     """A number in SI or a mapping with value and unit, converted to `si_unit`."""
+    if isinstance(content, str) and (behind := re.fullmatch(r"\s*([-+\d.eE]+)\s+([^\s\d]\S*)\s*", content)):
+        raise InputError(f"{where}: '{content}' is one text; write {{value: {behind[1]}, unit: {behind[2]}}}")
     if not isinstance(content, Mapping):
         return finite(content, where)
     section = Section(content, where)

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -13,16 +11,19 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation import suspended_load as wire
-from winch_friction.discrepancy.preparation.loads import estimated_loads
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
 from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
+LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then
+LOAD_CONVERGED = 1e-5  # relative; a tenth of what any load cell tells
+WEIGHED = {"hook_load", "rope_force", "load_torque"}  # columns that say what hangs there
 NAN = float("nan")
 
 
@@ -81,23 +82,15 @@ def meet(
     right, own_crane = _corrected(runs, crane, model)
     loads = estimated_loads(right, own_crane, model)
     old = {run.name: run for run in known.prepared} if known is not None else {}
-    met = partial(_met, crane=own_crane, model=model, loads=loads)
-    prepared = [met(run, old.get(run.name)) for run in right]
+    prepared = [prepare(run, own_crane, model, loads.get(run.name, NAN), before=old.get(run.name)) for run in right]
     agreed = tuple(
-        before if before.wire_mode == mode else met(run, before, mode=mode, spikes=before.spikes)
+        before
+        if before.wire_mode == mode
+        else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes, before=before)
         for run, before, mode in zip(right, prepared, _agreed_modes(prepared), strict=True)
     )
     names = [run.name for run in runs] if fitted is None else fitted
     return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed, names))
-
-
-def _met(
-    run: Run, before: PreparedRun | None, crane: Crane, model: FrictionModel, loads: Mapping[str, float], **agreed: Any
-) -> PreparedRun:
-    """A run as this model sees it, with all that does not hang on the model as it was `before`."""
-    if before is None:
-        return prepare(run, crane, model, loads.get(run.name, NAN), **agreed)
-    return prepare(run, crane, model, loads.get(run.name, NAN), seen=before.seen, **agreed).sharing(before)
 
 
 def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: FrictionModel) -> Given:
@@ -105,8 +98,10 @@ def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: Friction
     own = [run for run in runs if run.name in {each.name for each in before.runs}]
     right, own_crane = _corrected(own, crane, model)
     loads = estimated_loads(right, own_crane, model)
-    met = partial(_met, crane=own_crane, model=model, loads=loads)
-    prepared = [met(run, old, mode=old.wire_mode) for run, old in zip(right, before.prepared, strict=True)]
+    prepared = [
+        prepare(run, own_crane, model, loads.get(run.name, NAN), mode=old.wire_mode, before=old)
+        for run, old in zip(right, before.prepared, strict=True)
+    ]
     found = with_corrections(own, crane, model, loads, prepared, [run.name for run in own])
     return Given(right, own_crane, model, loads, found)
 
@@ -277,3 +272,29 @@ def expand_around(
         new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes, old.seen)
         prepared.append(replace(new, corrections=old.corrections).sharing(old))
     return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
+
+
+def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
+    """Mass in kg per run without `hook_load`: what balances the torque once friction has its say.
+
+    Hoisting and lowering weigh alike, so that friction cancels in the mean.
+    """
+    if not crane.drive.hydraulic:
+        return {}
+    return {run.name: _estimated_load(run, crane, model) for run in runs if not WEIGHED & set(run.columns)}
+
+
+def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
+    load, seen = 0.0, None
+    for _ in range(LOAD_ROUNDS):
+        # a swinging load weighs the same in the mean, so its wire is not looked into
+        prepared = prepare(run, crane, model, load, mode=Mode(0.0, 0.0), spikes=np.zeros(1, bool), seen=seen)
+        seen = prepared.seen
+        gap = prepared.gap[prepared.used] / (prepared.radius[prepared.used] / crane.gear_ratio * GRAVITY)
+        direction = prepared.direction[prepared.used]
+        sides = [np.median(gap[direction == s]) for s in (-1.0, 1.0) if (direction == s).any()]
+        change = float(np.mean(sides)) if sides else 0.0
+        load = max(load + change, 0.0)
+        if abs(change) < LOAD_CONVERGED * load:
+            break
+    return load

@@ -127,6 +127,7 @@ def prepare(
     mode: Mode | None = None,
     spikes: np.ndarray | None = None,
     seen: Seen | None = None,
+    before: PreparedRun | None = None,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
@@ -134,9 +135,11 @@ def prepare(
     close to the true ones. `turning` takes direction and travel from the angle and marks the samples just after
     reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
     known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given. What was
-    `seen` of this very run before does not depend on the model and need not be found again.
+    `seen` of this very run before does not depend on the model and need not be found again; of a run as another model
+    saw it `before`, what is the same is held once.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
+    seen = before.seen if before is not None else seen
     seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
@@ -151,7 +154,7 @@ def prepare(
     )
     if spikes is None:
         spikes = spikes_of(balance.gap, used, grid.dt)
-    return PreparedRun(
+    prepared = PreparedRun(
         name=run.name, start=float(run.time[0]), dt=grid.dt, time=grid.time, speed=motion.speed,
         acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
@@ -168,6 +171,7 @@ def prepare(
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane), seen=seen,
     )  # fmt: skip
+    return prepared if before is None else prepared.sharing(before)
 
 
 def _on_wire(balancing: Balancing, load: SuspendedLoad, mode: Mode | None) -> tuple[Swing, SuspendedLoad, Balance]:

@@ -1,5 +1,7 @@
 """What a sample does not wait for: the functions of a model are compiled before it comes."""
 
+import time
+
 import pytest
 
 from winch_friction.compensation import FeedforwardCompensator
@@ -89,3 +91,18 @@ def test_a_model_that_cannot_be_made_ready_is_refused(crane2_model) -> None:
     intake.offer(model_to_text(crane2_model))
     (refused,) = intake.take()
     assert "not a model (ZeroDivisionError)" in str(refused)
+
+
+def test_whether_there_is_anything_to_take_is_told_without_a_call(crane2_model):
+    """The control thread asks before every torque: of a text that came, of one that is parsed, until it was taken."""
+    intake = ModelIntake()
+    assert not intake.waiting
+    intake.offer(model_to_text(crane2_model))
+    assert intake.waiting
+    found, until = [], time.monotonic() + 20.0
+    while not found and time.monotonic() < until:
+        assert intake.waiting
+        found = intake.take()
+    assert [each.name for each in found] == [crane2_model.name]
+    assert not intake.waiting
+    assert intake.take() == []

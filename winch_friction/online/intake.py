@@ -41,6 +41,7 @@ class ModelIntake:
     ready: Callable[[FrictionModel], None] = lambda _: None
     beside: bool = True
     clock: Callable[[], float] = lambda: 0.0
+    waiting: bool = field(default=False, init=False)  # whether there may be anything to `take`
     _text: str | None = field(default=None, init=False)
     _done: deque[FrictionModel | InputError] = field(default_factory=deque, init=False)  # never replaced: two threads
     _worker: threading.Thread | None = field(default=None, init=False)
@@ -49,22 +50,23 @@ class ModelIntake:
     def offer(self, text: str) -> None:
         """A text has come; it replaces one that waits."""
         self._text = text
+        self.waiting = True
         if not self.beside:
             self._parse()
 
-    @property
-    def waiting(self) -> bool:
-        """Whether there is anything to `take`."""
-        return self._text is not None or bool(self._done)
-
     def take(self) -> list[FrictionModel | InputError]:
         """What has been parsed since; starts on what waits. To be called often: it never waits."""
+        self.waiting = False  # and then told anew: a text may come, and one be done, in the middle of it
         busy = self._worker is not None and self._worker.is_alive()
         if self._text is not None and not busy and self.clock() - self._looked >= PERIOD:
             self._looked = self.clock()
             self._worker = threading.Thread(target=self._parse, name="model", daemon=True)
             self._worker.start()
-        return [self._done.popleft() for _ in range(len(self._done))]
+        done = [self._done.popleft() for _ in range(len(self._done))]
+        parsing = self._worker is not None and self._worker.is_alive()
+        if parsing or self._done or self._text is not None:
+            self.waiting = True
+        return done
 
     def _parse(self) -> None:
         text, self._text = self._text, None

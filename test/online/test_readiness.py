@@ -1,5 +1,6 @@
 """What a sample does not wait for: the functions of a model are compiled before it comes."""
 
+import threading
 import time
 
 import pytest
@@ -95,14 +96,25 @@ def test_a_model_that_cannot_be_made_ready_is_refused(crane2_model) -> None:
 
 def test_whether_there_is_anything_to_take_is_told_without_a_call(crane2_model):
     """The control thread asks before every torque: of a text that came, of one that is parsed, until it was taken."""
-    intake = ModelIntake()
+    begun, go_on = threading.Event(), threading.Event()
+
+    def ready(_):
+        begun.set()
+        go_on.wait(20.0)
+
+    intake = ModelIntake(ready)
     assert not intake.waiting
     intake.offer(model_to_text(crane2_model))
     assert intake.waiting
+    assert intake.take() == []
+    assert begun.wait(20.0)
+    assert intake.take() == []
+    assert intake.waiting  # it is being made ready
+    go_on.set()
     found, until = [], time.monotonic() + 20.0
     while not found and time.monotonic() < until:
         assert intake.waiting
         found = intake.take()
     assert [each.name for each in found] == [crane2_model.name]
+    intake.take()
     assert not intake.waiting
-    assert intake.take() == []

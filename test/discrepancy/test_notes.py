@@ -41,8 +41,10 @@ def test_a_named_cause_whose_law_leaves_more_than_noise_says_so(left, said):
     """More than twice 0.14 bar, 0.1 of noise and 0.1 that no balance closes."""
     side = replace(nothing_compared(), size_after=Size(left, (left, left)), noise_floor=0.1, least_noise=0.1)
     assert isinstance(side, Side)
-    notes = _inexact(side, "bar")
+    notes = _inexact(side, [], "bar")
     assert bool(notes) is said
+    more = _inexact(side, ["wire_out", "acceleration"], "bar")
+    assert [note + ", and what is left goes with wire_out, acceleration" for note in notes] == more
     assert all("keep 0.3 bar where their noise is 0.1" in note for note in notes)
 
 

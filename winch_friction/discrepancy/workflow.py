@@ -19,6 +19,7 @@ from winch_friction.discrepancy.answer import (
     GapResult,
     Side,
     named,
+    telling,
     unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate
@@ -163,6 +164,7 @@ def assemble(study: Study, trial: Trial) -> GapResult:
     tied = {name: _company(search, each) for name, each in first.items()}
     kind = AMBIGUOUS if verdict.kind == MISSING and any(own.partners for own in tied.values()) else verdict.kind
     left = [LEFT_AS_GIVEN] if kind == UNEXPLAINED and repaired.model.values == given.model.values else []
+    goes_with = [each.signal for each in named(telling(cross, search.left))]
     drift = drift_note((trial.train, trial.holdout), search.explanation.names, given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
@@ -171,15 +173,13 @@ def assemble(study: Study, trial: Trial) -> GapResult:
         depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
         untestable=search.untestable, model=_concluded(repaired.model, given.model, kind), seed_model=given.model,
-        next_experiment=experiment.content() if experiment else None,
-        next_scenario=experiment.text if experiment else "",
+        next_experiment=experiment and experiment.content(), next_scenario=experiment.text if experiment else "",
         notes=(
             *_notes(runs, given.loads), *_amounts(repaired.model, runs),
             *_times(repaired.model, given.model, runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
-            *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *filter(None, [drift]),
-            *left,
-            *(_inexact(trial.holdout, given.crane.drive.unit) if found else []),
+            *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *filter(None, [drift]), *left,
+            *(_inexact(trial.holdout, goes_with, given.crane.drive.unit) if found else []),
         ),
     )  # fmt: skip
 
@@ -289,12 +289,12 @@ def _times(model: FrictionModel, seed: FrictionModel, runs: Sequence[Run]) -> li
     return list(dict.fromkeys(found))
 
 
-def _inexact(side: Side, unit: str) -> list[str]:
-    """That more than noise is left beside what is named."""
-    left = side.size_after.value
+def _inexact(side: Side, goes_with: Sequence[str], unit: str) -> list[str]:
+    """That more than noise is left beside what is named, and with which signals it goes."""
+    left, also = side.size_after.value, f", and what is left goes with {', '.join(goes_with)}" if goes_with else ""
+    said = (
+        f"keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}: the cause is named, its law is not exact"
+    )
     if left <= LIMITS.far_off_the_floor * side.floor:
         return []
-    return [
-        f"the locked runs keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}: the cause is named, its "
-        "law is not exact, or a smaller effect is beside it"
-    ]
+    return [f"the locked runs {said}, or a smaller effect is beside it{also}"]

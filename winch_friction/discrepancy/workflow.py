@@ -172,8 +172,8 @@ def assemble(study: Study, trial: Trial) -> GapResult:
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
         depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
-        untestable=search.untestable, model=_concluded(repaired.model, given.model, kind), seed_model=given.model,
-        next_experiment=experiment and experiment.content(), next_scenario=experiment.text if experiment else "",
+        next_experiment=experiment.content() if experiment else None, model=_concluded(repaired.model, given.model, kind),
+        next_scenario=experiment.text if experiment else "", untestable=search.untestable, seed_model=given.model,
         notes=(
             *_notes(runs, given.loads), *_amounts(repaired.model, runs),
             *_times(repaired.model, given.model, runs), *repaired.cut,

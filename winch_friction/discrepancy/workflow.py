@@ -169,11 +169,11 @@ def assemble(study: Study, trial: Trial) -> GapResult:
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
-        unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout,
+        unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout, seed_model=given.model,
         depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
-        next_experiment=experiment.content() if experiment else None, model=_concluded(repaired.model, given.model, kind),
-        next_scenario=experiment.text if experiment else "", untestable=search.untestable, seed_model=given.model,
+        next_experiment=experiment.content() if experiment else None, untestable=search.untestable,
+        next_scenario=experiment.text if experiment else "", model=_concluded(repaired.model, given.model, kind),
         notes=(
             *_notes(runs, given.loads), *_amounts(repaired.model, runs),
             *_times(repaired.model, given.model, runs), *repaired.cut,

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.catalogue import candidates_for, run_states, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.detectors.delay import without_delay
+from winch_friction.discrepancy.detectors.delay import most_of_it, without_delay
 from winch_friction.discrepancy.detectors.lost_flow import AIR, LEAK, FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
@@ -195,6 +195,8 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
     for _ in range(LIMITS.most_expansions):
         shapes = (*selection.final.slots, *near(cross, selection.final))
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
+        if not selection.final.slots and (most := most_of_it(cross, selection.base)):
+            shapes = (most,)
         late = next((each for each in shapes if is_long_delay(each)), None)
         if late is not None:
             candidates = without_delay(given, candidates, late, cross, selection.final)

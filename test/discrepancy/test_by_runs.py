@@ -76,7 +76,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "search_runs", lambda *_: SimpleNamespace(verdict=SimpleNamespace(untold=False)))
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "standing", lambda *_: trial(first))
-    monkeypatch.setattr(workflow, "_once_more", lambda study, given, trial: (study, trial))
+    monkeypatch.setattr(workflow, "_once_more", lambda study, given, trial, search: (study, trial))
     monkeypatch.setattr(workflow, "propose", lambda *_: laws)
     monkeypatch.setattr(workflow, "by_runs", lambda *_: seen.append(True) or named)
     monkeypatch.setattr(workflow, "replace", lambda result, **more: SimpleNamespace(**{**vars(result), **more}))

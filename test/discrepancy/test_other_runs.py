@@ -20,7 +20,7 @@ def side(left, by_run=()):
     size = SimpleNamespace(value=left, interval=(0.9 * left, 1.1 * left))
     return SimpleNamespace(
         size_after=size, floor=FLOOR, excused=FLOOR, runs=RUNS[: len(by_run)],
-        blocks=SimpleNamespace(run=np.repeat(np.arange(len(by_run)), 10)), after=np.repeat(np.array(by_run), 10),
+        left_by_run=[(run, np.full(10, own) / FLOOR) for run, own in zip(RUNS, by_run, strict=False)],
     )  # fmt: skip
 
 
@@ -95,3 +95,65 @@ def test_only_names_that_close_the_gap_of_all_runs_are_taken(asked, before, othe
     split, after = looked(before)
     assert (after is proven) is taken
     assert (after is before, split is SPLIT) == (not taken, not taken)
+
+
+def beyond(monkeypatch, full, other, grows=("run_7",), search=MISSING):
+    """What comes of names that the training runs bear out by `full`, and that stand or not with other runs locked."""
+    splits = []
+    monkeypatch.setattr(again, "tried", lambda *_: full)
+    monkeypatch.setattr(again, "worse_runs", lambda *_: grows)
+    monkeypatch.setattr(again, "search_runs", lambda study, *_: splits.append(study.split))
+    monkeypatch.setattr(again, "standing", lambda *_: other)
+    before = trial(UNEXPLAINED, FAR, (0.5, 2.0, 0.1, 0.6, 1.0, 0.3))
+    searched = SimpleNamespace(verdict=SimpleNamespace(kind=search))
+    study = Study(SPLIT, None, GapOptions(), np.random.default_rng(0))
+    study, after = again.by_beyond(study, before, searched)
+    return study.split, after is not before, splits
+
+
+def proven(kind, left, train):
+    """Of 2 bar in the locked runs."""
+    own = trial(kind, left, names=["pressure_offset"], train=train)
+    own.holdout.size_before = SimpleNamespace(value=2.0)
+    return own
+
+
+def test_a_locked_run_that_lies_beyond_the_others_is_learned_from_where_the_law_was_right_in_these(monkeypatch):
+    """A zero that settles: right in nine runs, and worse in one before them."""
+    split, taken, splits = beyond(monkeypatch, proven(MISSING, FAR, FLOOR), proven(MISSING, 1.9 * FLOOR, FLOOR))
+    assert taken
+    assert split.holdout == ("run_4", "run_6", "run_8")  # of run_1 and run_4, which show most, the second
+    assert split.train == ("run_0", "run_1", "run_2", "run_3", "run_5", "run_7")
+    assert splits == [split]
+
+
+@pytest.mark.parametrize(
+    ("full", "other", "grows"),
+    [
+        (FAR, (MISSING, FLOOR, FLOOR), ("run_7",)),  # more than noise is left of the training runs
+        (FLOOR, (MISSING, FLOOR, FLOOR), ()),  # refused for something else
+        (FLOOR, (UNEXPLAINED, FLOOR, FLOOR), ("run_7",)),
+        (FLOOR, (MISSING, 2.5 * FLOOR, FLOOR), ("run_7",)),  # 5 % of the new locked gap's square is left
+        (FLOOR, (MISSING, FLOOR, 2.5 * FLOOR), ("run_7",)),  # the run that was locked before is as wrong as it was
+    ],
+)
+def test_names_get_no_other_runs_where_they_are_not_right_in_all(monkeypatch, full, other, grows):
+    split, taken, _ = beyond(monkeypatch, proven(MISSING, FAR, full), proven(*other), grows)
+    assert not taken
+    assert split == SPLIT
+
+
+@pytest.mark.parametrize(("kind", "searched", "asked"), [
+    (UNEXPLAINED, MISSING, True), (UNEXPLAINED, UNEXPLAINED, False), (MISSING, MISSING, False),
+])  # fmt: skip
+def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, asked):
+    calls = []
+    before = trial(kind, FAR)
+    monkeypatch.setattr(workflow, "by_beyond", lambda study, own, _: calls.append("beyond") or (study, own))
+    for name in ("by_groups", "by_surfaces"):
+        monkeypatch.setattr(workflow, name, lambda study, own: own)
+    monkeypatch.setattr(workflow, "swings", lambda _: False)
+    monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda _: False)
+    search = SimpleNamespace(verdict=SimpleNamespace(kind=searched))
+    workflow._once_more(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), None, before, search)
+    assert bool(calls) is asked

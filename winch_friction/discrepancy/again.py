@@ -11,10 +11,10 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
-from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off
+from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, rms, share_left, worse_runs
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Search, Study, search_runs
-from winch_friction.discrepancy.standing import standing
+from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
 
 
@@ -64,16 +64,37 @@ def by_other_runs(study: Study, trial: Trial, showing: Sequence[str]) -> tuple[S
 
     `showing`: the training runs that show something, most first.
     """
-    other = replace(study, split=_locking(study.split, showing))
+    other = replace(study, split=_locking(study.split, showing, study.split.holdout))
     proven = _closing(other, search_runs(other, trial.search.given), trial)
     named, before = (set(each.search.explanation.names) for each in (proven, trial))
     return (other, proven) if proven is not trial and before < named else (study, trial)
 
 
-def _locking(split: Split, showing: Sequence[str]) -> Split:
-    """Every second of these runs locked in place of as many of the others."""
+def by_beyond(study: Study, trial: Trial, search: Search) -> tuple[Study, Trial]:
+    """What names bring down to the floor in the training runs, and make worse in locked ones that lie beyond these,
+    once more with those among the runs to learn from: an inexact law is right where it was learned. Study and trial as
+    they are unless names stand that leave next to nothing of the runs locked in their place, and bring all others near
+    their floor.
+
+    `search`: the names that the training runs bear out.
+    """
+    full = tried(study, search)
+    beyond = worse_runs(full.holdout, study.rng)
+    if not beyond or not at_the_floor(full.train):
+        return study, trial
+    left = {run.name: rms(own) for run, own in trial.train.left_by_run}
+    most_first = sorted(left, key=lambda name: -left[name])
+    kept = [name for name in study.split.holdout if name not in beyond]
+    other = replace(study, split=_locking(study.split, most_first[: 2 * len(beyond)], kept))
+    proven = standing(other, search_runs(other, trial.search.given))
+    stands = proven.search.verdict.kind in (MISSING, AMBIGUOUS) and not far_off(proven.train)
+    return (other, proven) if stands and share_left(proven.holdout) <= LIMITS.small_left_over else (study, trial)
+
+
+def _locking(split: Split, showing: Sequence[str], kept: Sequence[str]) -> Split:
+    """Every second of these runs locked in place of as many of the others, of which the first are `kept`."""
     locked = set(showing[1::2][: len(split.holdout)])
-    locked |= set(split.holdout[: len(split.holdout) - len(locked)])
+    locked |= set(kept[: len(split.holdout) - len(locked)])
     names = [run.name for run in split.runs]
     train, holdout = (tuple(name for name in names if (name in locked) is own) for own in (False, True))
     return replace(split, train=train, holdout=holdout)

@@ -126,10 +126,14 @@ def _excess(side: Side, floor: float) -> float:
     return max(side.size_after.value**2 - floor**2, 0.0)
 
 
+def share_left(side: Side) -> float:
+    """Share of a gap's square above the noise that names leave."""
+    return _excess(side, side.floor) / max(side.size_before.value**2 - side.floor**2, 1e-12)
+
+
 def _left(side: Side, which: str, most: float) -> str:
-    floor, before, after = side.floor, side.size_before.value, side.size_after
-    share = _excess(side, floor) / max(before**2 - floor**2, 1e-12)
-    if after.value <= LIMITS.far_off_the_floor * floor or share <= most:
+    before, after, share = side.size_before.value, side.size_after, share_left(side)
+    if after.value <= LIMITS.far_off_the_floor * side.floor or share <= most:
         return ""
     kept = f"is left ({before:.3g} to {after.value:.3g})"
     return f"{100 * share:.0f} % of the {which} gap's square above the noise {kept}"

@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.adequacy import lock_holdout, refuse
-from winch_friction.discrepancy.again import by_groups, by_other_runs, by_runs, by_surfaces, without_swing
+from winch_friction.discrepancy.again import by_beyond, by_groups, by_other_runs, by_runs, by_surfaces, without_swing
 from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     MISSING,
@@ -67,12 +67,11 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
     parts, found = without_broken(parts)
-    broken = [f"{each.sentence}; left out" for each in found]
     every = [thinned(run) for run in parts]
     if any(name.endswith(SIMULATED) for run in every for name in run.columns):
         every = against_simulations(every, model, crane)
     runs, notes = adequacy.long_enough(every)
-    notes = [*holes, *broken, *notes]
+    notes = [*holes, *(f"{each.sentence}; left out" for each in found), *notes]
     checks = adequacy.of_records(every, runs)
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model)
@@ -94,7 +93,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         names = adequacy.of_names(search.verdict.refused)
         lacking = insufficient([*checks, names], notes, crane, model, (given, split))
         return with_what_was_seen(lacking, assemble(study, trial))
-    study, trial = _once_more(study, given, trial)
+    study, trial = _once_more(study, given, trial, search)
     options.told("planning")
     proposals: tuple[Proposal, ...] = ()
     if trial.search.verdict.kind == UNEXPLAINED and options.proposals:
@@ -120,10 +119,12 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     return result
 
 
-def _once_more(study: Study, given: Given, trial: Trial) -> tuple[Study, Trial]:
+def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tuple[Study, Trial]:
     """What is open, asked again by every way that may say more than what stands."""
     if trial.search.verdict.kind != NOTHING and not study.options.candidates:
         study, trial = _with_other_runs(study, trial)
+        if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
+            study, trial = by_beyond(study, trial, search)
         if trial.search.verdict.kind == UNEXPLAINED:
             trial = by_groups(study, trial)
         if trial.search.verdict.kind != NOTHING:
@@ -138,10 +139,9 @@ def _once_more(study: Study, given: Given, trial: Trial) -> tuple[Study, Trial]:
 def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
     """With others locked, where two training runs or more show what none of the locked ones shows: one alone cannot be
     learned from and proven on."""
-    side = trial.train
     if not at_the_floor(trial.holdout):
         return study, trial
-    left = {run.name: rms(side.after[side.blocks.run == k]) / side.floor for k, run in enumerate(side.runs)}
+    left = {run.name: rms(own) for run, own in trial.train.left_by_run}
     showing = [name for name in sorted(left, key=lambda name: -left[name]) if left[name] > LIMITS.far_off_the_floor]
     return by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
 

@@ -101,13 +101,15 @@ class Trial:
                 self._learn(self.estimator, inputs[topic], message)
 
     def _learn(self, estimator: EstimatorService, source: Any, message: Any) -> None:
-        """A sample that is refused leaves the filter as it was, to the bit; its covariance stays one."""
-        law = estimator.law
+        """A sample that is refused leaves the filter as it was, to the bit, unless it is where a doubt begins, by which
+        what the doubted input told is taken back; its covariance stays one."""
+        law, doubted = estimator.law, bool(estimator.contradiction)
         before = law.snapshot() if self.rng.random() < LOOKED_AT else None
         estimate = estimator.take(source, message, self.now, self.now)
         if estimate is None:
             return
-        if not estimate.accepted and before is not None and law.snapshot() != before:
+        begins = bool(estimator.contradiction) and not doubted
+        if not estimate.accepted and not begins and before is not None and law.snapshot() != before:
             self.row.violations["a refused sample changed the estimator"] += 1
         if self.rng.random() < 0.01:
             covariance = np.asarray(law.model().covariance)

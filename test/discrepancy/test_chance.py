@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.engine import chance
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.chance import (
     _closest,
@@ -179,3 +180,23 @@ def test_where_a_signal_is_absent_it_predicts_nothing():
     for design in _designs(degrees, SIGN):
         assert not design[RUN >= 4].any()
         assert design[RUN < 4].any()
+
+
+DELAYED, OTHER = Slot("signal_delay", "late", (0,)), Slot("inertia_error", "", (1,))
+
+
+@pytest.mark.parametrize(
+    ("losses", "excess", "most"),
+    [
+        ((50.0, 90.0), 10.0, DELAYED),
+        ((75.0, 90.0), 10.0, None),  # too little of it
+        ((50.0, 40.0), 10.0, OTHER),
+        ((50.0, 90.0), 0.1, None),  # nothing is missing
+    ],
+)
+def test_what_takes_most_is_looked_at_closer_though_it_is_not_sure(monkeypatch, losses, excess, most):
+    """Of 100 above a floor of 10 a third is asked for."""
+    trials = [SimpleNamespace(slots=(slot,), loss=loss) for slot, loss in zip((DELAYED, OTHER), losses, strict=True)]
+    monkeypatch.setattr(chance, "candidate_trials", lambda *_: trials)
+    cross = SimpleNamespace(excess=lambda _: excess, floor=10.0)
+    assert chance.most_of_it(cross, SimpleNamespace(slots=(), loss=100.0)) is most

@@ -182,6 +182,7 @@ def test_pressures_that_are_late_are_corrected_as_such(late, name, value):
 def test_a_correction_names_the_groups_that_its_shape_speaks_of(which, groups):
     found = {"e_p": ParameterEstimate(0.01, 0.001, "1"), "c_p": ParameterEstimate(1e-10, 1e-11, "1/Pa")}
     for port, ending in ((0.0, ""), (1.0, "_a")):
-        own = module._to_bent(found, Shape("", {"groups": which, "port_a": port}), SIDES)
+        bent = module.to(("pressure_scale", module.e_p), ("pressure_curvature", module.c_p))
+        own = bent(found, Shape("", {"groups": which, "port_a": port}), SIDES)
         assert [each.name for each in own] == [f"pressure_scale{ending}", f"pressure_curvature{ending}"]
         assert all(tuple(each.groups) == groups for each in own)

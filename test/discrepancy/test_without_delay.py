@@ -71,23 +71,3 @@ def test_what_is_suspected_of_a_clock_that_drifts_is_its_delay_in_the_middle(lat
     one = delay._delay(sign * 0.3, late, by_time=True)
     assert (one.name, one.value) == ("signal_clock" if late == SPEED else "pressure_clock", pytest.approx(0.003))
     assert "late by 300 ms after 100 s" in shape.label
-
-
-DELAYED, OTHER = Slot(delay.DELAY, "late", (0,)), Slot("inertia_error", "", (1,))
-
-
-@pytest.mark.parametrize(
-    ("losses", "excess", "most"),
-    [
-        ((50.0, 90.0), 10.0, DELAYED),
-        ((75.0, 90.0), 10.0, None),  # too little of it
-        ((50.0, 40.0), 10.0, OTHER),
-        ((50.0, 90.0), 0.1, None),  # nothing is missing
-    ],
-)
-def test_what_takes_most_is_looked_at_closer_though_it_is_not_sure(monkeypatch, losses, excess, most):
-    """Of 100 above a floor of 10 a third is asked for."""
-    trials = [SimpleNamespace(slots=(slot,), loss=loss) for slot, loss in zip((DELAYED, OTHER), losses, strict=True)]
-    monkeypatch.setattr(delay, "candidate_trials", lambda *_: trials)
-    cross = SimpleNamespace(excess=lambda _: excess, floor=10.0)
-    assert delay.most_of_it(cross, SimpleNamespace(slots=(), loss=100.0)) is most

@@ -46,30 +46,20 @@ def remembering(crane2_model) -> FrictionModel:
     return FrictionModel("remembering", (*crane2_model.terms, own), values, constants=crane2_model.constants)
 
 
-def test_the_feedforward_compiles_nothing_at_its_samples(made, crane_150t, crane2_model) -> None:
-    make_ready(crane2_model, crane_150t, 2, ANSWERING)
+@pytest.mark.parametrize(
+    ("law", "parts", "memory"),
+    [
+        (FeedforwardCompensator, ANSWERING, False),
+        (FrictionEstimator, LEARNING, False),
+        (FeedforwardCompensator, ANSWERING, True),
+    ],
+)
+def test_nothing_is_compiled_at_the_samples(made, crane_150t, crane2_model, remembering, law, parts, memory) -> None:
+    model = remembering if memory else crane2_model
+    make_ready(model, crane_150t, 2, parts)
     assert made
     made.clear()
-    each = FeedforwardCompensator(crane_150t, crane2_model)
-    for k in range(5):
-        each.step(sample(crane_150t, 0.02 * k))
-    assert made == []
-
-
-def test_the_estimator_compiles_nothing_at_its_samples(made, crane_150t, crane2_model) -> None:
-    make_ready(crane2_model, crane_150t, 2, LEARNING)
-    assert made
-    made.clear()
-    each = FrictionEstimator(crane_150t, crane2_model)
-    for k in range(5):
-        each.step(sample(crane_150t, 0.02 * k))
-    assert made == []
-
-
-def test_a_memory_is_ready_as_well(made, crane_150t, remembering) -> None:
-    make_ready(remembering, crane_150t, 2, ANSWERING)
-    made.clear()
-    each = FeedforwardCompensator(crane_150t, remembering)
+    each = law(crane_150t, model)
     for k in range(5):
         each.step(sample(crane_150t, 0.02 * k))
     assert made == []

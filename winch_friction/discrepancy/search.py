@@ -20,13 +20,13 @@ from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.catalogue import candidates_for, run_states, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.detectors.delay import most_of_it, without_delay
+from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.detectors.lost_flow import AIR, LEAK, FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, near
+from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, most_of_it, near
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
 from winch_friction.discrepancy.engine.selection import Selection, select
 from winch_friction.discrepancy.expansion import Expansion, Given, Split, expand_around

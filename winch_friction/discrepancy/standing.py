@@ -132,14 +132,16 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
         why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
         return None, f"{names}: {why}, and of the others this takes hardly more"
-    alike = [cross.explain((rival,)) for rival in search.selection.found[0].rivals] if len(slots) == 1 else []
+    rivals = search.selection.found[0].rivals if len(slots) == 1 else ()
     why = (
         unproven(names, refit.holdout, full.holdout, rng)
         or leaves_too_much(full.holdout)
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
-        or within_a_step(cross, [search.explanation, *alike], full.holdout.least_noise)
+        or within_a_step(
+            cross, [search.explanation, *(cross.explain((each,)) for each in rivals)], full.holdout.least_noise
+        )
     )
     return (None, why) if why else (full, "")
 

@@ -203,10 +203,12 @@ def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
 
 
 def to(*found_as: tuple[str, Parameter]) -> Corrects:
-    """To one correction for each estimate: its name, and the parameter."""
+    """To one correction for each estimate: its name, or of what is wrong at port A alone that with `_a`, and the
+    parameter."""
 
     def corrects(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-        return [correction(name, found[p.name], groups=groups_of(shape, sides)) for name, p in found_as]
+        at, groups = "_a" if shape.values.get("port_a") else "", groups_of(shape, sides)
+        return [correction(f"{name}{at}", found[p.name], groups=groups) for name, p in found_as]
 
     return corrects
 
@@ -217,25 +219,6 @@ def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
         correction("pressure_offset", found[p_0.name], groups=groups),
         correction("pressure_creep", found[p_d.name], groups=groups, during=during),
     ]
-
-
-def _to_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    name = "pressure_scale_a" if shape.values["port_a"] else "pressure_scale"
-    return [correction(name, found[e_p.name], groups=groups_of(shape, sides))]
-
-
-def _to_warm_scale(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    name = "pressure_thermal_span_a" if shape.values["port_a"] else "pressure_thermal_span"
-    return [*_to_scale(found, shape, sides), correction(name, found[e_T.name], groups=groups_of(shape, sides))]
-
-
-def _to_curved(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    name = "pressure_curvature_a" if shape.values["port_a"] else "pressure_curvature"
-    return [correction(name, found[c_p.name], groups=groups_of(shape, sides))]
-
-
-def _to_bent(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    return _to_scale(found, shape, sides) + _to_curved(found, shape, sides)
 
 
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
@@ -262,13 +245,16 @@ def signal_candidates() -> list[Candidate]:
                   law_name="thermal zero that bends", needs=OIL, blind=_one_warmth),
         in_groups(ZERO, offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
                   _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
-        in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes, _to_scale),
+        in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes,
+                  to(("pressure_scale", e_p))),
         in_groups("pressure_scale", offset + r"\Delta p_g(e_p + e_T(\vartheta-40))", (e_p, e_T), warm_scale_columns,
-                  _scale_shapes, _to_warm_scale, law_name="thermal span shift", needs=OIL),
-        in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes, _to_curved,
-                  law_name="grows with the pressure"),
+                  _scale_shapes, to(("pressure_scale", e_p), ("pressure_thermal_span", e_T)),
+                  law_name="thermal span shift", needs=OIL),
+        in_groups("pressure_scale", r"c_p" + offset + "p_g^2", (c_p,), curved_columns, _scale_shapes,
+                  to(("pressure_curvature", c_p)), law_name="grows with the pressure"),
         in_groups("pressure_scale", offset + r"(e_p\,\Delta p_g + c_p\,p_g^2)", (e_p, c_p), bent_columns,
-                  _scale_shapes, _to_bent, law_name="bends with the pressure"),
+                  _scale_shapes, to(("pressure_scale", e_p), ("pressure_curvature", c_p)),
+                  law_name="bends with the pressure"),
         Candidate(DELAY, r"\tau\,\dot M", (tau,), delay_columns, _delay_shapes, kind="signal",
                   reversal_rival=True, blind=_too_slow, corrects=_to_delay),
     ]  # fmt: skip

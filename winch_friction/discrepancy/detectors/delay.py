@@ -14,26 +14,15 @@ from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Va
 from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, tau
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Given, meet, met_in_turn
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
-GROWING = (0.8, 1.0, 1.25)  # the same of a clock that drifts
 AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
+GROWING = (0.8, 1.0, 1.25)  # the same of a clock that drifts
 REACH = 1.1  # times a delay: half way to the next one
-
-
-def most_of_it(cross: CrossFit, base: Explanation) -> Slot | None:
-    """What takes more off a gap than anything else and a good part of it, though not surely: a delay for a clock that
-    drifts is too much in the first half of every run and too little in the second. None where nothing is missing."""
-    if cross.excess(base) <= LIMITS.least_excess:
-        return None
-    best = min(candidate_trials(cross, base, set()), key=lambda each: each.loss, default=base)
-    enough = base.loss - best.loss >= LIMITS.proposal_gain * (base.loss - cross.floor)
-    return best.slots[-1] if enough else None
 
 
 def without_delay(

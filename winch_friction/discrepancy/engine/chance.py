@@ -12,7 +12,15 @@ import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, charged, fitted, flip_p_values, heads
+from winch_friction.discrepancy.engine.crossfit import (
+    CrossFit,
+    Explanation,
+    candidate_trials,
+    charged,
+    fitted,
+    flip_p_values,
+    heads,
+)
 from winch_friction.discrepancy.thresholds import LIMITS
 
 
@@ -134,6 +142,16 @@ def near(cross: CrossFit, current: Explanation) -> list[Slot]:
         trials = [each for each in trials if without.loss - each.loss >= LIMITS.rival_worth * worth]
         found += [each.slots[-1] for each in sorted(trials, key=lambda one: one.loss)[: LIMITS.looked_at_closer]]
     return found
+
+
+def most_of_it(cross: CrossFit, base: Explanation) -> Slot | None:
+    """What takes more off a gap than anything else and a good part of it, though not surely: one size for what grows in
+    every record is too much in its first half and too little in its second. None where nothing is missing."""
+    if cross.excess(base) <= LIMITS.least_excess:
+        return None
+    best = min(candidate_trials(cross, base, set()), key=lambda each: each.loss, default=base)
+    enough = base.loss - best.loss >= LIMITS.proposal_gain * (base.loss - cross.floor)
+    return best.slots[-1] if enough else None
 
 
 def does_as_well(trial: Explanation, current: Explanation, without: Explanation, rng: np.random.Generator) -> bool:

@@ -321,6 +321,7 @@ def ringing(off, ratio=0.05, left=SHARP, length=200.0):
         ([ringing(1.0, 0.046), ringing(0.99, 0.054, length=90.0)], 0.05),
         ([ringing(1.0)], 0.23),  # one alone may be chance
         ([ringing(1.0, left=PLAIN)], 0.05),  # unless next to nothing of it is left
+        ([ringing(1.0, left=PLAIN), ringing(1.05)], 0.23),  # nor beside one that rings as another wire
         ([ringing(1.0, left=PLAIN), prepared(Mode(3.0, 0.0), RUNG, length=200.0)], 0.23),  # nor where another denies it
         ([ringing(1.0), ringing(1.05)], 0.23),  # no wire has both
         ([ringing(1.0, 0.035), ringing(1.0, 0.07)], 0.23),  # nor both dampers

@@ -14,6 +14,7 @@ from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_s
 from winch_friction.discrepancy.preparation.prepare import _followed, prepare
 from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups, motion_of
 from winch_friction.discrepancy.preparation.suspended_load import load_of
+from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.regressors import (
     TOLERANCES,
     base_of,
@@ -221,6 +222,14 @@ def test_a_displacement_that_is_set_anew_is_followed_and_a_steady_one_smoothed(n
     assert np.abs(found - true).max() < 0.01 + 5.0 * noise  # smoothed over the widest window it is 0.06 off at 5 Hz
     steady = time < 90.0
     assert np.std(found[steady] - true[steady]) <= 0.4 * noise + 1e-12
+
+
+@pytest.mark.parametrize("rated", [150e3, 0.0])
+def test_a_run_knows_what_its_shaft_holds_under_the_rated_load(crane_150t, crane2_model, rated):
+    """On the outermost layer, over the gear; nothing where nobody rates the crane."""
+    crane = replace(crane_150t, rated_load=rated)
+    own = prepare(runs_with(917, "quiet", length=0.3)[0], crane, crane2_model, mode=Mode(0.0, 0.0))
+    assert own.rated_torque == pytest.approx(rated * 9.80665 * max(crane.drum.layer_radii) / crane.gear_ratio, rel=1e-3)
 
 
 def test_what_was_seen_of_a_run_serves_for_another_model_and_changes_nothing(crane_150t, crane2_model):

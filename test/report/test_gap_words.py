@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.report.gap_words import next_steps, verdict_sentence
 
 LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
@@ -11,7 +12,7 @@ LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; 
 
 def result(verdict, **more):
     base = {"effects": [], "depends": (SimpleNamespace(signal="wire_out"),), "refused": "why", "proposals": (),
-            "next_experiment": None, "adequacy": ()}  # fmt: skip
+            "next_experiment": None, "adequacy": (), "model": SimpleNamespace(corrections=())}  # fmt: skip
     return SimpleNamespace(verdict=verdict, **(base | more))
 
 
@@ -55,3 +56,12 @@ def test_without_a_law_the_user_looks_and_declares_one():
 def test_what_is_lacking_is_asked_for_in_words(what, sentence, step):
     check = SimpleNamespace(what=what, sentence=sentence or what, met=False)
     assert next_steps(result("insufficient", adequacy=(check,))) == [step]
+
+
+@pytest.mark.parametrize(("name", "mended"), [("pressure_clock", True), ("signal_delay", True), ("tare_load", False)])
+def test_what_a_running_node_refuses_is_not_to_be_loaded(name, mended):
+    """The page said of a drifting clock that the compensator takes over without a bump; the compensator refuses it."""
+    model = SimpleNamespace(corrections=(Correction(name, 1e-3),))
+    *_, said = next_steps(result("missing_effect", effects=[effect("signal_delay")], model=model))
+    assert (f"Mend {name} at the source" in said) is mended
+    assert ("winch-friction load model.yaml" in said) is not mended

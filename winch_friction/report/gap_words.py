@@ -8,6 +8,7 @@ from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.errors import counted
+from winch_friction.physics.friction import FrictionModel
 from winch_friction.report.tables import number
 
 if TYPE_CHECKING:
@@ -138,6 +139,11 @@ def next_steps(result: "GapResult") -> list[str]:
             f"See what was done between these runs: of {', '.join(past)} model.yaml says what it was in each of them, "
             "and nothing of the next one."
         )
+    elif result.effects and (foreign := _not_live(result.model)):
+        steps.append(
+            f"Mend {foreign} at the source: a running node cannot take it out, and refuses model.yaml while "
+            "that is among its corrections."
+        )
     elif result.effects:
         steps.append(
             "Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the running "
@@ -154,6 +160,11 @@ def next_steps(result: "GapResult") -> list[str]:
     if result.verdict == "nothing_missing":
         steps.append("Nothing needs to be done: keep the model.")
     return steps
+
+
+def _not_live(model: FrictionModel) -> str:
+    """Names of what a model corrects and a running node cannot."""
+    return ", ".join(dict.fromkeys(each.name for each in model.corrections if not each.declared.live))
 
 
 def _after_no_name(result: "GapResult") -> list[str]:

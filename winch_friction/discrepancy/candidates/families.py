@@ -31,7 +31,7 @@ AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
 POWERS = (0.5, 1.5, 2.0, 3.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
-OIL = ("oil_temperature",)
+OIL, HUNG = ("oil_temperature",), ("hook_load", "wire_out")
 RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose zero means nothing
 
 
@@ -96,12 +96,13 @@ def literature() -> list[Candidate]:
 
 
 def _by_load(cause: str, stem: str, x: str, **more: Any) -> list[Candidate]:
-    """A cause that reads the load alone: a power, a film of it, a contact that closes, an onset."""
+    """A cause that goes with the load: a power, a film of it, oil that is sheared, a contact that closes, an onset."""
     of: Callable[..., Candidate] = partial(_of, cause, blind=friction.no_load, **more)
     points = {f"T_{x}s": ("saturating", friction.SATURATED), f"T_{x}o": ("onset", friction.ONSET)}
     films = of(f"{stem}_film", {f"w_{x}f": (40.0, 100.0, 250.0)}, continuous=())  # of shorter Stribeck's curve speaks
+    rates = of(f"{stem}_rate", {f"n_{x}r": (0.25, 0.5, 1.0)})
     bent = [of(f"{stem}_{law}", shapes=friction.loads(at, own), continuous=(at,)) for at, (law, own) in points.items()]
-    return [of(f"{stem}_power", {f"n_{x}p": POWERS}), films, *bent]
+    return [of(f"{stem}_power", {f"n_{x}p": POWERS}), films, rates, *bent]
 
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:
@@ -158,6 +159,7 @@ CURVES = (
     Free("case_pressure", ("pressure_sum",), (LEFT,), Scope.MOTOR, "convex_rising", "none"),
     Free("gear_asymmetry", (LOAD,), scope=Scope.SHAFT, opposing=False),
 )
+STEADY = ("convex_rising", "rising")  # a length adds to what hangs, ever more or by steps, and takes nothing of it
 # more freedom, for what neither a law nor a curve explains: surfaces over two signals, and one way alone
 SURFACES = (
     Free("low_displacement_loss", (SWASH, PRESSURE), (), Scope.MOTOR, "falling rising", "high low"),
@@ -170,15 +172,14 @@ SURFACES = (
     Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="lowering"),
     Free("gear_load_loss", (LOAD, SPEED), (), Scope.SYSTEM, "rising falling", "low none"),
     Free("sheave_bending", (LOAD, SPEED), (), Scope.SHAFT, "rising falling", "low none", presumes=("gear_load_loss",)),
-    Free("tare_load", ("wire_out",), (), Scope.SHAFT, "convex_rising", opposing=False, needs=("hook_load", "wire_out")),
+    *(Free("tare_load", ("wire_out",), (), Scope.SHAFT, each, opposing=False, needs=HUNG) for each in STEADY),
 )
 
 
 def free_members(runs: Sequence[PreparedRun], model: FrictionModel, rows: Sequence[Free] = CURVES) -> list[Candidate]:
     """Of each family the curves that the data draw, bent at quantiles of what these runs have covered."""
     found = [_free(row, runs) for row in rows]
-    present = {each.term.name for each in found if each is not None and each.term is not None} & set(model.term_names)
-    return [each for each in found if each is not None and each.term is not None and each.term.name not in present]
+    return [own for own in found if own is not None and own.term is not None and own.term.name not in model.term_names]
 
 
 def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candidate | None:
@@ -225,7 +226,7 @@ def name_of(row: Free) -> str:
     parts = [f"free_{row.cause}", *row.times[:1]]
     parts += row.signals if len(row.signals) > 1 else ()
     parts += [row.side] if row.side != "both" else []
-    bent = {"falling": not row.times, "convex_rising": row.cause == "wear_drift"}
+    bent = {"falling": not row.times, "convex_rising": row.cause == "wear_drift", "rising": row.cause == "tare_load"}
     return "_".join([*parts, row.shape.partition("_")[0]] if bent.get(row.shape) else parts)
 
 
@@ -252,8 +253,7 @@ def bending(table: Table) -> FloatArray | None:
     if axis.shape == "convex_rising":  # one hinge per knot: every one after the first is a change of slope
         change = np.diag(1.0 / np.cumsum(widths[::-1])[::-1])[1:]
     else:
-        slopes = np.diag(1.0 / widths)
-        change = np.diff(slopes, axis=0)
+        change = np.diff(np.diag(1.0 / widths), axis=0)
     change *= float(np.mean(widths))
     return np.asarray(change.T @ change)
 

@@ -84,6 +84,17 @@ def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_sh
     assert asked[2][0] == ("locked",)
 
 
+def test_what_does_not_stand_in_the_end_is_said():
+    """A leak of 6 rad/s in the training runs, of which the locked ones bore out no law, ended without a word."""
+    leak, air, ripple = (SimpleNamespace(effect=SimpleNamespace(name=n, where="there")) for n in ("leak", "air", "r"))
+    search = searched(ripple=ripple, flow=(leak, air))
+    assert module.not_borne_out(search, search) == []
+    one, other = module.not_borne_out(search, replace(search, ripple=None, flow=(air,)))
+    assert one.startswith("leak: the training runs show it (there), but")
+    assert other.startswith("r: ")
+    assert module.not_borne_out(searched(ripple=None, flow=()), search) == []
+
+
 def tried_with(monkeypatch, search, left_of, worse_of=lambda _: (), sets=()):
     """What stands of a search without names that hold; the locked runs keep what `left_of` says of each file."""
     monkeypatch.setattr(module, "_replicated", lambda own, *_: own)

@@ -111,6 +111,7 @@ def spoiled(run, correction):
                 flow = {
                     "slip_leakage": drop * thin,
                     "orifice_leakage": np.sign(drop) * np.sqrt(np.abs(drop) * 150 * BAR),
+                    "isoviscous_leakage": drop,
                     "opening_gap_leakage": drop * np.abs(drop) / (150 * BAR) * thin,
                 }[correction.name]
                 columns[name] = true + e * flow / columns["active.displacement"]

@@ -33,7 +33,8 @@ def test_every_leak_is_stated_at_150_bar_and_turns_with_the_drop(law):
 
 
 @pytest.mark.parametrize(
-    ("law", "thin"), [("slip_leakage", 2.0), ("orifice_leakage", 1.0), ("opening_gap_leakage", 2.0)]
+    ("law", "thin"),
+    [("slip_leakage", 2.0), ("orifice_leakage", 1.0), ("opening_gap_leakage", 2.0), ("isoviscous_leakage", 1.0)],
 )
 def test_thin_oil_leaks_more_through_a_gap_and_as_much_through_an_orifice(law, thin):
     drop = np.array([80e5, -200e5])

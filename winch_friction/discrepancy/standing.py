@@ -177,6 +177,14 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
     return replace(search, ripple=ripple, flow=flow, reversal=reversal)
 
 
+def not_borne_out(search: Search, stands: Search) -> list[str]:
+    """What the training runs show beside the moving samples and does not stand in the end, a sentence each."""
+    shown, kept = ((*each.flow, *([each.ripple] if each.ripple else [])) for each in (search, stands))
+    effects = [each.effect for each in shown if each not in kept]
+    but = "but by none of its laws does it hold in the locked runs, so it is not named"
+    return [f"{each.name}: the training runs show it ({each.where}), {but}" for each in effects]
+
+
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
     others, one of which may have met what none of the locked runs did, are not far off it. What the search found to be

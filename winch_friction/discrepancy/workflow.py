@@ -41,7 +41,7 @@ from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, fa
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
 from winch_friction.discrepancy.search import Search, Study, search_runs
-from winch_friction.discrepancy.standing import standing, tried
+from winch_friction.discrepancy.standing import not_borne_out, standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.ties import WITH_UNSOUGHT, Company, company, known_combination
 from winch_friction.physics.friction import FrictionModel
@@ -101,7 +101,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         if not options.candidates and all(each.after > LIMITS.at_the_floor * each.noise_floor for each in proposals):
             trial = by_runs(study, trial)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
-    result = assemble(study, trial)
+    result, notes = assemble(study, trial), [*notes, *not_borne_out(search, trial.search)]
     if result.verdict == UNEXPLAINED:
         notes += of_wire(given)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)

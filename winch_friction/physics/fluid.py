@@ -53,11 +53,16 @@ def _opening_gap(drop: FloatArray, thinness: FloatArray | float) -> FloatArray:
     return drop * np.abs(drop) / REFERENCE_PRESSURE * thinness
 
 
+def _warm_gap(drop: FloatArray, thinness: FloatArray | float) -> FloatArray:
+    return drop
+
+
 # by the name of the correction; q/C with q m^3/s the flow, from the pressure drop in Pa and mu_40/mu. A gap's flow is
 # laminar, an orifice's turbulent and whatever the oil, and that of a gap of height h ~ 1 + k p grows, to first order in
-# k, with the pressure's square
+# k, with the pressure's square; in a gap that warms its own oil it is as thick whatever the tank's
 LEAKAGE_LAWS: dict[str, _Law] = {
     "slip_leakage": _gap, "orifice_leakage": _orifice, "opening_gap_leakage": _opening_gap,
+    "isoviscous_leakage": _warm_gap,
 }  # fmt: skip
 
 

@@ -18,11 +18,17 @@ from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import FloatArray
 
 LEAK, AIR = "slip_leakage", "entrained_air"
-SYMBOLS = {"slip_leakage": "C_leak", "orifice_leakage": "C_orifice", "opening_gap_leakage": "C_opening"}
+SYMBOLS = {
+    "slip_leakage": "C_leak",
+    "orifice_leakage": "C_orifice",
+    "opening_gap_leakage": "C_opening",
+    "isoviscous_leakage": "C_iso",
+}
 EQUATIONS = {
     "slip_leakage": r"C\,\Delta p/(D\,\mu)",
     "orifice_leakage": r"C_o\sqrt{p_0\,\Delta p}/D",
     "opening_gap_leakage": r"C_g\,\Delta p^2/(p_0\,D\,\mu)",
+    "isoviscous_leakage": r"C_i\,\Delta p/D",
 }
 STEADY_COMMAND = 1.0  # rad/s^2
 FEWEST_TO_FLIP = 6  # segments; of five, all with the same sign, one flip in 32 is as good

@@ -174,6 +174,7 @@ _DECLARED = (
     _leakage("slip_leakage", "leakage per motor at 40 degC that slows it"),
     _leakage("orifice_leakage", "leakage per motor through an orifice, at 150 bar, that slows it"),
     _leakage("opening_gap_leakage", "leakage per motor through gaps that pressure opens, at 150 bar and 40 degC"),
+    _leakage("isoviscous_leakage", "leakage per motor through gaps whose oil is as thick whatever the tank's"),
     DeclaredCorrection(
         "entrained_air",
         Parameter("entrained_air", "m^3", 6e-4, 0.0, 0.1, doc="free air of one line, at 1 bar"),

@@ -136,14 +136,20 @@ def test_of_rivals_and_what_is_tied_to_the_finding_the_best_have_room(monkeypatc
     assert own.no_room == ("wear_drift", "coulomb")
 
 
-def test_what_is_tied_to_a_rival_has_only_the_room_that_is_left(monkeypatch):
-    losses = {"wear_drift": 100.0, "pressure_scale": 103.0, "displacement_scale": 99.0, "brake_drag": 104.0}
+@pytest.mark.parametrize(("left", "rivals", "without"), [
+    (99.0, ("displacement_scale", "pressure_scale"), "brake_drag"),
+    (103.5, ("pressure_scale", "displacement_scale"), "brake_drag"),
+    (105.0, ("pressure_scale", "brake_drag"), "displacement_scale"),
+])  # fmt: skip
+def test_what_is_tied_to_a_rival_has_room_where_it_is_among_the_best(monkeypatch, left, rivals, without):
+    """A gain of the displacement feedback, fitting best of all, had no room beside two other names, twice in two
+    draws."""
+    losses = {"wear_drift": 100.0, "pressure_scale": 103.0, "displacement_scale": left, "brake_drag": 104.0}
     crowded = company_of(monkeypatch, finding(WEAR, PRESSURE, DRAG), losses)
-    assert crowded.rivals == ("pressure_scale", "brake_drag")
-    assert crowded.no_room == ("displacement_scale",)
-    assert crowded.partners == ()
+    assert (crowded.rivals, crowded.no_room) == (rivals, (without,))
+    assert [each.name for each in crowded.partners] == [name for name in rivals if name == "displacement_scale"]
     alone = company_of(monkeypatch, finding(WEAR, PRESSURE), losses)
-    assert alone.rivals == ("pressure_scale", "displacement_scale")
+    assert set(alone.rivals) == {"pressure_scale", "displacement_scale"}
 
 
 def test_what_shows_as_a_product_with_the_finding_takes_no_rivals_room(monkeypatch):

@@ -184,8 +184,8 @@ class Company:
 def company(search: Search, found: Finding) -> Company:
     """The rivals of a finding, and what no search looks for but is tied to it or to one of them and does as well.
 
-    A set of names has little room: of rivals and what is tied to the finding itself the best on held-out runs stay;
-    what is tied to a rival, or is the same as the finding on any runs, takes only the room that is left.
+    A set of names has little room: of rivals and what is tied to the finding or to one of them the best on held-out
+    runs stay; what is the same as another name on any runs takes only the room that is left.
     """
     model, slots = search.expansion.model, (found.slot, *found.rivals)
     names = tuple(slot.name for slot in found.rivals)
@@ -209,7 +209,7 @@ def company(search: Search, found: Finding) -> Company:
     partners = []
     for trial, (k, tie) in zip(trials[m - 1 :], pairs.values(), strict=True):
         if does_as_well(trial, first, without, np.random.default_rng(0)):
-            losses[tie.second.name] = trial.loss if k == 0 and not tie.product else float("inf")
+            losses[tie.second.name] = float("inf") if tie.product else trial.loss
             partners.append(_partner(tie, cross, (first, *trials)[k], trial))
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
     no_room = (*(name for name in losses if name not in best), *found.no_room)

@@ -60,7 +60,8 @@ lint: $(READY)
 
 # the same tests with the library versions of Ubuntu 24.04, ROS 2 Jazzy's own platform
 test-ubuntu24.04:
-	python3.11 -m venv .venv-ubuntu24.04
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.12 is needed; set PYTHON=/path/to/python3.12"; exit 2; }
+	$(PYTHON) -m venv .venv-ubuntu24.04
 	.venv-ubuntu24.04/bin/python -m pip install --quiet -c constraints-ubuntu24.04.txt -e '.[all]'
 	.venv-ubuntu24.04/bin/python -m pytest $(ARGS)
 

@@ -12,6 +12,7 @@ from winch_friction.discrepancy.detectors.lost_flow import ORDINARY, Leakage
 from winch_friction.discrepancy.detectors.ripple import SMALLEST, TERM, Ripple
 from winch_friction.discrepancy.expansion import Expansion
 from winch_friction.discrepancy.search import ReversalFinding
+from winch_friction.physics.fluid import LEAKAGE_LAWS
 
 RNG = np.random.default_rng(0)
 
@@ -78,7 +79,7 @@ def test_stretches_of_two_runs_tell_no_leak():
 @pytest.mark.parametrize(("lost", "holds"), [((1.0, 1.0, 1.0), True), ((1.0, 1.0, 3.0), False), ((1.0,), False)])
 def test_of_a_few_stretches_a_leak_explains_each(lost, holds):
     """Of three rad/s by one it leaves two."""
-    rows = np.array([[0.0, each, 0.0, 0.0, 1.0, 0.0, 0.0] for each in lost])
+    rows = np.array([[0.0, each, 0.0, 0.0, 1.0, *[0.0] * (len(LEAKAGE_LAWS) - 1)] for each in lost])
     assert Leakage({"slip_leakage": (1.0, 0.1)}, 0.0, 0.0, 0.0, 1.0, 0.0).explains(rows) is holds
 
 

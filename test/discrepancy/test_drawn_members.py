@@ -160,6 +160,23 @@ def test_what_is_sheared_under_a_load_goes_with_the_load_and_with_a_power_of_the
     assert [shape.values[exponent.name] for shape in tried.shapes([])] == [0.25, 0.5, 1.0]
 
 
+def test_a_level_falls_by_a_run_in_and_grows_again_by_wear():
+    term = term_named("wear_bathtub")
+    fall, rise, begin, lag = (p.symbol for p in term.parameters)
+
+    def level(at):
+        values = {fall: 4.0, rise: 0.5, begin: 1000.0, lag: 100.0}
+        return float(term.equation.subs({**values, symbols.time: at}))
+
+    assert level(500.0) == level(1000.0) == pytest.approx(4.0)
+    assert level(1100.0) == pytest.approx(4.0 * np.exp(-1.0) + 0.5)
+    assert level(3000.0) == pytest.approx(10.0, abs=1e-6)
+    assert not any(p.lower < 0.0 for p in term.parameters if not p.shape)  # else it is any drift at all
+    tried = next(each for each in module.literature() if each.law_name == "wear_bathtub")
+    runs = [SimpleNamespace(start=at, time=np.array([0.0, 100.0])) for at in (1000.0, 1900.0)]
+    assert [shape.values["tau_wb"] for shape in tried.shapes(runs)] == pytest.approx([100.0, 200.0, 400.0])
+
+
 def test_a_length_adds_by_steps_as_well():
     """A sinker that leaves the deck, a load that enters the water: not ever more with the wire paid out."""
     own = [row for row in module.SURFACES if row.cause == "tare_load"]

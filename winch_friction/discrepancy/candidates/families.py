@@ -50,10 +50,10 @@ def literature() -> list[Candidate]:
             reversal_rival=True),
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
         wear("wear_saturating", shapes=friction.lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
-        wear("wear_sudden", shapes=friction.between_runs),
-        _of("brake_drag", "wear_sudden", presumes=COULOMB, shapes=friction.between_runs),  # that drags since a date
+        *(_of(x, "wear_sudden", presumes=COULOMB, shapes=friction.between_runs) for x in ("wear_drift", "brake_drag")),
         _of("brake_drag", "brake_each_way", presumes=COULOMB),
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
+        wear("wear_bathtub", shapes=friction.lags("t_wb", "tau_wb", (0.1, 0.2, 0.4))),
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("low_displacement_loss", "low_displacement_each_way", {"a_lu": (0.5, 1.0), "b_lu": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),

@@ -26,6 +26,10 @@ tau_ws = Parameter("tau_ws", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="t
 C_wl = Parameter("C_wl", "N*m", 1.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level per e-fold of time")
 t_wl = Parameter("t_wl", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
 tau_wl = Parameter("tau_wl", "s", 1e5, lower=1.0, upper=1e12, shape=True, doc="time from which on it is logarithmic")
+C_wb = Parameter("C_wb", "N*m", 3.0, upper=100.0, doc="what a run-in takes off the Coulomb level in the end")
+C_wu = Parameter("C_wu", "N*m", 1.0, upper=100.0, doc="what wear adds to the Coulomb level per e-fold of the run-in")
+t_wb = Parameter("t_wb", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
+tau_wb = Parameter("tau_wb", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="time of one e-fold of the run-in")
 C_wd = Parameter("C_wd", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level")
 t_wd = Parameter("t_wd", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time at which it changed")
 c_gp = Parameter("c_gp", "N*m", 5.0, upper=200.0, doc="loss per motor at a drum torque of 500 kN m")
@@ -109,6 +113,11 @@ _after = sp.Piecewise((0.0, time <= t_wl.symbol), ((time - t_wl.symbol) / tau_wl
 wear_logarithmic = _system(
     "wear_logarithmic", C_wl.symbol * sp.log(1 + _after), (C_wl, t_wl, tau_wl), "Ludema 1996: logarithmic run-in"
 )
+_running = sp.Piecewise((0.0, time <= t_wb.symbol), ((time - t_wb.symbol) / tau_wb.symbol, True))
+wear_bathtub = _system(
+    "wear_bathtub", C_wb.symbol * sp.exp(-_running) + C_wu.symbol * _running, (C_wb, C_wu, t_wb, tau_wb),
+    "Blau 2009: friction falls while surfaces run in, and grows again as they wear",
+)  # fmt: skip
 wear_sudden = _system(
     "wear_sudden",
     C_wd.symbol * sp.Piecewise((0.0, time <= t_wd.symbol), (1.0, True)),

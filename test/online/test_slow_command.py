@@ -23,7 +23,7 @@ def sail(fast, slow, lead, seconds=9.0):
     return [said for now, said in fed.published if now > START + 2.0]
 
 
-@pytest.mark.parametrize("lead", [0.0, 0.1, 0.2])
+@pytest.mark.parametrize("lead", [0.0, pytest.param(0.1, marks=pytest.mark.long), 0.2])
 @pytest.mark.parametrize(("fast", "slow"), [(1000, 50), (200, 25)])
 def test_between_two_commands_the_torque_neither_jumps_nor_turns(fast, slow, lead):
     """With 0.2 s of look-ahead every ninth torque had the wrong sign, and one in twenty a third of its size."""

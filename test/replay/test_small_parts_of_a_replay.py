@@ -1,19 +1,24 @@
 """What a replay keeps of a recording: when it looks at the parameters, when a phase begins, and which model it has."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from winch_friction.estimation.answers import Estimate
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import crane_topics
 from winch_friction.replay.estimator import EstimateRecord
 from winch_friction.replay.settings import Phase, ReplaySettings
-from winch_friction.replay.voices import PAUSE, CompensatorVoice
+from winch_friction.replay.voices import PAUSE, CompensatorVoice, EstimatorVoice
 
 CRANE, SEED = load_crane("crane_150t"), load_model("a6vm215_crane2")
+GROUPS = {"active": GroupSample(50e5, 25e5, 3.4e-5), "passive": GroupSample(275e5, 25e5, 1.1e-5)}
+MOVING = Sample(time=0.0, motor_speed=50.0, speed_reference=50.0, hook_load=55e3, groups=GROUPS)
 
 
 def looked_at(times):
@@ -36,6 +41,14 @@ def test_parameters_are_looked_at_every_second_and_at_the_end():
 
 def test_a_clock_that_is_set_back_does_not_end_the_looking():
     assert looked_at([1000.0, 10.0, 10.5, 10.6])[:2] == [1.0, 2.0]
+
+
+def test_the_estimators_numbers_count_the_word_that_its_node_says_in_a_silence():
+    own = EstimatorVoice(CRANE, SEED, crane_topics(CRANE), ReplaySettings())
+    for time in (100.0, 100.02, 101.0, 101.02):
+        for topic, message in crane_topics(CRANE).encode(replace(MOVING, time=time), MESSAGES):
+            own.take(SimpleNamespace(source=own.topics.inputs[topic], message=message, receipt=time), time)
+    assert own.record.run("r").aside["number"].tolist() == [1, 2, 4, 5]
 
 
 def voice(*phases):

@@ -88,8 +88,9 @@ class EstimatorNode(WinchNode):
             self.every(self.own.checkpoint_period, self.save)
 
     def stop(self) -> None:
-        """Shut the inputs out."""
+        """Shut the inputs out; the last torque does not stand."""
         self.inputs.close()
+        self._say(self.service.ending())
 
     def forget(self) -> None:
         """After a jump of time: nothing held; the filter restarts its speed by itself and keeps what it learned."""
@@ -115,9 +116,11 @@ class EstimatorNode(WinchNode):
             self._model.publish(String(data=model_to_text(learned)))
 
     def _poll(self) -> None:
-        """Count the inputs that come although no speed does."""
-        if self.service.inputs.silence(self.service_now()) > self.options.watchdog_timeout:
+        """Count the inputs that come although no speed does, and say that no friction is known."""
+        now = self.service_now()
+        if self.service.inputs.silence(now) > self.options.watchdog_timeout:
             self.inputs.poll()
+        self._say(self.service.tick(now))
 
     # -- services
     def _enable(self, wanted: bool) -> str:
@@ -137,6 +140,10 @@ class EstimatorNode(WinchNode):
         return f"saved to {self.own.checkpoint}"
 
     # -- outputs
+    def _say(self, estimate: Estimate | None) -> None:
+        if estimate is not None:
+            self._publish(estimate)
+
     def _publish(self, estimate: Estimate) -> None:
         """One answer to each sample; of one that was not taken in it is not valid, and of one that shows no friction it
         is zero: the torque before it would stand for as long as an input is lost."""

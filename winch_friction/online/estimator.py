@@ -47,6 +47,7 @@ class EstimatorService:
         self.contradiction = self._slow = ""  # what is said, and what of it only time shows
         self._watch_loads()
         self._enabled, self._seen = True, math.nan
+        self._stands = False  # a torque was said, and nothing after it
         self._gain = InertiaBalance(self.law.crane)
         self._before = BeforeDoubt(self.law)
         self._published, self._published_at = -math.inf, -math.inf
@@ -77,8 +78,22 @@ class EstimatorService:
             *standing,
         )
         self.last = self.law.step(sample)
+        self._stands = math.isfinite(self.last.friction_torque)
         self._doubt(sample, self.last)
         return self.last
+
+    def tick(self, now: float) -> Estimate | None:
+        """What is said once in every silence: that no friction is known. The torque before it would stand, whoever
+        plots it or feeds it forward, of one direction through every wave."""
+        return self.ending() if self.inputs.silence(now) > self.options.watchdog_timeout else None
+
+    def ending(self) -> Estimate | None:
+        """The same at the end, without a silence; None where no torque stands."""
+        if self.last is None or not self._stands:
+            return None
+        self._stands = False
+        time = self.last.time + self.options.watchdog_timeout
+        return Estimate(time, False, "waiting", *[math.nan] * 6)
 
     def _doubt(self, sample: Sample, learned: Estimate) -> None:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain

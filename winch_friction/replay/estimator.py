@@ -37,7 +37,7 @@ class EstimateRecord:
     def __init__(self, estimator: FrictionEstimator, period: float = PARAMETER_PERIOD) -> None:
         self._estimator, self._period = estimator, period
         self._rows, self._states = array("d"), list[str]()
-        self._valid = bytearray()
+        self._valid, self._numbers, self._number = bytearray(), array("q"), 0
         self._looks: list[tuple[FloatArray, FloatArray]] = []  # values and sigmas
         self._look_of_row = array("q")
         self._looked_at = -math.inf
@@ -50,7 +50,13 @@ class EstimateRecord:
         self._rows.extend(_numbers(estimate))
         self._states.append(estimate.state)
         self._valid.append(estimate.accepted and math.isfinite(estimate.friction_torque))
+        self.skip()
+        self._numbers.append(self._number)
         self._look_of_row.append(len(self._looks) - 1)
+
+    def skip(self) -> None:
+        """Count a word of the node's that answers no sample: that a silence began."""
+        self._number += 1
 
     def _look(self) -> tuple[FloatArray, FloatArray]:
         model = self._estimator.model()
@@ -62,6 +68,7 @@ class EstimateRecord:
         columns = {column: table[:, k].copy() for k, column in enumerate(("time", *COLUMNS))}
         columns |= self._parameter_columns()
         said = {"state": np.array(self._states, dtype=object), "valid": np.array(self._valid, dtype=bool)}
+        said["number"] = np.array(self._numbers)
         return Run(name=name, columns=columns, aside=said)
 
     def _parameter_columns(self) -> dict[str, FloatArray]:

@@ -95,5 +95,6 @@ def _in_order(*voices: list[Said]) -> Iterator[Said]:
 def _learned(run: Run) -> list[tuple[str, float, float]]:
     """Mark, speed and torque of every answer of the estimator, as its node publishes them."""
     valid = run.aside.get("valid", np.ones(len(run), bool)).tolist()
+    numbers = run.aside.get("number", np.arange(1, len(run) + 1)).tolist()
     values = (np.nan_to_num(run[name]).tolist() for name in ("speed", "friction_torque"))
-    return [(mark(known, k), *rest) for k, (known, *rest) in enumerate(zip(valid, *values, strict=True), 1)]
+    return [(mark(known, number), *rest) for known, number, *rest in zip(valid, numbers, *values, strict=True)]

@@ -106,6 +106,8 @@ class EstimatorVoice:
 
     def take(self, each: Message, now: float) -> FrictionModel | None:
         """One input message; the model that the node would have published after it."""
+        if self.service.tick(now) is not None:
+            self.record.skip()
         estimate = self.service.take(each.source, each.message, each.receipt, now)
         if estimate is None:
             return None

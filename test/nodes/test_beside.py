@@ -43,6 +43,15 @@ def test_what_does_not_end_is_left_to_itself_and_asked_for_once() -> None:
     assert each.get(slowly, lambda: None) == "read"
 
 
+def test_whoever_is_told_to_end_waits_for_no_file() -> None:
+    hangs, looks = threading.Event(), []
+    began = time.monotonic()
+    with pytest.raises(InputError, match="told to end"):
+        Beside[object](longest=5.0).get(hangs.wait, lambda: looks.append(1), lambda: len(looks) > 2)
+    assert time.monotonic() - began < 1.0
+    hangs.set()
+
+
 def test_the_last_ramp_is_published_before_whoever_ends_the_process_loses_patience() -> None:
     assert LONGEST < 5.0
 

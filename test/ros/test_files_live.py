@@ -1,5 +1,6 @@
 """Files that take long to read hold up no torque: a real compensator over DDS, in mid-wave."""
 
+import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -64,3 +65,25 @@ def test_the_torque_goes_on_while_a_file_is_read(bench: Bench, tmp_path: Path, s
     accepted = answer().success
     assert accepted == (slow == "terms that import for seconds"), answer().message
     assert diagnostics(said, "feedforward")["model"] == ("repaired" if accepted else "a6vm215_crane2")
+
+
+def test_the_last_ramp_waits_for_no_file(bench: Bench, tmp_path: Path) -> None:
+    """SIGTERM while a model was read: the torque was followed for up to 4 s more; whoever ends a process waits 5."""
+    bench.start("compensator", ramp_time=0.3)
+    torque = bench.listen("compensator/friction_torque")
+    bench.announce()
+    bench.drive(1.0)
+    terms, model = own_terms(tmp_path), own_model(tmp_path)
+    terms.write_text("import time\ntime.sleep(3.5)\n" + terms.read_text())
+    set_files(bench, terms_file=terms, model_file=model)
+    asked(bench, "load_model", Trigger, Trigger.Request())
+    bench.drive(0.5)
+    assert abs(efforts(torque)[-1]) > 0.0
+    process, told = bench.processes["compensator"], time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    while process.poll() is None and time.monotonic() - told < 6.0:
+        bench.drive(0.05)
+    assert time.monotonic() - told < 2.0
+    assert process.poll() == 0
+    assert efforts(torque)[-1] == 0.0
+    assert "Traceback" not in bench.log("compensator")

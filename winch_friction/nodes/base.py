@@ -63,6 +63,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
+        self.told_to_end: Callable[[], bool] = lambda: False  # by whoever runs it: nothing may wait for a file then
         self._unwatched = Polled()  # every publisher's events would be waited for at every wake-up
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.add_on_set_parameters_callback(self._on_set)

@@ -26,9 +26,12 @@ class Beside(Generic[T]):
         self.longest = longest  # s
         self._worker: threading.Thread | None = None
 
-    def get(self, work: Callable[[], T], meanwhile: Callable[[], None]) -> T:
-        """What `work` returns; raises what it raises. `InputError` where it takes longer than `longest`, or where the
-        work before has not ended yet: it is left to itself, and what it has read by then is read quickly again."""
+    def get(
+        self, work: Callable[[], T], meanwhile: Callable[[], None], told_to_end: Callable[[], bool] = lambda: False
+    ) -> T:
+        """What `work` returns; raises what it raises. `InputError` where it takes longer than `longest`, where the
+        process was `told_to_end` meanwhile, or where the work before has not ended yet: it is left to itself, and what
+        it has read by then is read quickly again."""
         if self._worker is not None and self._worker.is_alive():
             raise InputError("what was asked for before is still being read; ask again later")
         done: list[T] = []
@@ -44,6 +47,8 @@ class Beside(Generic[T]):
         self._worker.start()
         until = time.monotonic() + self.longest
         while self._worker.is_alive() and time.monotonic() < until:
+            if told_to_end():
+                raise InputError("the node was told to end: nothing read, nothing changed")
             meanwhile()
             self._worker.join(LOOK)
         if raised:

@@ -160,7 +160,7 @@ class CompensatorNode(WinchNode):
 
     def _load_model(self) -> str:
         """The files are read, and the terms made ready, beside the control; the inputs go on meanwhile."""
-        model = self._files.get(self._read_model, self.guarded(self._go_on))
+        model = self._files.get(self._read_model, self.guarded(self._go_on), self.told_to_end)
         self.load_terms()  # read by now: what can be set for them is declared
         self.service.load_model(model)
         learned = self.own.follow_model_topic and self._models is not None and self._models.get_publisher_count()

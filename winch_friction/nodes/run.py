@@ -37,6 +37,7 @@ def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
         given = None if arguments is None else list(arguments)
         rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
         node = make()
+        node.told_to_end = lambda: ending.asked
     except InputError as error:
         return _refuse(error)
     except rclpy.exceptions.ROSInterruptException:

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
+from winch_friction.online.intake import without_collections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.term import load_file
 
@@ -39,7 +40,8 @@ class Beside(Generic[T]):
 
         def carry_out() -> None:
             try:
-                done.append(work())
+                with without_collections():
+                    done.append(work())
             except BaseException as error:  # handed to whoever asked
                 raised.append(error)
 

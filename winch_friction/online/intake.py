@@ -1,9 +1,11 @@
 """Models that arrive as text: parsed and made ready beside the control thread, bounded in size and rate; the newest
 one is kept."""
 
+import gc
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from winch_friction.physics.errors import InputError
@@ -15,6 +17,32 @@ MOST_BRACKETS, DEEPEST = 2000, 100  # lists and mappings that open (a correlatio
 PERIOD = 1.0  # s between two models that are looked at
 
 
+# -- a reader beside the control
+_readers, _counting = 0, threading.Lock()
+
+
+@contextmanager
+def without_collections() -> Iterator[None]:
+    """No search for cycles among the process's objects until the last reader has ended.
+
+    It holds every thread for 0.06 s where a node has just been configured, and for as long again as a large file has
+    objects: the torque stood for up to 0.2 s, again and again, while one was read. What it leaves in cycles goes
+    afterwards.
+    """
+    global _readers
+    with _counting:
+        _readers += 1
+        gc.disable()
+    try:
+        yield
+    finally:
+        with _counting:
+            _readers -= 1
+            if _readers == 0:
+                gc.enable()
+
+
+# -- models as text
 def parse(text: str, where: str, ready: Callable[[FrictionModel], None] = lambda _: None) -> FrictionModel:
     """A model from text of unknown origin, made `ready`; raises `InputError` for whatever is wrong with it."""
     if len(text) > LARGEST:
@@ -60,13 +88,17 @@ class ModelIntake:
         busy = self._worker is not None and self._worker.is_alive()
         if self._text is not None and not busy and self.clock() - self._looked >= PERIOD:
             self._looked = self.clock()
-            self._worker = threading.Thread(target=self._parse, name="model", daemon=True)
+            self._worker = threading.Thread(target=self._parse_beside, name="model", daemon=True)
             self._worker.start()
         done = [self._done.popleft() for _ in range(len(self._done))]
         parsing = self._worker is not None and self._worker.is_alive()
         if parsing or self._done or self._text is not None:
             self.waiting = True
         return done
+
+    def _parse_beside(self) -> None:
+        with without_collections():
+            self._parse()
 
     def _parse(self) -> None:
         text, self._text = self._text, None

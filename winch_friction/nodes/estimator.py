@@ -105,8 +105,9 @@ class EstimatorNode(WinchNode):
             write_checkpoint(self.own.checkpoint, self.service.snapshot())
             self._unkept = ""
         except (InputError, OSError) as error:
-            self._unkept = f"checkpoint not written: {error}"
-            self.get_logger().error(self._unkept)
+            before, self._unkept = self._unkept, _unkept(self.own.checkpoint, error)
+            if self._unkept != before:  # each try would be one more line on a disk that may be full
+                self.get_logger().error(self._unkept)
 
     # -- callbacks
     def _answer(self, estimate: Estimate) -> None:
@@ -214,6 +215,13 @@ class EstimatorNode(WinchNode):
             invalid += [each.name] if each.status == "invalid" else []
         summary = f"invalid: {', '.join(invalid)}" if invalid else "within the range around the seed"
         return Health("parameters", ERROR if invalid else OK, summary, values)
+
+
+def _unkept(path: str, error: Exception) -> str:
+    why = (isinstance(error, OSError) and error.strerror) or str(error)
+    return (
+        f"checkpoint not written, {path}: {why.removeprefix(f'{path}: ')}; what is learned is lost when the node ends"
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -8,6 +8,7 @@ from typing import Any
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import get_default_context
 
 from winch_friction.nodes.loop import Loop
 from winch_friction.physics.errors import InputError
@@ -35,7 +36,7 @@ def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
     ending = Ending()
     try:
         given = None if arguments is None else list(arguments)
-        rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
+        _begin(given)
         node = make()
         node.told_to_end = lambda: ending.asked
     except InputError as error:
@@ -52,6 +53,20 @@ def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
         node.end()
         node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _begin(arguments: list[str] | None) -> None:
+    """Without a log file where none can be written: a disk that is full or read-only is no reason not to begin."""
+    try:
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+    except Exception as error:
+        if "initialize logging" not in str(error):
+            raise
+        why = " ".join(str(error).split()).partition(", at ")[0]
+        get_default_context(shutting_down=True)  # what failed to begin cannot begin again: the next one is another
+        given = [*(sys.argv if arguments is None else arguments), "--ros-args", "--disable-external-lib-logs"]
+        rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
+        print(f"warning: no log file is kept ({why}); set ROS_LOG_DIR to a folder that can be written", file=sys.stderr)
 
 
 def _start(node: Any, ending: Ending) -> int:

@@ -13,6 +13,7 @@ import numpy as np
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, span
+from winch_friction.physics.channels import column_unit
 from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import Change, ChannelRanges
@@ -109,11 +110,12 @@ class Plausibility:
             known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
         lower, upper, change = known
         if not lower <= value <= upper:
-            return f"{value:.4g} is outside {lower:.4g} ... {upper:.4g}"
+            unit = _unit(column)
+            return f"{value:.4g}{unit} is outside {lower:.4g} ... {upper:.4g}{unit}"
         if change is not None:
             last = self._last.get(column)
             if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
-                return f"{value:.4g} is {abs(value - last[1]):.3g} from the last"
+                return f"{value:.4g}{_unit(column)} is {abs(value - last[1]):.3g} from the last"
             self._last[column] = (stamp, value)
         return ""
 
@@ -137,6 +139,11 @@ class Plausibility:
     def forget(self) -> None:
         """Another time begins."""
         self._last.clear()
+
+
+def _unit(column: str) -> str:
+    unit = column_unit(column)
+    return "" if unit in (None, "1") else f" {unit}"
 
 
 # -- one sender

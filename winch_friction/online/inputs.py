@@ -72,7 +72,7 @@ class ServiceOptions:
 # -- all of them
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed is believed
 TWO_VOICES = "two values under one stamp"
-UNREADABLE = "late, or without the joint that it should show"
+UNREADABLE, LATE = "without the joint that it should show", "stamp before that of the last message"
 
 
 @dataclass
@@ -84,6 +84,7 @@ class Arrivals:
     arrived: float = -math.inf  # steady s, the last message
     believed: float = -math.inf  # steady s, the last message that was not refused
     after: int = 0  # messages that came when the speed of their own instant had been answered
+    stamp: float = math.nan  # s, of the last one; a stamp that stands still tells nothing of the order
     reason: str = ""
     reasons: Counter[str] = field(default_factory=Counter)
 
@@ -139,9 +140,10 @@ class InputGate:
             self._refuse(arrivals, Stamp.AHEAD.value)
         elif self._stream.put(source, stamp, message):
             arrivals.believed = now
-            arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS
+            arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS and stamp != arrivals.stamp
+            arrivals.stamp = stamp
         else:
-            self._refuse(arrivals, self._refusal or UNREADABLE)
+            self._refuse(arrivals, self._refusal or (LATE if source.decode(message) else UNREADABLE))
         return None
 
     def _unstamped_refusal(self, source: Input, message: Any, now: float) -> str:

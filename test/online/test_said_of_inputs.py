@@ -1,0 +1,65 @@
+"""What is said of an input names what is wrong with it, and nothing else."""
+
+import pytest
+from sea import PERIOD, Fed
+
+LOAD, PRESSURE, SPEED = "winch/hook_load", "winch/active/pressure_a", "winch/joint_states"
+
+
+@pytest.fixture
+def fed() -> Fed:
+    made = Fed()
+    made.run(1.0)
+    return made
+
+
+def test_inputs_whose_stamps_stand_still_do_not_come_after_the_speed_of_their_instant(fed: Fed) -> None:
+    """Of every input it was said to publish the speed last, although the order was right and the clock had stopped."""
+    frozen = fed.now
+
+    def freeze(sample: object) -> None:
+        sample.time = frozen
+
+    fed.run(1.0, freeze)
+    assert fed.service.inputs.arrivals[PRESSURE].after <= 1
+    assert fed.service.inputs.arrivals[SPEED].reason == "stamp stands still"
+
+
+def test_a_stamp_that_fell_back_is_told_from_a_message_that_shows_nothing(fed: Fed) -> None:
+    def far_back(sample: object) -> None:
+        sample.time = 0.0
+
+    fed.run(PERIOD, far_back)
+    assert fed.service.inputs.arrivals[PRESSURE].reason == "stamp before that of the last message"
+    assert fed.service.inputs.arrivals[SPEED].reason == "stamp far behind"
+
+    def without_its_joint(sample: object) -> None:
+        sample.groups["active"].displacement = float("nan")
+
+    source = fed.service.inputs.topics.inputs["winch/active/displacement"]
+    (message,) = (each for topic, each in fed.messages(_now(fed)) if topic == source.topic)
+    message.name = ["another"]
+    fed.service.take(source, message, fed.now, fed.now)
+    assert fed.service.inputs.arrivals[source.topic].reason == "without the joint that it should show"
+
+
+@pytest.mark.parametrize(("topic", "said"), [
+    (PRESSURE, "active.pressure_a: 9.9e+07 Pa is outside -1e+07 ... 6e+07 Pa"),
+    (LOAD, "hook_load: 5.5e+07 kg is outside -1.5e+04 ... 3e+05 kg"),
+])  # fmt: skip
+def test_a_value_that_cannot_be_is_said_with_its_unit(fed: Fed, topic: str, said: str) -> None:
+    """It is a wrong unit as often as not."""
+
+    def change(sample: object) -> None:
+        sample.groups["active"].pressure_a = 9.9e7
+        sample.hook_load = 5.5e7
+
+    fed.run(PERIOD, change)
+    assert fed.service.inputs.arrivals[topic].reason == said
+
+
+def _now(fed: Fed) -> object:
+    from sea import swell
+
+    fed.now += PERIOD
+    return swell(fed.now)

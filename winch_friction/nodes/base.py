@@ -60,6 +60,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         self.crane: Crane
         self._activated = float("inf")
         self._reported: object = None
+        self._built = False  # there is something to halt
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
@@ -126,6 +127,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
                 model = load_model(self.options.model_file)
             problems.say()
             self.build(self.crane, model)
+            self._built = True
         except (InputError, OSError) as error:
             for each in getattr(error, "problems", (str(error),)):
                 self.get_logger().error(each)
@@ -170,7 +172,11 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
     @said_aloud
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """A transition that raised leaves nothing running and the node unconfigured, to be configured anew."""
-        self._halt()
+        try:
+            if self._built:
+                self._halt()
+        except Exception:
+            self.report_defect("the end after an error")
         self._take_down()
         return TransitionCallbackReturn.SUCCESS
 
@@ -183,14 +189,16 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
             self.save()
 
     def _halt(self) -> None:
-        self.stop()
-        self._report_the_end()
-        for end in self._active_entities:
-            end()
-        self._active_entities.clear()
+        try:
+            self.stop()
+        finally:
+            self._report_the_end()
+            while self._active_entities:
+                self._active_entities.pop()()
         self.save()
 
     def _take_down(self) -> None:
+        self._built = False
         while self._switches:
             self.destroy_service(self._switches.pop())
         while self._publishers_made:

@@ -82,7 +82,6 @@ class Arrivals:
     messages: int = 0
     refused: int = 0
     arrived: float = -math.inf  # steady s, the last message
-    believed: float = -math.inf  # steady s, the last message that was not refused
     after: int = 0  # messages that came when the speed of their own instant had been answered
     stamp: float = math.nan  # s, of the last one; a stamp that stands still tells nothing of the order
     reason: str = ""
@@ -133,13 +132,11 @@ class InputGate:
                 self._refuse(arrivals, refusal)
             else:
                 self._stream.put_off(source, message, receipt if sent is None else sent)
-                arrivals.believed = now
             return None
         stamp = stamp_time(message)
         if not self._near(stamp, now):
             self._refuse(arrivals, Stamp.AHEAD.value)
         elif self._stream.put(source, stamp, message):
-            arrivals.believed = now
             arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS and stamp != arrivals.stamp
             arrivals.stamp = stamp
         else:
@@ -184,7 +181,7 @@ class InputGate:
             self._refuse(arrivals, self._refusal or UNREADABLE)
             return None
         self.last_stamp = stamp
-        self.last_arrival = arrivals.believed = now
+        self.last_arrival = now
         self._without_stale(sample, now)
         return sample
 

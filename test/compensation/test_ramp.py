@@ -65,14 +65,6 @@ def test_a_ramp_that_began_with_an_input_lost_goes_on_as_steeply_in_a_silence():
     assert output.remaining(at + 0.05) == pytest.approx(left - 0.05 * CARRIED / 0.2)
 
 
-def test_a_ramp_is_hurried_and_never_put_off():
-    output = carrying(ramp_time=0.3)
-    output.hurry(0.1)
-    assert over_after(output) == pytest.approx(HOLD + 0.1, abs=2e-3)
-    output.hurry(0.25)
-    assert over_after(output) == pytest.approx(HOLD + 0.1, abs=2e-3)
-
-
 def test_an_output_that_was_ended_is_not_carried_by_the_samples_that_still_come():
     """Until somebody resets it."""
     output = carrying(ramp_time=0.3)

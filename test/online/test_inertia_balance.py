@@ -166,6 +166,7 @@ def test_the_service_declares_it_and_publishes_the_seed():
     assert published.values == SEED.values
     service.reset()
     assert not service.contradiction
+    assert math.isnan(service.gain_change)  # what it is compared with is forgotten as well
 
 
 # -- an electric drive

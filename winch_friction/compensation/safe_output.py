@@ -285,10 +285,6 @@ class SafeOutput:
         self._held, self._faded, self._bridged = self.torque, self.fade.value, self._bridge.value()
         self._fed, self._ramp_from, self.time = time - self.hold, time, time
 
-    def hurry(self, duration: float) -> None:
-        """Let the ramp to zero be over within `duration` s, as far as the slew limit allows it."""
-        self._turns_at = min(self._turns_at, self._ramp_from + duration)
-
     def as_pressure(self, per_torque: float) -> float:
         """What was published last in Pa on the group that carries it, at `per_torque` Pa per N m, in its own bounds."""
         return self.carrying.of(self.torque, per_torque, self.time, self.slew)

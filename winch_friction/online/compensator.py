@@ -82,7 +82,6 @@ def refuse_other_terms(learned: FrictionModel, given: FrictionModel) -> None:
 
 # -- the service
 HEARTBEAT = 25  # steps of the watchdog between two zeros, once the ramp is over
-LONGEST_END = 2.0  # s that the last ramp may take: whoever ends the process waits five
 
 
 @dataclass
@@ -226,8 +225,7 @@ class CompensatorService:
             return
         begin = max(output.time, self._last_stamp + min(self.inputs.silence(now), self.law.config.max_age))
         output.end(begin)
-        duration, steps = min(self.law.config.ramp_time, LONGEST_END), 0
-        output.hurry(duration)
+        steps = 0
         while not output.at_rest:
             steps += 1
             yield steps * period, self.law.decay(begin + steps * period, "ending")

@@ -1,0 +1,52 @@
+"""What begins anew remembers nothing of before: what is believed, what was read last, what was heard last."""
+
+import pytest
+from sea import CRANE, TOPICS
+
+from winch_friction.online.agreement import Plausibility
+from winch_friction.online.before_doubt import UNSEEN, BeforeDoubt
+from winch_friction.online.consumer import HeldTorque
+from winch_friction.physics.winch.operating_point import ChannelRanges
+
+
+class Law:
+    """An estimator that knows one thing more at every look."""
+
+    def __init__(self) -> None:
+        self.looks = 0
+
+    def snapshot(self) -> dict[str, int]:
+        self.looks += 1
+        return {"look": self.looks}
+
+    def model(self) -> None:
+        return None
+
+
+@pytest.mark.parametrize("back", [0.0, 3600.0])
+def test_what_is_known_is_believed_in_time_though_the_clock_was_set_back(back: float) -> None:
+    """After an hour's step back nothing newer was believed for an hour."""
+    each = BeforeDoubt(Law())
+    for k in range(3):
+        each.step(5000.0 + k, doubted=False)
+    at = 5003.0 - back
+    for k in range(round(3.0 * UNSEEN)):
+        each.step(at + k, doubted=False)
+    assert at <= each.believed.time <= at + 3.0 * UNSEEN
+
+
+def test_a_reading_of_another_time_does_not_make_the_first_one_too_fast() -> None:
+    each = Plausibility(ChannelRanges(CRANE, TOPICS.groups))
+    assert each.refusal("motor_speed", 10.0, 100.0) == ""
+    assert "from the last" in each.refusal("motor_speed", 10.02, -300.0)
+    each.forget()
+    assert each.refusal("motor_speed", 10.04, -300.0) == ""
+
+
+def test_a_consumer_that_begins_anew_takes_any_number() -> None:
+    each = HeldTorque()
+    assert each.take(100.0, 1.0, "valid 500")
+    each.clear()
+    assert each.value(1.0) == 0.0
+    assert each.take(50.0, 1.02, "valid 1")
+    assert each.value(1.04) == 50.0

@@ -68,3 +68,11 @@ def test_the_end_is_a_silence_that_waits_for_nothing(heard: Heard) -> None:
     assert math.isnan(heard.service.ending().friction_torque)
     assert heard.service.ending() is None
     assert EstimatorService(CRANE, SEED, TOPICS).ending() is None
+
+
+def test_a_sample_that_the_filter_does_not_take_in_is_told_as_rejected(heard: Heard) -> None:
+    """'learning' stood there while nothing was learned."""
+    assert heard.service.status(heard.now)["state"] == "learning"
+    heard.service.last = heard.service.last._replace(accepted=False)
+    assert heard.service.status(heard.now)["state"] == "rejected"
+    assert heard.service.status(heard.now + 1.0)["state"] == "waiting"

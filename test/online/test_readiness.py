@@ -29,11 +29,12 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return names
 
 
-def sample(crane, time: float) -> Sample:
-    groups = {
+def sample(crane, time: float, groups: int = 2) -> Sample:
+    both = {
         "active": GroupSample(100e5, 25e5, crane.max_displacement),
         "passive": GroupSample(300e5, 25e5, crane.max_displacement / 3.0),
     }
+    groups = dict(list(both.items())[:groups])
     speed = 100.0 + time
     return Sample(time=time, motor_speed=speed, speed_reference=speed, hook_load=55e3, groups=groups)
 
@@ -47,21 +48,24 @@ def remembering(crane2_model) -> FrictionModel:
 
 
 @pytest.mark.parametrize(
-    ("law", "parts", "memory"),
+    ("law", "parts", "memory", "groups"),
     [
-        (FeedforwardCompensator, ANSWERING, False),
-        (FrictionEstimator, LEARNING, False),
-        (FeedforwardCompensator, ANSWERING, True),
+        (FeedforwardCompensator, ANSWERING, False, 2),
+        (FrictionEstimator, LEARNING, False, 2),
+        (FeedforwardCompensator, ANSWERING, True, 2),
+        (FeedforwardCompensator, ANSWERING, False, 1),
     ],
 )
-def test_nothing_is_compiled_at_the_samples(made, crane_150t, crane2_model, remembering, law, parts, memory) -> None:
+def test_nothing_is_compiled_at_the_samples(
+    made, crane_150t, crane2_model, remembering, law, parts, memory, groups
+) -> None:
     model = remembering if memory else crane2_model
-    make_ready(model, crane_150t, 2, parts)
+    make_ready(model, crane_150t, groups, parts)
     assert made
     made.clear()
     each = law(crane_150t, model)
     for k in range(5):
-        each.step(sample(crane_150t, 0.02 * k))
+        each.step(sample(crane_150t, 0.02 * k, groups))
     assert made == []
 
 

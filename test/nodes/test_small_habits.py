@@ -1,0 +1,136 @@
+"""What a node does beside its samples: the pace of its last ramp and of its watchdog, what it says once, what it takes
+over, when it begins anew."""
+
+import time
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+rclpy = pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
+
+from rclpy.clock import ROSClock  # noqa: E402
+from rclpy.context import Context  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.time import Time  # noqa: E402
+
+from winch_friction.nodes.base import ERROR, WARN  # noqa: E402
+from winch_friction.nodes.compensator import CompensatorNode  # noqa: E402
+from winch_friction.nodes.estimator import EstimatorNode  # noqa: E402
+from winch_friction.nodes.remote import QUESTIONS, RemoteNode  # noqa: E402
+from winch_friction.physics.errors import InputError  # noqa: E402
+from winch_friction.records.domain import unused_domain  # noqa: E402
+
+
+@pytest.fixture
+def context() -> Iterator[Context]:
+    made = Context()
+    rclpy.init(context=made, domain_id=unused_domain())
+    yield made
+    rclpy.shutdown(context=made)
+
+
+@pytest.fixture
+def active(context: Context) -> Iterator[Any]:
+    """Makes an active node of a kind with parameters."""
+    made = []
+
+    def make(kind: type, **values: object) -> Any:
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        node = kind(context=context, parameter_overrides=overrides)
+        made.append(node)
+        node.trigger_configure()
+        node.trigger_activate()
+        return node
+
+    yield make
+    for node in made:
+        node.end()
+        node.destroy_node()
+
+
+def test_the_last_ramp_is_published_at_its_own_pace(active: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A consumer holds what comes last: a ramp in one burst is a step."""
+    node, came = active(CompensatorNode), []
+    monkeypatch.setattr(node.service, "ending", lambda _: iter([(0.05, "first"), (0.1, "second"), (0.2, "last")]))
+    monkeypatch.setattr(node, "_publish", lambda said: came.append((time.monotonic(), said)))
+    began = time.monotonic()
+    node.stop()
+    assert [said for _, said in came] == ["first", "second", "last"]
+    assert all(at - began >= due for (at, _), due in zip(came, (0.05, 0.1, 0.2), strict=True))
+
+
+@pytest.mark.parametrize(("timeout", "period"), [(0.05, 0.01), (0.1, 0.02), (0.4, 0.08), (5.0, 0.1)])
+def test_the_watchdog_looks_more_often_than_it_waits(active: Any, timeout: float, period: float) -> None:
+    node = active(CompensatorNode, watchdog_timeout=timeout)
+    assert node._watchdog.timer_period_ns * 1e-9 == pytest.approx(period)
+
+
+def test_a_refusal_is_logged_once_however_often_it_comes(active: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    node, lines = active(CompensatorNode), []
+    monkeypatch.setattr(node, "get_logger", lambda: SimpleNamespace(warning=lines.append))
+    for reason in ("other terms", "other terms", "no model", "no model"):
+        node.service.refuse(reason)
+        node._take_models()
+    assert len(lines) == 2
+
+
+def test_a_feedforward_that_still_waits_after_a_report_is_an_error(
+    active: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = active(CompensatorNode, diagnostics_period=1.0)
+    now = node.service_now()
+    for later, level in ((0.5, WARN), (5.0, ERROR)):
+        monkeypatch.setattr(node, "service_now", lambda later=later: now + later)
+        assert node.health()[0].level == level
+
+
+def test_the_estimator_takes_its_periods_over(active: Any) -> None:
+    node = active(EstimatorNode)
+    (done,) = node.set_parameters([Parameter("model_period", value=2.5)])
+    assert done.successful
+    (done,) = node.set_parameters([Parameter("max_age", value=0.3)])
+    assert done.successful
+    assert (node.service.model_period, node.service.inputs.hold.max_age) == (2.5, 0.3)
+
+
+@pytest.mark.parametrize(("to", "anew"), [(99.5, True), (100.5, False), (104.0, False), (106.0, True)])
+def test_a_clock_that_steps_back_at_all_or_far_ahead_begins_anew(
+    active: Any, monkeypatch: pytest.MonkeyPatch, to: float, anew: bool
+) -> None:
+    node, calls = active(CompensatorNode), []
+    clock = node.get_clock()
+    assert isinstance(clock, ROSClock)
+    clock._set_ros_time_is_active(True)
+    clock.set_ros_time_override(Time(seconds=100.0, clock_type=clock.clock_type))
+    monkeypatch.setattr(node, "forget", lambda: calls.append(1))
+    clock.set_ros_time_override(Time(seconds=to, clock_type=clock.clock_type))
+    assert bool(calls) is anew
+
+
+@pytest.mark.parametrize("kind", [CompensatorNode, EstimatorNode])
+def test_a_node_that_is_not_active_holds_no_input_open(active: Any, kind: type) -> None:
+    node = active(kind)
+    open_ = set(node.inputs.subscriptions())
+    assert len(open_) == len(node.service.inputs.topics.inputs)
+    node.trigger_deactivate()
+    assert node.inputs.subscriptions() == {}
+    node.trigger_activate()
+    assert set(node.inputs.subscriptions()) == open_
+    node.inputs.poll()
+
+
+@pytest.mark.parametrize(("service", "asked"), [("load_model", 1), ("get_state", QUESTIONS)])
+def test_only_questions_are_asked_again(service: str, asked: int) -> None:
+    """A model that was handed over twice would begin anew twice."""
+    future, calls = SimpleNamespace(done=lambda: False), []
+    client = SimpleNamespace(
+        wait_for_service=lambda timeout_sec: True, remove_pending_request=lambda _: None,
+        call_async=lambda _: calls.append(1) or future,
+    )  # fmt: skip
+    executor = SimpleNamespace(spin_until_future_complete=lambda _, timeout_sec: None)
+    remote = RemoteNode(SimpleNamespace(create_client=lambda *_: client), executor, "compensator", 0.1)
+    with pytest.raises(InputError, match="no answer"):
+        remote._call(None, service, None)
+    assert len(calls) == asked

@@ -10,6 +10,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context
 
+from winch_friction.nodes.console import Console
 from winch_friction.nodes.loop import Loop
 from winch_friction.physics.errors import InputError
 
@@ -32,8 +33,15 @@ class Ending:
 
 
 def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
-    """Make the node, start it as its `autostart` says, and spin until it is told to end."""
-    ending = Ending()
+    """Make the node, start it as its `autostart` says, and spin until it is told to end; printing waits for nobody."""
+    ending, console = Ending(), Console()
+    try:
+        return _run(make, arguments, ending)
+    finally:
+        console.end()
+
+
+def _run(make: Callable[[], Any], arguments: Sequence[str] | None, ending: Ending) -> int:
     try:
         given = None if arguments is None else list(arguments)
         _begin(given)

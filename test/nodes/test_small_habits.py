@@ -10,6 +10,8 @@ import pytest
 
 rclpy = pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
 
+from lifecycle_msgs.msg import Transition  # noqa: E402
+from lifecycle_msgs.srv import ChangeState  # noqa: E402
 from rclpy.clock import ROSClock  # noqa: E402
 from rclpy.context import Context  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
@@ -134,3 +136,28 @@ def test_only_questions_are_asked_again(service: str, asked: int) -> None:
     with pytest.raises(InputError, match="no answer"):
         remote._call(None, service, None)
     assert len(calls) == asked
+
+
+@pytest.mark.parametrize("asked", [Transition(id=Transition.TRANSITION_ACTIVATE), Transition(label="activate")])
+def test_a_manager_that_asks_for_the_same_again_and_again_fills_no_log(
+    active: Any, capfd: pytest.CaptureFixture[str], asked: Transition
+) -> None:
+    """By name the library wrote a line as well, each time."""
+    node = active(CompensatorNode)
+    capfd.readouterr()
+    for _ in range(50):
+        response = node._service_change_state.callback(
+            ChangeState.Request(transition=asked), ChangeState.Response(success=True)
+        )
+        assert not response.success
+    said = capfd.readouterr().err
+    assert said.count("refused transition") == 1
+    assert "not one of state 'active'" in said
+    assert len(said.splitlines()) == 1
+
+
+def test_a_transition_may_be_asked_for_by_its_name(active: Any) -> None:
+    node = active(CompensatorNode)
+    request = ChangeState.Request(transition=Transition(label="deactivate"))
+    assert node._service_change_state.callback(request, ChangeState.Response()).success
+    assert node._state_machine.current_state[1] == "inactive"

@@ -106,16 +106,19 @@ class Guarded:
         change = service.callback
 
         def answer(request: Any, response: Any) -> Any:
-            known = {each[0] for each in node._state_machine.available_transitions}
-            state = node._state_machine.current_state[1]
-            if not request.transition.label and request.transition.id not in known:
-                node.get_logger().warning(f"refused transition {request.transition.id}: not one of state '{state}'")
+            asked, state = request.transition, node._state_machine.current_state[1]
+            known = {each[1 if asked.label else 0] for each in node._state_machine.available_transitions}
+            if (asked.label or asked.id) not in known:
+                node.get_logger().warning(
+                    f"refused transition {asked.label or asked.id}: not one of state '{state}'",
+                    throttle_duration_sec=LEAST_BETWEEN, throttle_time_source_type=node.steady_clock,
+                )  # fmt: skip
                 response.success = False
                 return response
             try:
                 return change(request, response)
             except Exception as error:
-                node.get_logger().error(f"refused transition '{request.transition.label}': {error}")
+                node.get_logger().error(f"refused transition '{asked.label}': {error}")
                 response.success = False
                 return response
 

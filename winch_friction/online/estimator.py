@@ -92,8 +92,7 @@ class EstimatorService:
         if self.last is None or not self._stands:
             return None
         self._stands = False
-        time = self.last.time + self.options.watchdog_timeout
-        return Estimate(time, False, "waiting", *[math.nan] * 6)
+        return Estimate(self.last.time, False, "waiting", *[math.nan] * 6)
 
     def _doubt(self, sample: Sample, learned: Estimate) -> None:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from winch_friction.physics.channels import beside
 from winch_friction.physics.frames import html_table, library
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import Run
@@ -80,7 +81,9 @@ class Replay:
         """Length, share of time in action, level of the torque and what was learned, in words."""
         content = self._content()
         learned = [p for p in content["parameters"] if p["status"] in ("learning", "learned", "frozen")]
-        names = ", ".join(f"{p['parameter']} {p['seed']:.3g} -> {p['learned']:.3g} {p['unit']}" for p in learned)
+        names = ", ".join(
+            f"{p['parameter']} {p['seed']:.3g} -> {beside(p['learned'], p['sigma']):.3g} {p['unit']}" for p in learned
+        )
         return (
             f"{content['duration_s']:.0f} s, feedforward active {content['active_share']:.0%} of the time, "
             f"{content['feedforward_rms_Nm']:.3g} N m RMS, {content['feedforward_peak_Nm']:.3g} at most; "
@@ -179,7 +182,7 @@ class Gap:
         """One row per missing effect: what it cannot be told from, its parameters with std and unit, the evidence."""
         rows = [
             {"effect": e["name"], "indistinguishable_from": ", ".join(e["indistinguishable_from"]),
-             "parameters": ", ".join(f"{k} = {p['value']:.4g} ± {p['std']:.2g} {p['unit']}"
+             "parameters": ", ".join(f"{k} = {beside(p['value'], p['std']):.4g} ± {p['std']:.2g} {p['unit']}"
                                      for k, p in e["parameters"].items()),
              **e["evidence"]}
             for e in self.content()["effects"]

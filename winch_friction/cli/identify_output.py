@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.cli.console import show_json, show_table, stdout
+from winch_friction.physics.channels import beside
 
 
 def show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
@@ -38,7 +39,7 @@ def seed_json(model: Any, out: Path) -> dict[str, Any]:
 def show_parameters(model: Any, title: str) -> None:
 
     rows = [
-        [p.name, f"{value:.5g}", f"{std:.2g}", p.unit, p.doc]
+        [p.name, f"{beside(value, std):.5g}", f"{std:.2g}", p.unit, p.doc]
         for p, value, std in zip(model.parameters, model.values, model.std, strict=True)
     ]
     show_table(title, ("parameter", "value", "std", "unit", "meaning"), rows)

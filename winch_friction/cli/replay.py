@@ -13,6 +13,7 @@ from winch_friction.cli.console import show_json, show_table, stderr
 from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalPath, OptionalTexts, Overwrite
+from winch_friction.physics.channels import beside
 
 SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
 PICTURES = (".html", ".png", ".svg", ".pdf", ".eps", ".jpg", ".jpeg", "")  # without a suffix: a png
@@ -225,7 +226,8 @@ _WORDS = {
 def _show(content: dict[str, Any]) -> None:
     rows = [(_WORDS.get(name, name), _text(value)) for name, value in content.items() if not isinstance(value, list)]
     show_table("Replay", ("what", "value"), rows)
-    _list("Learned", ("parameter", "unit", "seed", "learned", "sigma", "status"), content["parameters"])
+    learned = [{**each, "learned": beside(each["learned"], each["sigma"])} for each in content["parameters"]]
+    _list("Learned", ("parameter", "unit", "seed", "learned", "sigma", "status"), learned)
     if content["live"]:
         _list("Live against replay, relative", ("node", "compared", "missing", "largest", "equal"), content["live"])
 

@@ -155,6 +155,7 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
 
 def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
     from winch_friction.cli.chart import chart
+    from winch_friction.physics.channels import beside
     from winch_friction.report.tables import for_people, value_for_people
 
     largest = sorted(curve.parts, key=lambda name: -float(abs(curve.parts[name]).max()))[:3]
@@ -164,7 +165,7 @@ def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
     rows = [
         [
             p.name,
-            f"{value_for_people(v, p.unit):.4g}",
+            f"{value_for_people(beside(v, s) if model.covariance is not None else v, p.unit):.4g}",
             f"{value_for_people(s, p.unit):.2g}" if model.covariance is not None else "-",
             for_people(p.unit),
             p.doc,

@@ -8,6 +8,7 @@ import typer
 
 from winch_friction.cli.console import finite, stdout
 from winch_friction.cli.optional import OptionalPath
+from winch_friction.physics.channels import beside
 
 
 def command(
@@ -61,7 +62,8 @@ def view(frame: dict[str, Any], latest: dict[str, float]) -> Any:
         _table("state", ("part", "says"), [*state(status), *frame.get("notes", ())]),
         _table("now", ("signal", "value"), [(text, f"{latest[n]:.4g}") for n, text in SIGNALS.items() if n in latest]),
         _table("estimates, SI", ("parameter", "value", "sigma", "status"),
-               [(e["parameter"], f"{e['value']:.5g}", f"{e['std']:.2g}", e["status"]) for e in estimates(status)]),
+               [(e["parameter"], f"{beside(e['value'], e['std']):.5g}", f"{e['std']:.2g}", e["status"])
+                for e in estimates(status)]),
         _table("inputs", ("input", "rate [Hz]", "age [s]"),
                [(e["input"], f"{e['rate']:.1f}", f"{e['age']:.3f}") for e in inputs(status)]),
     )  # fmt: skip

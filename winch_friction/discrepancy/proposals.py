@@ -34,6 +34,7 @@ from winch_friction.discrepancy.vocabulary import (
     in_words,
     shape,
 )
+from winch_friction.physics.channels import beside
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import known_for_now
 
@@ -69,7 +70,7 @@ class Proposal:
         """In plain words; never a cause."""
         k = next(iter(self.parameters.values()))
         return (
-            f"{self.declared.sentence}, {amount_in_words(k.value, k.unit)}; "
+            f"{self.declared.sentence}, {amount_in_words(beside(k.value, k.std), k.unit)}; "
             f"closes {100 * min(self.closed, 1.0):.0f} % of the gap; what it is, the data do not say"
         )
 

@@ -33,7 +33,7 @@ from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import build_problem, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.channels import quotient_unit
+from winch_friction.physics.channels import beside, quotient_unit
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.friction.term import Parameter
@@ -129,7 +129,8 @@ class Partner:
     @property
     def note(self) -> str:
         """The tie in a sentence, with the equivalent size and what would decide."""
-        size = f"{self.parameter} = {self.size.value:.3g} ± {self.size.std:.2g} {self.size.unit}".removesuffix(" 1")
+        value, std = beside(self.size.value, self.size.std), self.size.std
+        size = f"{self.parameter} = {value:.3g} ± {std:.2g} {self.size.unit}".removesuffix(" 1")
         return (
             f"{self.tie.first.name} and {self.name} ({size}) are one thing in these runs ({self.tie.why}); "
             f"to tell them apart: {self.tie.separates}"

@@ -239,6 +239,20 @@ def quotient_unit(over: str, *factors: tuple[str, float]) -> str:
     return f"{over}{above}{below}".removeprefix("1*")
 
 
+NOTHING_BESIDE = 0.005  # of its standard deviation: half of the second digit, the last that is shown of that one
+
+
+def beside(value: float, std: float) -> float:
+    """A value as it is shown to people beside its standard deviation: 0 where it is nothing beside it.
+
+    What a search leaves of a parameter at its bound, -6.9e-20 beside 5e-11, says nothing but the rounding of a solver.
+
+    >>> beside(-6.91e-20, 5e-11), beside(-2e-12, 5e-11)
+    (0.0, -2e-12)
+    """
+    return 0.0 if abs(value) < NOTHING_BESIDE * std else value
+
+
 def _power(name: str, power: float) -> str:
     return name if power == 1.0 else f"{name}^{power:g}"
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.channels import CM3_PER_REV, RPM
+from winch_friction.physics.channels import CM3_PER_REV, RPM, beside
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.model_curve import ModelCurve
 from winch_friction.report.base import TextSection, write_report
@@ -82,7 +82,7 @@ def parameter_html(model: FrictionModel) -> str:
     rows = [
         (
             p.name,
-            value_for_people(value, p.unit),
+            value_for_people(beside(value, std) if known else value, p.unit),
             value_for_people(std, p.unit) if known else None,
             for_people(p.unit),
             p.doc,

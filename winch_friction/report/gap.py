@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
-from winch_friction.physics.channels import RPM
+from winch_friction.physics.channels import RPM, beside
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
@@ -89,7 +89,8 @@ def _effect(effect: Effect, result: GapResult) -> str:
     combined = effect.combination
     combination = (
         paragraph(
-            f"What these runs determine, where its members are tied: {combined.expression} = {combined.value:.4g} ± "
+            f"What these runs determine, where its members are tied: {combined.expression} = "
+            f"{beside(combined.value, combined.std):.4g} ± "
             f"{combined.std:.2g} {for_people(combined.unit)} ({combined.because})."
         )
         if combined and not drawn
@@ -126,7 +127,7 @@ def _curve(effect: Effect, model: FrictionModel) -> tuple[set[str], str]:
     std = np.sqrt(np.maximum(np.diag(matrix @ own @ matrix.T), 0.0))
     unit = FACTORS[signal][1]
     shown = [[value_for_people(float(v), table.unit) for v in values] for values in (heights, std)]
-    rows = [(value_for_people(k, unit), h, s) for k, h, s in zip(knots, *shown, strict=True)]
+    rows = [(value_for_people(k, unit), beside(h, s), s) for k, h, s in zip(knots, *shown, strict=True)]
     head = (f"{_words(signal)} [{for_people(unit)}]", f"value [{for_people(table.unit)}]", "σ")
     times = f", times {' and '.join(map(_words, table.times))}" if table.times else ""
     said = f"A curve over {_words(signal)} that the data drew{times}, {_WHERE[table.scope]}, linear between its places:"
@@ -212,7 +213,8 @@ def _proposals(result: GapResult) -> str:
         + latex_html(p["latex"])
         + table_html(
             ("parameter", "value", "σ", "unit"),
-            [(name, e["value"], e["std"], for_people(e["unit"])) for name, e in p["parameters"].items()], digits=4,
+            [(name, beside(e["value"], e["std"]), e["std"], for_people(e["unit"]))
+             for name, e in p["parameters"].items()], digits=4,
         )
         for p in proposals
     )  # fmt: skip

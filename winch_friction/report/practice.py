@@ -16,7 +16,7 @@ from winch_friction.report.plots import plot_html
 from winch_friction.report.practice_motor import motor_sections
 from winch_friction.report.practice_system import system_sections
 from winch_friction.report.practice_verification import verification_sections
-from winch_friction.report.tables import for_people, number, table_html, value_for_people
+from winch_friction.report.tables import estimate_for_people, number, table_html
 
 
 def write_practice_report(practice: Practice, path: Path, provenance: Mapping[str, Any] | None = None) -> Path:
@@ -38,7 +38,7 @@ def practice_sections(practice: Practice) -> list[Section]:
 def summary_html(practice: Practice) -> str:
     """What came out, in a few lines, and the seed."""
     rows = [
-        [p.doc, p.name, value_for_people(value, p.unit), value_for_people(std, p.unit), for_people(p.unit)]
+        [p.doc, p.name, *estimate_for_people(float(value), float(std), p.unit)]
         for p, value, std in zip(practice.seed.parameters, practice.seed.values, practice.seed.std, strict=True)
     ]
     first, *others = summary_lines(practice)

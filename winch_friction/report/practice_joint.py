@@ -3,10 +3,10 @@
 from winch_friction.identification.fit_data import contributions
 from winch_friction.identification.friction_curve import curve_data
 from winch_friction.identification.practice import Practice
-from winch_friction.physics.channels import RPM
+from winch_friction.physics.channels import RPM, beside
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.practice_look import SPEED, curve_label
-from winch_friction.report.tables import for_people, paragraph, table_html, value_for_people
+from winch_friction.report.tables import estimate_for_people, for_people, paragraph, table_html, value_for_people
 
 
 def joint_html(practice: Practice) -> str:
@@ -15,7 +15,8 @@ def joint_html(practice: Practice) -> str:
     boot = dict(zip(system.bootstrap.names, system.bootstrap.std, strict=True)) if system.bootstrap else {}
     rows = [
         [p.name, for_people(p.unit), *(value_for_people(each, p.unit) for each in (
-            joint.prior.value(p.name), prior_std or float("nan"), value, std, boot.get(p.name, float("nan"))))]
+            joint.prior.value(p.name), prior_std or float("nan"), beside(value, std), std,
+            boot.get(p.name, float("nan"))))]
         for p, prior_std, value, std in zip(
             joint.model.parameters, joint.prior.std, joint.model.values, joint.model.std, strict=True)
     ]  # fmt: skip
@@ -38,7 +39,7 @@ def joint_html(practice: Practice) -> str:
 def _sensor_error(name: str, found: tuple[float, float]) -> list[object]:
     """A row: an offset is a pressure, the rest are relative."""
     unit = "Pa" if name.endswith("offset") else "1"
-    return [name.replace("_", " "), *(value_for_people(each, unit) for each in found), for_people(unit)]
+    return [name.replace("_", " "), *estimate_for_people(*found, unit)]
 
 
 def joint_breakdown_html(practice: Practice) -> str:

@@ -9,7 +9,7 @@ from winch_friction.identification.motor_identification import MotorIdentificati
 from winch_friction.identification.motor_models import motor_model_named
 from winch_friction.identification.practice import Practice
 from winch_friction.identification.supplier_table import motor_points
-from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM, beside
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.report.base import TextSection
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
@@ -83,7 +83,7 @@ def parameter_table(fitted: FitResult, by_complex: FitResult | None = None) -> s
         [
             p.name,
             for_people(p.unit),
-            value_for_people(value, p.unit),
+            value_for_people(beside(value, std), p.unit),
             value_for_people(std, p.unit),
             100.0 * std / abs(value) if value else float("nan"),
             p.doc,

@@ -15,7 +15,14 @@ from winch_friction.report.base import TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
 from winch_friction.report.replay_picture import most_learned
-from winch_friction.report.tables import for_people, number, paragraph, table_html, value_for_people
+from winch_friction.report.tables import (
+    estimate_for_people,
+    for_people,
+    number,
+    paragraph,
+    table_html,
+    value_for_people,
+)
 
 TIME = "time [s]"
 NEXT = "<h3>What to do next</h3>"
@@ -107,8 +114,8 @@ def learned_html(result: Replayed, seed: FrictionModel) -> str:
     """The parameters: a table, and those that the recording told most about over time."""
     meaning = {each.name: each.doc for each in seed.parameters}
     rows = [
-        (meaning.get(e.name, ""), e.name, value_for_people(e.seed_value, e.unit), value_for_people(e.value, e.unit),
-         value_for_people(e.std, e.unit), for_people(e.unit), e.status)
+        (meaning.get(e.name, ""), e.name, value_for_people(e.seed_value, e.unit),
+         *estimate_for_people(e.value, e.std, e.unit), e.status)
         for e in result.parameters
     ]  # fmt: skip
     columns = ("what", "symbol", "seed", "learned", "σ", "unit", "status")

@@ -7,7 +7,7 @@ from html import escape
 from math import isfinite
 from typing import Any
 
-from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM, beside
 
 
 def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "", digits: int = 4) -> str:
@@ -68,10 +68,11 @@ def value_for_people(value: float, unit: str) -> float:
 
 
 def estimate_for_people(value: float, std: float, unit: str) -> tuple[Any, float, str]:
-    """Value, standard deviation and unit as people read them; an instant, s since 1970, as its date, uncertain by h."""
+    """Value, standard deviation and unit as people read them; an instant, s since 1970, as its date, uncertain by h;
+    0 for a value that is nothing beside its deviation."""
     if unit == "s" and value > _A_DATE:
         return f"{datetime.fromtimestamp(value, UTC):%Y-%m-%d %H:%M} UTC", std / 3600.0, "h"
-    return value_for_people(value, unit), value_for_people(std, unit), for_people(unit)
+    return value_for_people(beside(value, std), unit), value_for_people(std, unit), for_people(unit)
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:

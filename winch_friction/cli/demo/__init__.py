@@ -9,6 +9,7 @@ import typer
 
 from winch_friction.cli.console import show_json, show_table, stderr
 from winch_friction.cli.inputs import refuse_unwritable
+from winch_friction.physics.channels import beside
 from winch_friction.physics.errors import InputError
 
 PRODUCTS = ("bag", "legs", "estimator.json", "demo.json", "demo.png", "demo.html", "learned_model.yaml")
@@ -196,7 +197,8 @@ def _left(phase: dict[str, Any]) -> str:
 
 def _learned(results: dict[str, Any]) -> list[list[str]]:
     return [
-        [p["name"], p["unit"], *(f"{p[key]:.4g}" for key in ("seed", "learned", "std", "truth")),
+        [p["name"], p["unit"], *(f"{each:.4g}" for each in
+                                  (p["seed"], beside(p["learned"], p["std"]), p["std"], p["truth"])),
          f"{p['sigmas_from_truth']:+.1f} σ"]
         for p in results["parameters"]
     ]  # fmt: skip

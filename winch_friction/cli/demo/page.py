@@ -10,6 +10,7 @@ from winch_friction.cli.demo.plan import DemoPlan
 from winch_friction.cli.demo.plots import leg_plots
 from winch_friction.cli.demo.recording import Recording
 from winch_friction.cli.demo.tuning import EfficiencySearch
+from winch_friction.physics.channels import beside
 from winch_friction.replay.live import AGREEMENT, Comparison
 from winch_friction.report.base import Section, TextSection
 from winch_friction.report.decision import decision_html
@@ -126,7 +127,8 @@ def search_table(plan: DemoPlan, search: EfficiencySearch) -> str:
 def learned_table(parameters: Sequence[LearnedParameter]) -> str:
     """Seed, learned and true parameters, with the stated sigma."""
     body = [
-        (p.name, for_people(p.unit), *(value_for_people(each, p.unit) for each in (p.seed, p.learned, p.std, p.truth)),
+        (p.name, for_people(p.unit), *(value_for_people(each, p.unit) for each in
+                                       (p.seed, beside(p.learned, p.std), p.std, p.truth)),
          f"{p.sigmas:+.1f}".replace("-", "−"))
         for p in parameters
     ]  # fmt: skip

@@ -64,7 +64,7 @@
   const show = (frame) => {
     keep(frame.points);
     fill("state", frame.state);
-    fill("estimates", frame.estimates.map((e) => [e.parameter, short(e.value), short(e.value - e.std) + "\u00a0… " + short(e.value + e.std), e.status]));
+    fill("estimates", frame.estimates.map((e) => [e.parameter, short(Math.abs(e.value) < 0.005 * e.std ? 0 : e.value), short(e.value - e.std) + "\u00a0… " + short(e.value + e.std), e.status]));
     fill("inputs", frame.inputs.map((e) => [e.input, short(e.rate), short(e.age)]));
     text("faults", frame.faults.length ? frame.faults.join("; ") : "no fault");
     document.getElementById("faults").className = frame.faults.length ? "bad" : "good";

@@ -115,7 +115,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "winch-friction = winch_friction.cli.main:main",
+            "winch-friction = winch_friction.cli.entry:main",
             "compensator = winch_friction.nodes.compensator:main",
             "estimator = winch_friction.nodes.estimator:main",
             "simulator = winch_friction.nodes.simulator:main",

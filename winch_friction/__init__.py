@@ -6,7 +6,6 @@ loaded when they are first used, so that a node pays for nothing it does not nee
 
 import sys
 from types import ModuleType
-from typing import Any
 
 __version__ = "0.1.0"
 
@@ -29,7 +28,7 @@ _PUBLIC = {
 __all__ = sorted(_PUBLIC)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Load a public name when it is first used (PEP 562)."""
     if name not in _PUBLIC:
         raise AttributeError(f"module 'winch_friction' has no public name '{name}'; it has {', '.join(__all__)}")
@@ -44,7 +43,7 @@ class _Surface(ModuleType):
     """The package as a module whose public names stay what they are: `replay` is also the name of a subpackage, which
     the import system would put in the function's place."""
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         if not (name in _PUBLIC and _PUBLIC[name] and isinstance(value, ModuleType)):
             super().__setattr__(name, value)
 

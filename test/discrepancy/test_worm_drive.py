@@ -1,5 +1,7 @@
 """A small drive at one load and many steady speeds: an encoder that hardly counts, torques of a thousandth N m."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -52,3 +54,13 @@ def test_friction_of_the_real_worm_is_named_with_its_structural_rivals(shared_da
     assert not {"brake_drag", "wear_drift", "viscosity_temperature", "inertia_error"} & set().union(*sets)
     assert found["verdict"] == "ambiguous"
     assert found["gap"]["holdout"]["relative_after"] < 0.2
+
+
+@pytest.mark.parametrize("kind", ["electric", "power"])
+def test_what_reads_pressures_is_said_of_any_drive_without_them(kind):
+    """A drive known by its power was told that an electric drive has none."""
+    from winch_friction.discrepancy.candidates.candidate import Candidate
+
+    run = SimpleNamespace(present=frozenset({"motor_speed", kind}), groups=())
+    wanted = Candidate("case_pressure", "c", (), list, list, kind="signal", hydraulic=True)
+    assert wanted.untestable([run]).because == "only a hydraulic drive has them"

@@ -189,7 +189,7 @@ class Candidate:
         """Why these runs cannot show it; None where they can."""
         present = frozenset.intersection(*(run.present for run in runs))
         if self.hydraulic and not any(run.groups for run in runs):
-            return Untestable(self.name, self.latex, "pressures", "an electric drive has none")
+            return Untestable(self.name, self.latex, "pressures", "only a hydraulic drive has them")
         if self.blind is not None and (reason := self.blind(runs)) is not None:
             return Untestable(self.name, self.latex, *reason)
         missing = [name for name in self.needs if name not in present]

@@ -141,3 +141,16 @@ def test_a_kind_without_a_reader_is_answered_with_a_way(tmp_path):
     (tmp_path / "log.feather").write_bytes(b"ARROW1")
     with pytest.raises(InputError, match=r"pandas.read_feather\('log.feather'\).to_parquet"):
         read_log(tmp_path / "log.feather")
+
+
+@pytest.mark.parametrize("block", [0, 512])
+def test_hdf5_under_matlabs_ending_needs_no_head_of_matlabs(block, tmp_path):
+    """h5py, Julia and others write .mat of version 7.3 so; it was called corrupt."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "log.mat", "w", userblock_size=block) as file:
+        file["time"] = np.arange(5.0)
+        file["motor_speed"] = np.arange(5.0)[None] * 10.0
+        file["motor_speed"].attrs["unit"] = "rpm"
+    log = read_log(tmp_path / "log.mat")
+    assert {c.name: c.unit for c in log.columns} == {"time": "", "motor_speed": "rpm"}
+    np.testing.assert_array_equal(log.column("motor_speed").values, np.arange(5.0) * 10.0)

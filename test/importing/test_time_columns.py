@@ -171,3 +171,47 @@ def test_two_times_that_agree_are_one(second, name, tmp_path, crane_150t):
     """Another origin, whole seconds, a quartz that is a tenth of a per mille off."""
     found = propose([two_clocks(tmp_path, second, name)], crane_150t, "crane_150t")
     assert not [each for each in found.problems if "tell two times" in each]
+
+
+ZEIT = 1_772_359_200.0  # s since 1970 of the example's first row
+
+
+def beside_each_other(tmp_path, second):
+    """Two tables side by side: behind the second clock stand the pressures."""
+    run = example("test_02")
+    rows = rows_of(run, decimal=".")
+    told = ["unix time [s]", *(second(each) for each in run.time - run.time[0])]
+    half = len(rows[0]) // 2
+    table = [[*row[:half], each, *row[half:]] for row, each in zip(rows, told, strict=True)]
+    return write_text(tmp_path / "log.csv", table)
+
+
+def test_a_second_table_whose_clock_has_another_origin_is_asked_about(tmp_path, crane_150t):
+    """Its columns were taken to be of the first clock's instants, without a word."""
+    log = beside_each_other(tmp_path, lambda s: f"{ZEIT + s + 1.4:.3f}")
+    found = propose([log], crane_150t, "crane_150t")
+    (asked,) = [each for each in found.problems if "two tables side by side" in each]
+    assert "'unix time [s]' stands 1.4" in asked
+    assert "s later than 'Zeit' in every row" in asked
+    answered = propose([log], crane_150t, "crane_150t", ("time.from=Zeit",))
+    assert not answered.problems
+
+
+@pytest.mark.parametrize("second", [lambda s: f"{ZEIT + s:.3f}", lambda s: f"{ZEIT + s + 0.02:.3f}"])
+def test_a_second_table_of_the_same_clock_is_none(second, tmp_path, crane_150t):
+    found = propose([beside_each_other(tmp_path, second)], crane_150t, "crane_150t")
+    assert not [each for each in (*found.problems, *found.notes) if "unix" in each and "stands" in each]
+
+
+def test_another_origin_of_the_same_kind_is_said(tmp_path, crane_150t):
+    log = two_clocks(tmp_path, lambda s: f"{ZEIT + 7.0 + s:.3f}", "unix time [s]")
+    found = propose([log], crane_150t, "crane_150t")
+    (said,) = [each for each in found.notes if "unix time" in each]
+    assert "stands 7 s later than 'Zeit' in every row; 'Zeit' is taken" in said
+    assert not found.problems
+
+
+def test_a_date_beside_seconds_from_the_start_needs_no_word(tmp_path, crane_150t):
+    found = propose([two_clocks(tmp_path, lambda s: f"{s + 7.0:.3f}", "time_plc [s]")], crane_150t, "crane_150t")
+    assert not found.problems
+    assert not [each for each in found.notes if "stands" in each]

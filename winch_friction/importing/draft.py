@@ -18,6 +18,7 @@ class Draft:
     log_map: LogMap
     questions: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def change(self, name: str, confidence: float | None = None, because: str = "", **fields: object) -> None:
         """Change a channel's entry, adding to its reason."""

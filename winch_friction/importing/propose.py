@@ -81,7 +81,7 @@ def propose(
     used = {*draft.log_map.time_from, *(e.source for e in draft.log_map.columns.values())}
     unused = tuple(c.name for c in logs[0].columns if c.name not in used)
     log_map = replace(draft.log_map, unused=unused, questions=tuple(dict.fromkeys(draft.questions)))
-    notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes)
+    notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes) + tuple(draft.notes)
     problems = tuple(dict.fromkeys([*draft.problems, *log_map.questions]))
     return Proposal(log_map, problems, notes + tuple(_bad_cells(logs, log_map)))
 

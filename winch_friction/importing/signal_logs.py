@@ -29,6 +29,7 @@ _OBJECTS = (
     "{}, which MATLAB alone can open; save its columns: s = table2struct(timetable2table(TT), 'ToScalar', true); "
     "save log.mat -struct s, or writetimetable(TT, 'log.csv')"
 )
+_HDF5, _HDF5_AT = b"\x89HDF\r\n\x1a\n", (0, 512, 1024, 2048)  # signature, and bytes behind which it may stand
 _MOST = 50_000_000  # values of one signal: ten days at 50 Hz
 
 
@@ -141,6 +142,8 @@ def _parquet(path: Path) -> Found:
 
 
 def _mat(path: Path) -> Found:
+    if _is_bare_hdf5(path):
+        return _hdf5(path)
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
@@ -153,6 +156,13 @@ def _mat(path: Path) -> Found:
     if not found and any(isinstance(value, MatlabOpaque) for value in content.values()):
         raise InputError(f"{path}: {_OBJECTS.format('a timetable, table or other object')}")
     return Found(found)
+
+
+def _is_bare_hdf5(path: Path) -> bool:
+    """Whether a .mat file is HDF5 without MATLAB's own head before it, as other programs write it."""
+    with path.open("rb") as file:
+        head = file.read(_HDF5_AT[-1] + len(_HDF5))
+    return not head.startswith(b"MATLAB") and any(head[at:].startswith(_HDF5) for at in _HDF5_AT)
 
 
 def _arrays(name: str, value: Any, depth: int) -> Iterator[Signal]:

@@ -10,7 +10,7 @@ from winch_friction.importing.draft import Draft
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.ticks import fraction_unit
-from winch_friction.importing.time_base import TimeGuess, guess_form, guess_time, to_seconds
+from winch_friction.importing.time_base import TimeBase, TimeGuess, guess_form, guess_time, to_seconds
 from winch_friction.importing.time_numbers import counts_rows
 from winch_friction.importing.units import fitting_si_unit, header_readings
 from winch_friction.physics.signals import FloatArray
@@ -54,7 +54,7 @@ def settle_time(draft: Draft) -> None:
     )  # fmt: skip
     if guess.question:
         draft.questions.append(f"time: {guess.question}")
-    draft.questions += _rivals(draft.logs[0], columns, guess)
+    _look_at_rivals(draft, columns, guess)
     first = columns[0]
     if (
         len(columns) == 1
@@ -68,8 +68,10 @@ def settle_time(draft: Draft) -> None:
         )
 
 
-def _rivals(log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess) -> list[str]:
-    """What to ask where another column of the name of a time says that the log lasts longer, or less long."""
+def _look_at_rivals(draft: Draft, columns: tuple[LogColumn, ...], guess: TimeGuess) -> None:
+    """Ask where another column of the name of a time says that the log lasts longer, or less long, or that the columns
+    behind it are of other instants; say it where it merely counts from another origin."""
+    log = draft.logs[0]
     taken = to_seconds(columns, guess.base, "time", log.place, strict=False)
     for other in log.columns:
         rival = None if other in columns or not _is_named(other) else guess_time([other], _time_reading(other)[1])
@@ -80,12 +82,43 @@ def _rivals(log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess) -> list[
         own, its = (np.ptp(each[both]) if both.any() else 0.0 for each in (taken, told))
         if abs(own - its) > _CLOCKS * own + _STEPS * max(_step(taken[both]), _step(told[both])):
             names = " + ".join(c.name for c in columns)
-            return [
+            draft.questions.append(
                 f"time: '{names}' and '{other.name}' tell two times, {own:.6g} s and {its:.6g} s from the first row to "
                 "the last: which is it? --set time.from=COLUMN; where each belongs to the columns beside it (two "
                 "tables side by side), bring them to one time first"
-            ]
-    return []
+            )
+            return
+        if _kind(rival.base) == _kind(guess.base) and both.any():
+            _look_at_origin(draft, columns, other, float(np.median((told - taken)[both])), _step(taken[both]))
+
+
+def _look_at_origin(draft: Draft, columns: tuple[LogColumn, ...], other: LogColumn, apart: float, step: float) -> None:
+    """What to say of another clock of the same kind that runs as the time does, but stands `apart` s from it."""
+    if abs(apart) <= _STEPS * step:
+        return
+    names, shown = " + ".join(c.name for c in columns), f"{abs(apart):.6g} s {'later' if apart > 0.0 else 'earlier'}"
+    if _begins_a_table(draft.logs[0], columns, other):
+        draft.questions.append(
+            f"time: '{other.name}' stands {shown} than '{names}' in every row, and columns of its own stand behind it: "
+            "where these are of its times (two tables side by side), bring them to one time first; where all columns "
+            f"of a row are of one instant, --set time.from={columns[0].name!r}"
+        )
+    else:
+        draft.notes.append(
+            f"time: '{other.name}' stands {shown} than '{names}' in every row; '{names}' is taken, --set time.from="
+            "COLUMN for the other one"
+        )
+
+
+def _kind(base: TimeBase) -> str:
+    """What a time counts from: a date, midnight, or any origin. Only of one kind can two be compared."""
+    return base.form if base.form in ("clock", "seconds") else "date"
+
+
+def _begins_a_table(log: Log, columns: tuple[LogColumn, ...], other: LogColumn) -> bool:
+    """Whether signals stand between the time and another clock, and behind the later one of them."""
+    at = sorted([log.columns.index(columns[-1]), log.columns.index(other)])
+    return at[1] - at[0] > 1 and at[1] < len(log.columns) - 1
 
 
 def _step(seconds: FloatArray) -> float:

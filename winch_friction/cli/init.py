@@ -37,7 +37,14 @@ def crane(
     active: Annotated[OptionalInt, typer.Option(help="Active motors in heave compensation; 0: none.")] = None,
     wire: Annotated[OptionalFloat, typer.Option(help="Wire diameter in mm.")] = None,
     inertia: Annotated[
-        OptionalFloat, typer.Option(help="Inertia at the motor shaft, kg m^2; estimated if absent.")
+        OptionalFloat,
+        typer.Option(help="Inertia at the motor shaft, kg m^2; of a hydraulic drive estimated if absent."),
+    ] = None,
+    drive: Annotated[
+        str, typer.Option(help="How the motors' torque is known: hydraulic, electric (a torque), power or current.")
+    ] = "hydraulic",
+    torque_constant: Annotated[
+        OptionalFloat, typer.Option(help="Of --drive current: N m at the motor shaft per A.")
     ] = None,
     out: Out = None,
     overwrite: Overwrite = False,
@@ -47,8 +54,11 @@ def crane(
 
     Example: winch-friction init crane --name crane_50t --load 50 --motors 5 --displacement 160 --gear-ratio 180
     --radius 0.6 --layers 5 --active 2 --wire 44
+
+    An electric one: winch-friction init crane --drive electric --name winch_5t --load 5 --motors 1 --gear-ratio 90
+    --radius 0.3 --layers 4 --wire 20 --inertia 0.4
     """
-    from winch_friction.cli.init_texts import CraneFacts, crane_text
+    from winch_friction.cli.init_crane import CraneFacts, crane_text, wanted_of
 
     asked = {
         "name": (name or None, str, "name of the crane"),
@@ -60,8 +70,11 @@ def crane(
         "layers": (layers, int, "wire layers"),
         "active": (active, int, "active motors in heave compensation (0: none)"),
         "wire": (wire, float, "wire diameter, mm"),
+        "inertia": (inertia, float, "inertia at the motor shaft, kg m^2: rotors, gear and drum"),
+        "torque_constant": (torque_constant, float, "N m at the motor shaft per A"),
     }
-    facts = CraneFacts(**_answered(asked), inertia=inertia)
+    wanted, given = wanted_of(drive), {name: value for name, (value, *_) in asked.items() if value is not None}
+    facts = CraneFacts(drive=drive, **{**given, **_answered({name: asked[name] for name in wanted})})
     _write(out or _file_of(facts.name), crane_text(facts), overwrite, as_json)
 
 
@@ -75,7 +88,7 @@ def plant(
     """
     from winch_friction.cli.init_texts import plant_text
 
-    known = _hydraulic(crane)
+    known = _hydraulic(crane, "a plant")
     name = name or f"plant_{known.name}"
     _write(out or _file_of(name), plant_text(known, name), overwrite, as_json)
 
@@ -86,13 +99,17 @@ def model(
 ) -> None:
     """A rough seed model, scaled from paper 2's cranes to this one; identify replaces it.
 
+    Of a crane that is not hydraulic a model without a term: nothing is assumed, `gap` finds what there is.
+
     Example: winch-friction init model --crane crane_50t.yaml
     """
-    from winch_friction.cli.init_texts import model_text
+    from winch_friction.cli.init_texts import bare_model_text, model_text
+    from winch_friction.records.crane_file import load_crane
 
-    known = _hydraulic(crane)
+    known = load_crane(crane)
     name = name or f"seed_{known.name}"
-    _write(out or _file_of(name), model_text(known, name), overwrite, as_json)
+    text = model_text if known.drive.hydraulic else bare_model_text
+    _write(out or _file_of(name), text(known, name), overwrite, as_json)
 
 
 @app.command()
@@ -114,7 +131,7 @@ def scenario(
     """
     from winch_friction.cli.init_texts import scenario_text
 
-    known = _hydraulic(crane)
+    known = _hydraulic(crane, "a scenario")
     if mode not in ("normal", "ahc"):
         raise InputError(f"--mode {mode}: use normal or ahc")
     if mode == "ahc" and not {"active", "passive"} <= set(known.groups):
@@ -131,8 +148,9 @@ def map_(crane: OfCrane = "", out: Out = None, overwrite: Overwrite = False, as_
     Example: winch-friction init map --crane crane_50t.yaml --out log_map.yaml
     """
     from winch_friction.cli.init_texts import map_text
+    from winch_friction.records.crane_file import load_crane
 
-    known = _hydraulic(crane) if crane else None
+    known = load_crane(crane) if crane else None
     _write(out or Path("log_map.yaml"), map_text(known), overwrite, as_json)
 
 
@@ -165,13 +183,14 @@ def _answered(asked: dict[str, tuple[Any, type, str]]) -> dict[str, Any]:
     }
 
 
-def _hydraulic(name: str) -> Any:
+def _hydraulic(name: str, what: str) -> Any:
     from winch_friction.records.crane_file import load_crane
 
     crane = load_crane(name)
     if not crane.drive.hydraulic:
         raise InputError(
-            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; templates are for hydraulic ones"
+            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}': {what} is for the simulator, whose cranes "
+            "are hydraulic; of yours import the logs"
         )
     return crane
 

@@ -1,5 +1,6 @@
 """The repaired model in the making: what is added to what, what is cut at a bound, and which step is taken."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -141,6 +142,24 @@ def test_a_law_that_closes_little_of_the_locked_gap_is_not_proposed(monkeypatch)
     monkeypatch.setattr(proposals, "_proven", lambda *_: proposal(1.9))
     search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
     assert proposals.propose(SimpleNamespace(search=search), (), None, np.random.default_rng(0)) == ()
+
+
+@pytest.mark.parametrize(
+    ("laws", "surely", "order"),
+    [
+        ("5a 2b", "", "2b 5a"),  # closes as much: the one with less to read
+        ("5a 2b", "ba", "5a 2b"),
+        ("2b 5a", "", "2b 5a"),
+        ("4a 3b 2c", "ca", "4a 2c 3b"),  # it need not beat every shorter one
+        ("2b 2a", "ab", "2b 2a"),  # of equals the search's own order
+    ],
+)
+def test_a_simpler_law_that_closes_as_much_stands_first(laws, surely, order, monkeypatch):
+    """`surely`: which law is beaten on the locked runs, and by which. Laws are named by what there is to read."""
+    monkeypatch.setattr(proposals, "adds", lambda fewer, more, _: f"{fewer}{more}" in surely.split())
+    found = [replace(proposal(0.5), weight=int(law[0]), held=law[1]) for law in laws.split()]
+    shown = proposals._simplest_first(found, np.random.default_rng(0))
+    assert [f"{each.weight}{each.held}" for each in shown] == order.split()
 
 
 @pytest.mark.parametrize(

@@ -90,14 +90,15 @@ def test_text_and_arrays_say_the_same():
         (Factor("above", "pressure", (("c", 1.79e7),)), "with pressure above 179 bar"),
         (Factor("below", "displacement", (("c", 1.4006e-5),)), "with displacement below 88 cm^3/rev"),
         (Factor("step", "motor_speed", (("c", 104.72),)), "as soon as motor speed exceeds 1000 rpm"),
-        (Factor("about", "wire_layer", (("c", 3.0),)), "linearly with wire layer beyond 3"),
+        (Factor("about", "wire_layer", (("c", 3.0),)), "linearly with wire layer, none at 3"),
         (Factor("lag", "pressure", (("c", 10.0),)), "with the pressure of the last 10 s"),
     ],
 )
 def test_a_law_is_said_in_the_units_that_people_read_and_declared_in_si(factor, words):
     declared = declare(Law((factor,), opposing=True), 1.0)
     assert declared.sentence == f"friction that opposes motion and acts {words}"
-    assert list(declared.constants.values()) == [value for _, value in factor.constants]
+    fitted = () if factor.signal == "wire_layer" else factor.constants
+    assert list(declared.constants.values()) == [value for _, value in fitted]
 
 
 @pytest.mark.parametrize(
@@ -118,6 +119,22 @@ def test_the_file_of_terms_declares_the_very_term(tmp_path):
     with known_for_now(declare(Law((Factor("linear", "wire_out"),), opposing=True), 1.0).term):
         (loaded,) = load_file(path)
     assert loaded == declared.term
+
+
+def test_a_count_has_whole_constants_that_no_fit_moves():
+    """A proposal acted linearly with the wire layer beyond 0.573: there is no such layer."""
+    word = BY_NAME["wire_layer"]
+    seen = np.repeat([3.0, 4.0, 4.0, 6.0], 50)
+    found = list(factors(word, seen))
+    assert [(f.kind, dict(f.constants).get("c")) for f in found] == [
+        ("linear", None), ("about", 1.0), ("about", 3.0), ("about", 4.0), ("about", 6.0)
+    ]  # fmt: skip
+    law = Law((Factor("above", "motor_speed", (("c", 90.0),)), found[2]), opposing=True)
+    declared = declare(law, 1.0)
+    assert list(declared.constants.values()) == [90.0]
+    assert "(wire_layer - 3)" in declared.text
+    assert "(l - 3)" in str(declared.term.equation)
+    assert in_words(law, [95.0]).endswith("above 907 rpm and linearly with wire layer, none at 3")
 
 
 @pytest.fixture(scope="module")

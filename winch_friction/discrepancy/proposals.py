@@ -4,7 +4,7 @@ A proposal says on what the gap depends and how, with amounts and units, so that
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import expand_around
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.proof import Trial, fits_only_its_own, left_beside_a_refit, unproven
+from winch_friction.discrepancy.proof import Side, Trial, adds, fits_only_its_own, left_beside_a_refit, unproven
 from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -52,6 +52,8 @@ class Proposal:
     noise_floor: float
     unit: str
     p_value: float
+    weight: int = 0  # of its law: words and constants, how much there is to read
+    held: Side | None = field(default=None, repr=False, compare=False)  # the locked runs as it leaves them
 
     @property
     def closed(self) -> float:
@@ -107,7 +109,18 @@ def propose(refit: Trial, train: Sequence[str], evaluate: Evaluate, rng: np.rand
         if len(found) == LIMITS.most_proposals:
             break
     best = max((each.closed for each in found), default=0.0)
-    return tuple(each for each in found if each.closed >= LIMITS.proposal_share * best)
+    return _simplest_first([each for each in found if each.closed >= LIMITS.proposal_share * best], rng)
+
+
+def _simplest_first(found: Sequence[Proposal], rng: np.random.Generator) -> tuple[Proposal, ...]:
+    """The laws by how much there is to read; a longer one stands before a shorter one only where it takes more off the
+    locked gap, surely and by an amount that a balance of a winch can tell."""
+    order: list[Proposal] = []
+    for each in sorted(found, key=lambda one: one.weight):
+        shorter = ((k, other) for k, other in enumerate(order) if other.weight < each.weight)
+        beaten = (k for k, other in shorter if other.held and each.held and adds(other.held, each.held, rng))
+        order.insert(next(beaten, len(order)), each)
+    return tuple(order)
 
 
 def explained(verdict: str, proposals: Sequence[Proposal]) -> bool:
@@ -177,6 +190,8 @@ def _tuned(grammar: Grammar, scored: Scored, runs: Sequence[PreparedRun], most: 
     step = 0.25
     for _ in range(LIMITS.tuning_rounds):
         for k, factor in enumerate(best.law.factors):
+            if BY_NAME[factor.signal].whole:
+                continue
             for j, (name, value) in enumerate(factor.constants):
                 moved = [value * (1.0 + s) for s in (-step, -0.5 * step, 0.5 * step, step)]
                 for trial in moved:
@@ -269,4 +284,5 @@ def _proven(
     return Proposal(
         declared, dict(found), declared.text, trial.repaired.model,
         held.size_before.value, held.size_after.value, held.noise_floor, own.given.crane.drive.unit, p_value,
+        scored.law.weight, held,
     )  # fmt: skip

@@ -40,6 +40,7 @@ class Word:
     of_run: Callable[[PreparedRun], FloatArray] | None = None
     of_group: Callable[[GroupSignals], FloatArray] | None = None
     needs: str = ""  # column that the runs must have
+    whole: bool = False  # a count: its constants are whole numbers, and no fit moves them
     kinds: tuple[str, ...] = ("linear", "root", "square", "about", "step", "above", "below")
 
 
@@ -57,7 +58,7 @@ WORDS = (
     Word("wire_out", "wire_out", "m", "wire_out", lambda r: r.channels["wire_out"], needs="wire_out",
          kinds=("linear", "root", "square", "about", "step", "above", "below", "wave")),
     Word("wire_layer", "wire_layer", "1", "wire_layer", lambda r: r.channels["wire_layer"], needs="wire_layer",
-         kinds=("about",)),
+         whole=True, kinds=("linear", "about")),
     Word("run_time", "run_time", "s", "time", lambda r: r.time, kinds=("fade",)),
     Word("drum_angle", "(shaft_angle / gear_ratio)", "rad", "shaft_angle", lambda r: r.angle / r.gear_ratio,
          kinds=("sector",)),
@@ -84,15 +85,7 @@ TEXTS: Mapping[str, str] = {
     "sector": "sp.Piecewise((1.0, sp.Mod({x} / (2 * sp.pi) - {c}, 1) < {h}), (0.0, True))",
 }
 # powers of the signal's unit that a function has; none: it is a pure number
-POWERS = {
-    "linear": 1.0,
-    "root": 0.5,
-    "square": 2.0,
-    "about": 1.0,
-    "above": 1.0,
-    "below": 1.0,
-    "lag": 1.0,
-}  # of the unit
+POWERS = {"linear": 1.0, "root": 0.5, "square": 2.0, "about": 1.0, "above": 1.0, "below": 1.0, "lag": 1.0}
 CONSTANT_UNITS = {"lag": {"c": "s"}, "sector": {"c": "1", "h": "1"}}
 
 
@@ -122,7 +115,8 @@ def factors(word: Word, covered: FloatArray) -> Iterator[Factor]:
     span = float(np.ptp(covered)) if len(covered) else 0.0
     if span <= 1e-6 * float(np.abs(covered).max(initial=1e-12)):
         return
-    knots = list(dict.fromkeys(float(f"{q:.3g}") for q in np.quantile(covered, QUANTILES)))
+    quantiles = (float(f"{q:.3g}") for q in np.quantile(covered, QUANTILES))
+    knots = _counts(covered) if word.whole else list(dict.fromkeys(quantiles))
     for kind in word.kinds:
         for constants in _constants(kind, word, knots, span):
             if 0.0 in constants.values():  # a constant of no size has no scale to be fitted on
@@ -130,10 +124,15 @@ def factors(word: Word, covered: FloatArray) -> Iterator[Factor]:
             yield Factor(kind, word.name, tuple(constants.items()))
 
 
+def _counts(covered: FloatArray) -> list[float]:
+    """The whole numbers that were seen, and 1, where counting begins."""
+    return sorted({1.0, *np.unique(np.round(covered)).tolist()})
+
+
 def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> list[dict[str, float]]:
     if kind in ("linear", "root", "square"):
         return [{}]
-    if kind == "about":
+    if kind == "about" and not word.whole:
         return [{"c": c} for c in dict.fromkeys((knots[0], knots[len(knots) // 2], knots[-1]))]
     if kind == "hump":
         return [{"c": c, "h": width * span} for c in knots for width in (0.05, 0.12)]
@@ -153,7 +152,7 @@ def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> li
 SOURCE = "proposed by winch-friction gap: it fits, what it is the data do not say"
 WORDS_OF = {
     "linear": "in proportion to {s}", "root": "with the root of {s}", "square": "with the square of {s}",
-    "about": "linearly with {s} beyond {c}", "step": "as soon as {s} exceeds {c}", "above": "with {s} above {c}",
+    "about": "linearly with {s}, none at {c}", "step": "as soon as {s} exceeds {c}", "above": "with {s} above {c}",
     "below": "with {s} below {c}", "hump": "around a {s} of {c}", "fade": "fading with {s} by {c}",
     "lag": "with the {s} of the last {c} s", "wave": "periodically in {s}, every {c}",
     "sector": "within a sector of {s}",
@@ -216,6 +215,9 @@ def _factor(factor: Factor, number: int, suffix: str) -> tuple[str, list[_Row], 
     names: dict[str, str] = {}
     state: str | None
     for key, value in factor.constants:
+        if word.whole:
+            names[key] = f"{value:.0f}"
+            continue
         short = f"{key}{number}"
         rows.append((short, f"{short}_{suffix}", units.get(key, word.unit), value, True, f"{key} of {factor.kind}"))
         names[key] = f"{short}.symbol"
@@ -265,7 +267,10 @@ def _mentions(text: str, symbol: str) -> bool:
 def in_words(law: Law, values: Sequence[float]) -> str:
     """The law's sentence with its constants, in their order, as the last fit has them."""
     rest = iter(values)
-    factors = tuple(replace(f, constants=tuple((key, next(rest)) for key, _ in f.constants)) for f in law.factors)
+    factors = tuple(
+        f if BY_NAME[f.signal].whole else replace(f, constants=tuple((key, next(rest)) for key, _ in f.constants))
+        for f in law.factors
+    )
     return _sentence(replace(law, factors=factors))
 
 

@@ -114,8 +114,8 @@ def learned_html(result: Replayed, seed: FrictionModel) -> str:
     """The parameters: a table, and those that the recording told most about over time."""
     meaning = {each.name: each.doc for each in seed.parameters}
     rows = [
-        (meaning.get(e.name, ""), e.name, value_for_people(e.seed_value, e.unit),
-         *estimate_for_people(e.value, e.std, e.unit), e.status)
+        (meaning.get(e.name, ""), e.name,
+         value_for_people(e.seed_value, e.unit), *estimate_for_people(e.value, e.std, e.unit), e.status)
         for e in result.parameters
     ]  # fmt: skip
     columns = ("what", "symbol", "seed", "learned", "σ", "unit", "status")

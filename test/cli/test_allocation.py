@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from winch_friction.cli import gap
 from winch_friction.cli.gap import search_at_hand
 
 FAULTS = """
@@ -32,6 +33,42 @@ def test_arrays_that_come_and_go_cost_no_new_pages():
     if held == "False":
         pytest.skip("the C library is not glibc")
     assert usual > 3 * kept
+
+
+BETWEEN = """
+import os, sys
+import numpy as np
+from winch_friction.cli.gap import give_freed_memory_back, keep_freed_memory
+
+keep_freed_memory()
+kept = []
+for _ in range(400):  # what stays lies between what goes
+    gone = np.ones(1 << 16)
+    kept.append(np.ones(1 << 13))
+    kept.append(gone)
+kept = kept[::2]
+del gone
+held = lambda: int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+before = held()
+print(give_freed_memory_back(), before - held())
+"""
+
+
+def test_what_a_step_has_freed_goes_back_before_the_next():
+    done = subprocess.run([sys.executable, "-c", BETWEEN], capture_output=True, text=True, check=True, timeout=60)
+    given, less = done.stdout.split()
+    if given == "False":
+        pytest.skip("the C library is not glibc")
+    assert int(less) > 100e6
+
+
+def test_every_step_gives_back(monkeypatch):
+    given = []
+    monkeypatch.setattr(gap, "give_freed_memory_back", lambda: given.append(1))
+    with gap.stepping("work", 2) as tell:
+        tell("first")
+        tell("second")
+    assert len(given) == 2
 
 
 def looks(work):

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.candidates.candidate import Candidate
 from winch_friction.discrepancy.candidates.friction import friction_candidate
 from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.engine import selection as selection_module
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot, find_regions, grams
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.chance import (
     Dependence,
     Size,
@@ -30,6 +30,7 @@ from winch_friction.discrepancy.engine.chance import (
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, fitted, heads
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, noise_of_run
+from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import (
     Finding,
     Selection,

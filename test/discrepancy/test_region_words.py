@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.engine.blocks import find_regions
+from winch_friction.discrepancy.engine.regions import find_regions
 
 RNG = np.random.default_rng(3)
 DIRECTION = np.where(np.arange(600) % 2, 1.0, -1.0)

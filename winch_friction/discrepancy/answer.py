@@ -13,9 +13,10 @@ import numpy as np
 from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate, Untestable
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, Region
+from winch_friction.discrepancy.engine.blocks import Blocks
 from winch_friction.discrepancy.engine.chance import Dependence, Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.regions import Region
 from winch_friction.discrepancy.engine.selection import Considered, Selection
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -182,8 +183,7 @@ class GapResult:
             "untestable": [{"name": u.name, "needs": u.needs, "because": u.because} for u in self.untestable],
             "considered": [
                 {"name": c.name, "variant": c.variant, "stage": c.stage, "cv_gain": c.gain, "p_value": c.p_value,
-                 "outcome": c.verdict} for c in self.considered
-            ],
+                 "outcome": c.verdict} for c in self.considered],
             "notes": list(self.notes),
             "seed_refuted": [each.content() for each in self.seed_refuted],
             "adequacy": [vars(each) for each in self.adequacy],

@@ -259,8 +259,7 @@ def expand_around(
     given: Given, before: Expansion, explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False
 ) -> Expansion:
     """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
-    base, seed = before.layout.base, given.model
-    count = base.parameters
+    base, seed, count = before.layout.base, given.model, before.layout.base.parameters
     values = np.array(before.model.values) + explanation.beta[:count] * base.scale[:count]
     bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
     model = seed.with_values(list(np.clip(values, bounds[:, 0], bounds[:, 1])))
@@ -270,7 +269,8 @@ def expand_around(
         spikes = np.zeros_like(old.spikes) if turning else old.spikes
         load = given.loads.get(run.name, NAN)
         new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes, old.seen)
-        prepared.append(replace(new, corrections=old.corrections).sharing(old))
+        own = new if not turning else replace(new, seen=None)  # nobody prepares again what was turned
+        prepared.append(replace(own, corrections=old.corrections).sharing(old))
     return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
 
 

@@ -1,6 +1,7 @@
 """The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length
+from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length, usable_blocks
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
@@ -237,14 +238,18 @@ def build_problem(
     """The regression over these runs' usable samples, in blocks or, where time is short, one by one, in the gap's
     unit."""
     length = segment_length(sum(run.time[-1] for run in runs))
-    tables = [_blocks(run, layout, 1 if by_sample else block_size(run), length) for run in runs]
-    return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known)
+    sizes = [1 if by_sample else block_size(run) for run in runs]
+    ends = np.cumsum([0] + [usable_blocks(run.used, size) for run, size in zip(runs, sizes, strict=True)])
+    x = np.empty((len(layout.scales), ends[-1]))  # the second largest thing there is, and what all fits read
+    own = zip(runs, sizes, pairwise(ends), strict=True)
+    tables = [_blocks(run, layout, size, length, x[:, a:b]) for run, size, (a, b) in own]
+    return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known, x.T)
 
 
-def _blocks(run: PreparedRun, layout: Layout, size: int, length: float) -> RunBlocks:
+def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: FloatArray) -> RunBlocks:
     table = run_blocks(
         run.time, run.gap / run.unit_torque, regressors(run, layout), run.used, run.direction, run.channels, size,
-        length,
+        length, into,
     )  # fmt: skip
     weighed = "hook_load" in run.present or not run.groups
     return table if weighed else _weightless(table, layout.base.parameters)
@@ -252,14 +257,14 @@ def _blocks(run: PreparedRun, layout: Layout, size: int, length: float) -> RunBl
 
 def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
     """Where the load was never measured it is anything: what a constant weight could explain is taken out
-    everywhere."""
+    everywhere, in the table itself."""
     weight = table.x[:, weight_column]
     scale = float(weight @ weight)
     if scale <= 0.0:
         return table
-    x = table.x - np.outer(weight, weight @ table.x / scale)
     y = table.y - weight * (weight @ table.y / scale)
-    return RunBlocks(y, x, table.segment, table.position, table.features, table.direction)
+    table.x[...] -= np.outer(weight, weight @ table.x / scale)
+    return RunBlocks(y, table.x, table.segment, table.position, table.features, table.direction)
 
 
 def least_noise_of(run: PreparedRun) -> float:

@@ -23,7 +23,7 @@ from winch_friction.discrepancy.answer import (
     unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.engine.blocks import find_regions
+from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Given, meet, swings

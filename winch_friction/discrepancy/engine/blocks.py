@@ -1,16 +1,13 @@
 """A gap and its regressors as block means, and their Gram matrices per fold: after this, every fit is small.
 
-Values are in the gap's unit and weighted by each record's own noise. Where the gap lies is said in words, as regions
-of the operating space with a share each.
+Values are in the gap's unit and weighted by each record's own noise.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -116,25 +113,46 @@ def segment_length(total: float) -> float:
 
 def run_blocks(
     time: FloatArray, gap: FloatArray, columns: Iterable[FloatArray], mask: np.ndarray, direction: FloatArray,
-    features: Mapping[str, FloatArray], size: int, length: float,
+    features: Mapping[str, FloatArray], size: int, length: float, into: FloatArray | None = None,
 ) -> RunBlocks:  # fmt: skip
     """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long.
 
     `columns` come in parts (samples, some columns), each of which is let go once its means are taken: all of them over
-    all samples of an hour are a gigabyte.
+    all samples of an hour are a gigabyte. The means go `into` a place of the right size (columns, blocks) where one is
+    given: those of many records are half a gigabyte, for which there is no room twice.
     """
-    starts = np.arange(0, len(time), size)
-    counts = np.add.reduceat(mask.astype(float), starts)
-    keep = counts >= LIMITS.fullest_block * size
+    starts, counts, keep = _usable(mask, size)
     means = {name: _means(values, starts, counts, mask)[keep] for name, values in features.items()}
     return RunBlocks(
         y=_means(gap, starts, counts, mask)[keep],
-        x=np.column_stack([_means(part, starts, counts, mask)[keep] for part in columns]),
+        x=_beside_each_other((_means(part, starts, counts, mask)[keep] for part in columns), into),
         segment=(time[starts[keep]] / length).astype(int),
         position=np.flatnonzero(keep),
         features=means,
         direction=np.sign(_means(direction, starts, counts, mask)[keep]),
     )
+
+
+def usable_blocks(mask: np.ndarray, size: int) -> int:
+    """How many blocks of `size` samples have enough masked ones."""
+    return int(_usable(mask, size)[2].sum())
+
+
+def _usable(mask: np.ndarray, size: int) -> tuple[np.ndarray, FloatArray, np.ndarray]:
+    """Where blocks begin, how many masked samples each has, and whether these are enough."""
+    starts = np.arange(0, len(mask), size)
+    counts = np.add.reduceat(mask.astype(float), starts)
+    return starts, counts, counts >= LIMITS.fullest_block * size
+
+
+def _beside_each_other(parts: Iterable[FloatArray], into: FloatArray | None) -> FloatArray:
+    if into is None:
+        return np.column_stack(list(parts))
+    at = 0
+    for part in parts:
+        into[at : at + part.shape[1]] = part.T
+        at += part.shape[1]
+    return into.T
 
 
 def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, mask: np.ndarray) -> FloatArray:
@@ -144,8 +162,8 @@ def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, mask: np.
     return np.asarray(sums / (np.maximum(counts, 1.0)[:, None] if values.ndim > 1 else np.maximum(counts, 1.0)))
 
 
-def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float]) -> Blocks:
-    """The blocks of several records, weighted by each one's noise."""
+def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float], x: FloatArray | None = None) -> Blocks:
+    """The blocks of several records, weighted by each one's noise; `x`: their columns, where these stand together."""
     offsets = np.cumsum([0] + [int(t.segment.max(initial=0)) + 1 for t in tables])
     names = list(dict.fromkeys(name for t in tables for name in t.features))
     features = {
@@ -153,7 +171,7 @@ def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float]) -> Blocks:
     }
     return Blocks(
         y=np.concatenate([t.y for t in tables]),
-        x=_stacked([t.x for t in tables]),
+        x=_stacked([t.x for t in tables]) if x is None else x,
         run=np.concatenate([np.full(len(t.y), k) for k, t in enumerate(tables)]),
         segment=np.concatenate([t.segment + o for t, o in zip(tables, offsets[:-1], strict=True)]),
         weight=np.concatenate([np.full(len(t.y), 1.0 / noise[k]) for k, t in enumerate(tables)]),
@@ -175,8 +193,11 @@ def grams(blocks: Blocks) -> Grams:
     half = rows * (size + 1) + columns
     upper, b, y2 = np.empty((len(pairs), len(half))), np.empty((len(pairs), size)), np.empty(len(pairs))
     for k in range(len(pairs)):
-        own = order[part_of_block == k]
-        z = np.column_stack([blocks.x[own], blocks.y[own]]) * blocks.weight[own, None]
+        own = _stretch(order[part_of_block == k])
+        weight = blocks.weight[own]
+        z = np.empty((size + 1, len(weight))).T
+        np.multiply(blocks.x[own], weight[:, None], out=z[:, :size])
+        np.multiply(blocks.y[own], weight, out=z[:, size])
         full = z.T @ z
         np.take(full.ravel(), half, out=upper[k], mode="clip")  # `mode` saves NumPy a copy; no place is outside
         b[k], y2[k] = full[:-1, -1], full[-1, -1]
@@ -190,99 +211,11 @@ def _folds(run: np.ndarray) -> np.ndarray:
     return np.arange(len(run)) * min(LIMITS.folds, len(run)) // len(run)
 
 
+def _stretch(places: np.ndarray) -> np.ndarray | slice:
+    """Places that follow each other as the stretch that they are, which is read where it stands."""
+    return slice(places[0], places[-1] + 1) if (np.diff(places) == 1).all() else places
+
+
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
     """Parts behind each other, column by column in memory: a fit asks for a few columns of all blocks."""
     return np.concatenate([part.T for part in parts], axis=1).T
-
-
-# -- regions of the operating space
-
-# a condition whose blocks are so far of one direction says the direction first: at reversals pressures run ahead
-ONE_WAY = 0.9
-# and one that holds nearly all blocks of that direction says nothing but the direction
-SAME_AS_DIRECTION = 0.9
-
-Mask = NDArray[np.bool_]
-Condition = tuple[str, Mask, tuple[str, ...]]  # its words, its blocks, the signals in it
-ReadAs = Mapping[str, tuple[float, str]]  # how people read a signal: factor and unit, by the last part of its name
-
-
-@dataclass(frozen=True)
-class Region:
-    """A part of the operating space: its words, its share of the summed squared gap, its mean in the gap's unit."""
-
-    where: str
-    share_of_gap: float
-    mean_residual: float
-    signals: tuple[str, ...]
-
-
-def find_regions(blocks: Blocks, residual: FloatArray, read_as: ReadAs) -> list[Region]:
-    """Up to three regions in which the residual is large and of one sign, the largest share first."""
-    conditions = _conditions(blocks, read_as)
-    total = float((residual**2).sum()) or 1.0
-    left = residual.copy()
-    regions: list[Region] = []
-    for _ in range(LIMITS.most_regions):
-        best = _best(conditions, left)
-        if best is None:
-            break
-        words, mask, signals = best
-        share = float((residual[mask] ** 2).sum()) / total
-        regions.append(Region(words, share, float(residual[mask].mean()), signals))
-        left = np.where(mask, 0.0, left)
-    return sorted(regions, key=lambda each: -each.share_of_gap)
-
-
-def _conditions(blocks: Blocks, read_as: ReadAs) -> list[Condition]:
-    found: list[Condition] = [
-        ("hoisting", blocks.direction > 0, ("direction",)),
-        ("lowering", blocks.direction < 0, ("direction",)),
-    ]
-    for name, values in blocks.features.items():
-        good = np.isfinite(values)
-        if good.sum() < 20 or np.ptp(values[good]) <= 1e-6 * (np.abs(values[good]).max() + 1e-12):
-            continue
-        factor, unit = read_as.get(name.rpartition(".")[2], (1.0, ""))
-        for threshold in np.unique(np.quantile(values[good], (0.15, 0.33, 0.5, 0.67, 0.85))):
-            text = f"{threshold * factor:.3g} {unit}".strip()
-            found += _directed(blocks.direction, f"{name} < {text}", good & (values < threshold), name)
-            found += _directed(blocks.direction, f"{name} > {text}", good & (values > threshold), name)
-    least = LIMITS.smallest_region * len(blocks.y)
-    return [(words, mask, signals) for words, mask, signals in found if mask.sum() >= least]
-
-
-def _directed(direction: FloatArray, words: str, mask: Mask, name: str) -> list[Condition]:
-    """The condition with the direction said where its blocks have one; none where it is nothing but the direction."""
-    for way, sign in (("hoisting", 1), ("lowering", -1)):
-        own = direction == sign
-        if own.all() or not mask.any() or own[mask].mean() < ONE_WAY:
-            continue
-        same = mask[own].mean() >= SAME_AS_DIRECTION
-        return [] if same else [(f"{words} and {way}", mask & own, (name, "direction"))]
-    return [(words, mask, (name,))]
-
-
-def _best(conditions, left):  # type: ignore[no-untyped-def]
-    """The condition, or the pair of two signals, whose mean explains most of what is left."""
-    size = len(left)
-    masks = np.array([mask for _, mask, _ in conditions], float)
-    if not len(masks):
-        return None
-    counts, sums = masks.sum(axis=1), masks @ left
-    single = sums**2 / np.maximum(counts, 1.0)
-    both_counts, both_sums = masks @ masks.T, (masks * left) @ masks.T
-    pairs = np.where(both_counts >= LIMITS.smallest_region * size, both_sums**2 / np.maximum(both_counts, 1.0), 0.0)
-    names = [name for _, _, name in conditions]
-    for first, second in combinations(range(len(names)), 2):
-        if set(names[first]) & set(names[second]):
-            pairs[first, second] = pairs[second, first] = 0.0
-    k = int(np.argmax(single))
-    i, j = (int(each) for each in np.unravel_index(int(np.argmax(pairs)), pairs.shape))
-    if max(single[k], pairs[i, j]) <= 0.0:
-        return None
-    if single[k] >= LIMITS.single_condition * pairs[i, j]:
-        return conditions[k]
-    first, second = sorted((i, j), key=lambda c: "direction" in names[c])
-    words = f"{conditions[first][0]} and {conditions[second][0]}"
-    return words, conditions[first][1] & conditions[second][1], (*names[first], *names[second])

@@ -247,17 +247,19 @@ class Problem:
 
 
 def problem_of(
-    tables: Sequence[RunBlocks], layout: Layout, least_noise: FloatArray, known: Sequence[Slot] = ()
-) -> Problem:
-    """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise."""
+    tables: Sequence[RunBlocks], layout: Layout, least_noise: FloatArray, known: Sequence[Slot] = (),
+    x: FloatArray | None = None,
+) -> Problem:  # fmt: skip
+    """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise. `x`: the
+    columns of all records, where these stand together."""
     skews = [None if layout.base.skew is None else t.x[:, layout.base.skew] for t in tables]
     noise = {k: noise_of_run(t.y, t.position, float(least_noise[k]), skews[k]) for k, t in enumerate(tables)}
-    blocks = joined(tables, noise)
+    blocks = joined(tables, noise, x)
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.columns(known))
     beta = first.fit(*first.grams.total(), first.columns(known))
-    left = [t.y - t.x[:, columns] @ beta for t in tables]
+    left = [t.y - np.ascontiguousarray(t.x[:, columns]) @ beta for t in tables]
     again = {
         k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k]))
         for k, t in enumerate(tables)

@@ -164,7 +164,7 @@ HEADER_LACKS = "time,motor_speed,main.pressure_a,main.pressure_b\n0,1,,2e6\n1,1,
             "crane_150t",
             [
                 "log.csv: column 'main.pressure_a' is there but holds no number; it is required: fill it in",
-                "log.csv: motor group 'main' lacks main.displacement",
+                "log.csv: motor group 'main' lacks main.displacement: add the column, or name it so",
             ],
         ),
         (

@@ -14,7 +14,7 @@ from winch_friction.importing.layout import Layout, find_layout
 from winch_friction.importing.log import Log, Place, listed
 from winch_friction.importing.text_columns import read_columns
 from winch_friction.importing.text_rows import SEEN, TextRows
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 
 LARGEST = 1 << 30  # bytes of text: ten hours of ten channels at 100 Hz; more is split first
 _PACKED = 64 << 20  # bytes from which a packed file is looked at more closely
@@ -196,7 +196,9 @@ def _layout(given: Mapping[str, Any], rows: TextRows, decimal: str, thousands: s
     found = find_layout(rows.head, decimal, thousands)
     if found is None:
         first = "; ".join(" | ".join(row)[:60] for row in rows.head[:2])
-        raise InputError(f"{rows.path}: no rows of numbers found in {len(rows)} lines; it begins with: {first}")
+        raise InputError(
+            f"{rows.path}: no rows of numbers found in {counted(len(rows), 'line', 'lines')}; it begins with: {first}"
+        )
     if "first_row" not in given:  # nothing is known of this log's rows
         return found
     places = [rows.index_of_line(int(given.get(key, 0) or 0)) for key in ("names_row", "unit_row", "first_row")]

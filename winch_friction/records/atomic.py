@@ -3,6 +3,7 @@
 What a kill in the moment of renaming leaves beside a file is removed by the next one who writes or reads it anew.
 """
 
+import errno
 import glob
 import os
 import shutil
@@ -10,6 +11,19 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+
+@contextmanager
+def writing(path: Path, own: str) -> Iterator[None]:
+    """What the system refuses while a file is written is said of `path`, the file that was asked for: a full disk names
+    none, or the temporary one, whose name begins as `own`. What is said of other files stays."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None and not str(error.filename).startswith(own):
+            raise
+        said = f"cannot be written ({error.strerror or error}); make room there, or give another place"
+        raise OSError(error.errno or errno.EIO, said, str(path)) from error
 
 
 @contextmanager
@@ -27,10 +41,11 @@ def atomic_path(path: Path) -> Iterator[Path]:
     except OSError as error:  # nobody knows the temporary file's name
         raise OSError(error.errno, f"cannot be written ({error.strerror})", str(path)) from None
     try:
-        yield temporary
-        _flush_to_disk(temporary)
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        with writing(path, str(temporary)):
+            yield temporary
+            _flush_to_disk(temporary)
+            os.chmod(temporary, 0o666 & ~_umask())
+            os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -60,7 +75,9 @@ def write_text(path: Path, text: str) -> Path:
     path, content = Path(path), text.encode("utf-8")
     path.parent.mkdir(parents=True, exist_ok=True)
     remove_stale(path)
-    if not _write_nameless(path, content):
+    with writing(path, str(_beside(path))):
+        whole = _write_nameless(path, content)
+    if not whole:
         with atomic_path(path) as temporary:
             temporary.write_bytes(content)
     return path

@@ -12,6 +12,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
+from winch_friction.records.atomic import writing
 from winch_friction.records.bags import METADATA_KEY
 from winch_friction.records.topics import TopicMap
 
@@ -106,12 +107,15 @@ class BagWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self.metadata:
-            self._writer.set_custom_data(METADATA_KEY, json.dumps(self.metadata, default=str))
-        self._writer.__exit__(kind, error, trace)
         try:
-            if kind is None:
-                self._move_into_place()
+            with writing(self.path, str(self._folder)):
+                if self.metadata:
+                    self._writer.set_custom_data(METADATA_KEY, json.dumps(self.metadata, default=str))
+                self._writer.__exit__(kind, error, trace)
+                if kind is None:
+                    self._move_into_place()
+                elif isinstance(error, OSError):
+                    raise error
         finally:
             shutil.rmtree(self._folder, ignore_errors=True)
 

@@ -120,7 +120,9 @@ def unique_headers(headers: list[Header], path: Path) -> list[Header]:
     for header in headers:
         name = header.name if header.known else header.text
         if name in seen:
-            raise InputError(f"{path}: column '{name}' stands twice, as '{seen[name].text}' and '{header.text}'")
+            raise InputError(
+                f"{path}: column '{name}' stands twice, as '{seen[name].text}' and '{header.text}'; leave one"
+            )
         seen[name] = header
     return headers
 
@@ -232,7 +234,9 @@ class _Table:
         if not width:
             raise InputError(f"{path}: line 1 is blank; expected the header line there")
         said = [
-            f"{path}: line {line}: {count} values for {width} columns" if count else f"{path}: line {line}: blank line"
+            f"{path}: line {line}: {count} values for {width} columns; put the cells right or take the line out"
+            if count
+            else f"{path}: line {line}: blank line; take it out"
             for line, count in self._ragged[:_SHOWN]
         ]
         if said:

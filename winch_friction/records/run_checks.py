@@ -267,7 +267,9 @@ def _check_groups(
             _refuse_empty(name, [each for each in lacking if each in empty])
         with problems:
             if missing:
-                raise InputError(f"{name}: motor group '{group}' lacks {', '.join(missing)}")
+                raise InputError(
+                    f"{name}: motor group '{group}' lacks {', '.join(missing)}: add the column, or name it so"
+                )
         with problems:
             if crane is not None and crane.drive.hydraulic and group not in crane.groups:
                 known = ", ".join(crane.groups)

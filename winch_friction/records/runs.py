@@ -283,7 +283,7 @@ def _jumping(values: FloatArray) -> np.ndarray:
 def _turning(speed: FloatArray) -> np.ndarray:
     """Two samples (samples,) on either side of a reversal: in a sparse log what carries the winch steps there by twice
     the friction, between two ramps, and stands out from both of its neighbours."""
-    turns = np.concatenate([[False], speed[:-1] * speed[1:] < 0.0, [False]])
+    turns = np.concatenate([[False], np.sign(speed[:-1]) * np.sign(speed[1:]) < 0.0, [False]])
     return np.asarray(np.convolve(turns, np.ones(4), "same")[1:] > 0.5)
 
 

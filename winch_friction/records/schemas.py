@@ -45,6 +45,9 @@ def _tag(name: str) -> Schema:
     return {"const": f"winch_friction.{name}/1"}
 
 
+# kinds of value, as people say them
+_KINDS = {"integer": "a whole number", "number": "a number", "string": "a text", "array": "a list [...]",
+          "object": "a mapping of keys", "boolean": "true or false"}  # fmt: skip
 _DRIVES = ["hydraulic", "electric", "power", "current"]
 _DRIVE = _object(
     {"kind": {"enum": _DRIVES}}, {"torque_constant": quantity("N*m/A"), "slowest_speed": quantity("rad/s")}
@@ -167,7 +170,8 @@ def _said(error: Any) -> list[str]:
         return [f"{front}key '{key}' is missing" for key in missing]
     words = error.message
     if error.validator in ("anyOf", "pattern", "type"):
-        words = f"{error.instance!r} is not {error.schema.get('description', 'what belongs here')}"
+        kind = _KINDS.get(str(error.schema.get("type")), "what belongs here")
+        words = f"{error.instance!r} is not {error.schema.get('description', kind)}"
     return [f"{front}{words}"]
 
 

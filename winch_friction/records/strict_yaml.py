@@ -193,9 +193,9 @@ def parse_yaml(text: str, where: str) -> Any:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f" line {mark.line + 1}" if mark else ""
-        raise InputError(
-            f"{where}{line}: not valid YAML ({getattr(error, 'problem', None) or 'syntax error'})"
-        ) from error
+        what = str(getattr(error, "problem", None) or "syntax error")
+        instead = "; indent with spaces, not with tabs" if r"'\t'" in what else ""
+        raise InputError(f"{where}{line}: not valid YAML ({what}){instead}") from error
     said = [
         (line, f"key '{key}' stands on line {before} already; keep one of them")
         for line, key, before in loader.repeated

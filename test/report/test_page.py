@@ -141,3 +141,9 @@ def test_an_instant_is_a_date_and_a_duration_a_duration():
     assert estimate_for_people(1.741788e9, 82800.0, "s") == ("2025-03-12 14:00 UTC", 23.0, "h")
     assert estimate_for_people(1.2e6, 3600.0, "s") == (1.2e6, 3600.0, "s")
     assert estimate_for_people(np.pi, 0.0, "rad/s") == (pytest.approx(30.0), 0.0, "rpm")
+
+
+def test_a_channels_name_folds_behind_its_group():
+    """On a phone the sentence beside `main.pressure_a` was cut off."""
+    assert "main.<wbr>pressure_a" in table_html(["channel"], [["main.pressure_a"]])
+    assert "<wbr>" not in table_html(["value"], [["0.1234567890123"]])

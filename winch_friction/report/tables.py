@@ -87,7 +87,7 @@ def _wide(value: Any) -> str:
 
 
 def _foldable(text: str) -> str:
-    """Escaped text whose words of twelve letters and more may break after `_` and `/`, and every 16 characters of a
+    """Escaped text whose words of twelve letters and more may break after `_`, `/` and a name's dot, and every 16 characters of a
     hash; symbols stay whole, and numbers beside their units, which read as in the headings."""
     text = re.sub(r"(?<=\d )(c?m)\^([23])(?=\W|$)", lambda found: found[1] + "²³"[int(found[2]) - 2], text)
     text = re.sub(r"(?<=\d) (?=%|°|[A-Za-zµ]+[²³]?(?:/[a-z]+)?(?:[,;:)]|$)|c?m[²³])", "\u00a0", text)
@@ -95,7 +95,11 @@ def _foldable(text: str) -> str:
 
 
 def _folded(word: str) -> str:
-    marked = re.sub(r"[0-9A-Za-z]{16}(?=[0-9A-Za-z]{8})|[_/](?=\w{3})", lambda found: found[0] + "\0", word)
+    marked = re.sub(
+        r"[0-9A-Za-z]{16}(?=[0-9A-Za-z]{8})|[_/](?=\w{3})|(?<=[a-z]{3})\.(?=[a-z]{3})",
+        lambda found: found[0] + "\0",
+        word,
+    )
     return escape(marked).replace("\0", "<wbr>")
 
 

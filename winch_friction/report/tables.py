@@ -87,8 +87,8 @@ def _wide(value: Any) -> str:
 
 
 def _foldable(text: str) -> str:
-    """Escaped text whose words of twelve letters and more may break after `_`, `/` and a name's dot, and every 16 characters of a
-    hash; symbols stay whole, and numbers beside their units, which read as in the headings."""
+    """Escaped text whose words of twelve letters and more may break after `_`, `/` and a name's dot, and every 16
+    characters of a hash; symbols stay whole, and numbers beside their units, which read as in the headings."""
     text = re.sub(r"(?<=\d )(c?m)\^([23])(?=\W|$)", lambda found: found[1] + "²³"[int(found[2]) - 2], text)
     text = re.sub(r"(?<=\d) (?=%|°|[A-Za-zµ]+[²³]?(?:/[a-z]+)?(?:[,;:)]|$)|c?m[²³])", "\u00a0", text)
     return " ".join(_folded(word) if len(word) >= _LONG else escape(word) for word in text.split(" "))

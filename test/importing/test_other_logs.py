@@ -61,3 +61,21 @@ def test_signals_of_one_run_in_two_files_are_to_be_joined(tmp_path, capsys):
         == 2
     )
     assert "join them by time into one file first" in capsys.readouterr().err
+
+
+def test_a_column_of_the_right_name_without_a_number_is_said_to_have_none(tmp_path, capsys):
+    """`no column found; not used are 'motor_speed [rpm]'` left one to wonder."""
+    rows = ["time [s],motor_speed [rpm],main.pressure_a [bar],main.pressure_b [bar],main.displacement [cm^3/rev]"]
+    rows += [f"{0.02 * k:.2f},nan,{120 + k % 3},25,215" for k in range(200)]
+    (tmp_path / "log.csv").write_text("\n".join(rows))
+    words = [
+        "import",
+        str(tmp_path / "log.csv"),
+        "--propose",
+        "--crane",
+        "crane_150t",
+        "--map",
+        str(tmp_path / "m.yaml"),
+    ]
+    assert run(words) == 2
+    assert "not used are 'motor_speed [rpm]' ('motor_speed [rpm]' without a number in it)" in capsys.readouterr().err

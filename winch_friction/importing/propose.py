@@ -193,6 +193,8 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
             and c.name not in draft.log_map.time_from
         ]
         left = f"not used are {listed(free)}" if free else "none is left over"
+        hollow = [c.name for c in pooled.columns if c.name in free and c.numeric and not np.isfinite(c.values).any()]
+        left += f" ({listed(hollow)} without a number in it)" if hollow else ""
         draft.problems.append(
             f"{', '.join(lacking)}: no column found; {left}; "
             f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN{_instead(lacking, free)}"

@@ -184,20 +184,20 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
-    modes, left = [(*run.wire_mode[:2], _mass(run)) for run in able], [_said(run) for run in able]
-    ringing = wire.ringing_damping(modes, left, [_length(run) for run in able])
+    modes, variances = [(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_variance for run in able]
+    left = [_said(run) for run in able]
+    ringing = wire.ringing_damping(modes, left, [_length(run) for run in able], variances)
     ratio = ringing[0] if ringing else wire.shared_damping(modes, left)
     told = [run for run in compensating if _slow(run, TOLD)]
     if ratio is not None and not ringing and 2 * sum(_denied(run, ratio) for run in told) > len(told):
         ratio = None
     if ratio is None:
-        ratio = wire.pooled_damping(modes, left, [run.swing_variance for run in able])
+        ratio = wire.pooled_damping(modes, left, variances)
     swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
         every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
         ratio = wire.agreed_damping(swinging) or wire.agreed_damping(every)
-        if ratio is not None and _outvoted(able, ratio):
-            ratio = None
+        ratio = None if ratio is not None and _outvoted(able, ratio) else ratio
     if ratio is None:
         return [Mode(run.wire_mode[0], 0.0) for run in prepared]
     said = [run.wire_mode[2] for run in prepared if run.wire_mode[2] is not None]
@@ -205,7 +205,7 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     return [
         Mode(
             at, ratio(at, _mass(run)) if _slow(run) else 0.0,
-            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows, _rings(run, ratio),
+            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows, _rings(run, ratio, bool(ringing)),
         )
         for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode[0]) for run in prepared)
     ]  # fmt: skip
@@ -234,9 +234,9 @@ def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     return run.wire_mode[1] <= 0.0 and wire.denies(_said(run), ratio(run.wire_mode[0], _mass(run)))
 
 
-def _rings(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
-    """Whether a computed wire would make its sensors' noise ring, and nothing that the motors feel."""
-    tells = run.swing_noise and run.wire_mode[1] <= 0.0 and _slow(run)
+def _rings(run: PreparedRun, ratio: Callable[[float, float], float], plain: bool) -> bool:
+    """Whether a computed wire would make noise ring that no motor feels; any, where others ring `plain`."""
+    tells = (run.swing_noise or plain) and run.wire_mode[1] <= 0.0 and _slow(run)
     return tells and wire.denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
 
 

@@ -204,14 +204,17 @@ def shared_damping(
 
 
 def ringing_damping(
-    modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], length: Sequence[float]
-) -> tuple[Callable[[float, float], float], float] | None:
+    modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], length: Sequence[float],
+    variances: Sequence[float],
+) -> tuple[Callable[[float, float], float], float] | None:  # fmt: skip
     """What damps the wire and its stiffness times its length, N, from runs that ring: a sharp resonance, of one damping
     and at the frequencies that one wire gives their loads and lengths. None of fewer than two, unless the one rings so
     plainly that next to nothing of it is left, or where as many runs say that the wire does not give.
 
     What an edge of the sensors or a motion sensor's noise looks like is damped more, fits anything alike, and moves
-    with neither load nor length. `modes` and `left` as in `shared_damping`, `length` of the wire in m (nan: unknown).
+    with neither load nor length. What a motion sensor's noise rings by on a computed wire is small beside a swing that
+    is plainly there, and denies none. `modes`, `left` and `variances` as in `pooled_damping`, `length` of the wire in m
+    (nan: unknown).
     """
     sharp = [k for k, own in enumerate(left) if len(own) and 0.0 < modes[k][1] < MOST_DAMPED / 2.0 and
              min(own) <= LEAST_GAIN and _left_by(own, BLUNT) >= SHARP * min(own) and length[k] > 0.0]  # fmt: skip
@@ -229,9 +232,11 @@ def ringing_damping(
     known = [(mode, own) for mode, own in zip(modes, left, strict=True) if len(own) and mode[0] > 0.0]
     damper = float(np.median((2.0 * ratio * frequency * mass)[alike]))
     agreed = min(_one_damper(damper), _one_ratio(float(np.median(ratio[alike]))), key=partial(_leaves, known))
-    against = sum(
-        denies(own, agreed(mode[0], mode[2])) for mode, own in zip(modes, left, strict=True) if mode[1] <= 0.0
-    )
+    swings = min((1.0 - min(left[k])) * variances[k] for k in np.array(sharp)[alike])
+    rigid = [(own, agreed(mode[0], mode[2]), each) for mode, own, each in zip(modes, left, variances, strict=True)
+             if mode[1] <= 0.0]  # fmt: skip
+    against = sum(denies(own, ratio) and not (len(own) and (_left_by(own, ratio) - 1.0) * each <= PLAIN * swings)
+                  for own, ratio, each in rigid)  # fmt: skip
     return (agreed, float(np.median(stiffness[alike]))) if alike.sum() > against else None
 
 

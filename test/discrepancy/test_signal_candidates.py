@@ -60,7 +60,7 @@ def machine(motors, swept, gear, radius, inertia=1.54, rpm=2100.0):
     group = SimpleNamespace(count=motors)
     return SimpleNamespace(
         constants=(("max_displacement", swept),), groups=[group], gear_ratio=gear, radius=np.array([radius]),
-        inertia=inertia, speed=np.linspace(-rpm, rpm, 2001) * RPM,
+        inertia=inertia, speed=np.linspace(-rpm, rpm, 2001) * RPM, dt=0.02, channels={},
     )  # fmt: skip
 
 
@@ -82,9 +82,30 @@ def test_typical_sizes_are_those_of_the_machine():
     offset = next(each for each in all_candidates() if each.name == "torque_offset")  # of the shaft, by all its motors
     assert offset.plausible * offset.scale(offset.linear[0], reference) == pytest.approx(66.0, rel=0.01)
     assert offset.scale(offset.linear[0], small) == pytest.approx(11.0 * whole)
+    # of four motors behind 150 each carries 4.6 times the share of the drum's torque, and may lose as much more of it
+    for name in ("presliding", "dwell_stiction"):
+        bristle = next(each for each in all_candidates() if each.name == name and not each.law_name)
+        force, share = (bristle.scale(p, small) / p.typical for p in bristle.linear)
+        assert (force, share) == pytest.approx((80 / 215, 250 * 11 / (150 * 4)))
+    sheave = next(each for each in all_candidates() if each.name == "sheave_bending" and not each.law_name)
+    assert sheave.scale(sheave.linear[0], small) == sheave.linear[0].typical  # of the shaft, a share of what it carries
+    assert machine_sizes([machine(14, 300 * CM3_PER_REV, 300.0, 1.3)])["drum_torque"] == 1.0  # large ones: no less
     assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
     assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)
     assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical
+
+
+@pytest.mark.parametrize(("rpm", "octaves"), [(2000.0, 0.0), (500.0, 0.0), (300.0, 1.0), (70.0, 3.0)])
+def test_laws_of_the_speed_follow_a_motor_of_large_stroke(rpm, octaves):
+    """Of 8000 cm3/rev and 70 rpm none of their speeds was within half of its own: no Stribeck curve but the base's."""
+    runs = [machine(2, 8000 * CM3_PER_REV, 4.6, 0.5, rpm=rpm)]
+    laws = {each.law_name: each for each in all_candidates() if each.law_name}
+    for law, slowest in (("stribeck_gauss", 4.0), ("dwell_by_speed", 3.0), ("notch_power", 10.0)):
+        name = next(name for name in laws[law].continuous if name[0] in "vw")
+        values = [shape.values[name] for shape in laws[law].shapes(runs)]
+        assert min(values) == slowest / 2.0**octaves
+        parameter = next(p for p in laws[law].term.parameters if p.name == name)
+        assert all(parameter.lower < 0.7 * value < parameter.upper for value in values)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import (
+    OF_DRUM,
     OF_WINCH,
+    REFERENCE_GEAR,
     REFERENCE_INERTIA,
     REFERENCE_LIFT,
     REFERENCE_MOTOR,
@@ -50,8 +52,9 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
     motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
     winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
-    its flow, and what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed. Of a
-    drive without pressures its torques with the largest that it gave, where that is more than one of those motors has.
+    its flow, what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed, and a share
+    of the drum's torque that each motor loses, under `OF_DRUM`, with the share that it carries. Of a drive without
+    pressures its torques with the largest that it gave, where that is more than one of those motors has.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
@@ -65,7 +68,8 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
     top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
     churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
-    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole)}
+    carried = REFERENCE_GEAR * REFERENCE_MOTORS / (run.gear_ratio * motors)
+    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole), OF_DRUM: max(carried, 1.0)}
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 

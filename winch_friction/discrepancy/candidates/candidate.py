@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction import FrictionModel, Scope
 from winch_friction.physics.friction.correction import DECLARED, Correction
 from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.physics.winch import Crane
@@ -28,7 +28,8 @@ Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
 REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
-REFERENCE_PRESSURE = 300e5  # Pa that its motors work at
+REFERENCE_PRESSURE, REFERENCE_GEAR = 300e5, 250.0  # Pa that its motors work at, and their turns per one of the drum
+OF_DRUM = "drum_torque"  # of which each motor loses a share: a larger one where fewer share it, or turn slower
 OF_WINCH = ("torque_offset", "direction_asymmetry")  # torques that grow with the number of motors as well
 SOURCE, CUT = "winch-friction gap", "cut at its bound from"  # what a correction's source says
 # where an effect shows: in moving samples, just after reversals, over the shaft's angle, or in the flow
@@ -167,9 +168,9 @@ class Candidate:
 
     def scale(self, parameter: Parameter, sizes: Mapping[str, float]) -> float:
         """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""
-        if self.own_size:
-            return parameter.typical
-        return parameter.typical * sizes.get(self.name, sizes.get(parameter.unit, 1.0))
+        shared = self.term is not None and self.term.scope is not Scope.SHAFT and OF_DRUM in self.term.reads
+        unit = OF_DRUM if shared and parameter.unit == "1" else parameter.unit
+        return parameter.typical * (1.0 if self.own_size else sizes.get(self.name, sizes.get(unit, 1.0)))
 
     @property
     def latex(self) -> str:

@@ -107,7 +107,7 @@ def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Can
         "continuous": tuple(name for name, tried in values.items() if len(tried) > 1 and declared[name].lower > 0.0)
         if "shapes" not in more
         else (),
-        "shapes": _shapes_over(values),
+        "shapes": _shapes_over(values, [p.name for p in term.parameters if p.unit == "rad/s"]),
         "hydraulic": any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     }
     linear = tuple(p for p in term.parameters if not p.shape)
@@ -123,9 +123,16 @@ def _grid(term: Term, given: Grid) -> Grid:
     return usual | dict(given)
 
 
-def _shapes_over(grid: Grid) -> Shapes:
-    shapes = [dict(zip(grid, point, strict=True)) for point in itertools.product(*grid.values())]
-    return lambda _: [Shape(label_of(values), values) for values in shapes]
+def _shapes_over(grid: Grid, speeds: Sequence[str] = ()) -> Shapes:
+    """Every point of a grid; its `speeds` follow a machine that turns slowly, in octaves."""
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        slow = 2.0 ** min(np.ceil(np.log2(max(_top(runs), 1e-3) / FULL_SPEED)), 0.0)
+        own = {name: tuple(slow * v if name in speeds else v for v in tried) for name, tried in grid.items()}
+        points = [dict(zip(own, point, strict=True)) for point in itertools.product(*own.values())]
+        return [Shape(label_of(values), values) for values in points]
+
+    return shapes
 
 
 def _stribeck_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
@@ -217,6 +224,8 @@ def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
 # -- the speeds that were seen
 CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
+# rad/s: speeds of laws are stated for motors that turn so fast or faster; one of large stroke turns at a tenth of it
+FULL_SPEED = 100.0
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 

@@ -47,7 +47,7 @@ C1_h = Parameter(
     "C1_h", "1", 1.5e-5, upper=ALL_OF_LOAD, doc="Stribeck rise per drum torque whose speed follows the oil"
 )
 K_vu, K_vd, T_vu = _amount("K_vu"), _amount("K_vd"), _reference("T_vu")
-C4_h = Parameter("C4_h", "rad/s", 20.0, lower=1.0, upper=200.0, shape=True, doc="its speed at the reference")
+C4_h = Parameter("C4_h", "rad/s", 20.0, lower=0.1, upper=200.0, shape=True, doc="its speed at the reference")
 
 
 def _vogel(steepness: sp.Expr | float, reference: sp.Symbol) -> sp.Expr:
@@ -112,15 +112,15 @@ K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
 n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 K_hf = Parameter("K_hf", "N*m", 10.0, upper=500.0, doc="mixed loss at 200 bar and standstill")
 n_hf = Parameter("n_hf", "1", 2.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
-w_hf = Parameter("w_hf", "rad/s", 60.0, lower=1.0, upper=500.0, shape=True, doc="speed over which a film builds up")
+w_hf = Parameter("w_hf", "rad/s", 60.0, lower=0.1, upper=500.0, shape=True, doc="speed over which a film builds up")
 K_ho = Parameter("K_ho", "N*m", 10.0, upper=500.0, doc="mixed loss 200 bar above the onset and at standstill")
 p_ho = Parameter("p_ho", "Pa", 100 * BAR, lower=20 * BAR, upper=500 * BAR, shape=True, doc="pressure of the onset")
-w_ho = Parameter("w_ho", "rad/s", 60.0, lower=1.0, upper=5000.0, shape=True, doc="speed over which a film builds up")
+w_ho = Parameter("w_ho", "rad/s", 60.0, lower=0.1, upper=5000.0, shape=True, doc="speed over which a film builds up")
 c_np = Parameter("c_np", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar, full displacement and its own speed")
-w_np = Parameter("w_np", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
+w_np = Parameter("w_np", "rad/s", 40.0, lower=0.1, upper=300.0, shape=True, doc="speed of its maximum")
 a_np = Parameter("a_np", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
 c_na = Parameter("c_na", "N*m", 5.0, upper=500.0, doc="notch loss at 200 bar and its own speed")
-w_na = Parameter("w_na", "rad/s", 40.0, lower=1.0, upper=300.0, shape=True, doc="speed of its maximum")
+w_na = Parameter("w_na", "rad/s", 40.0, lower=0.1, upper=300.0, shape=True, doc="speed of its maximum")
 a_na = Parameter("a_na", "1", 1.0, lower=0.5, upper=2.5, shape=True, doc="exponent of the pressure")
 p_l = Parameter(  # of a small winch, whose flow never comes near, it is the law carried on to there
     "p_l", "Pa", 2e5, upper=1e9, doc="pressure lost between transducer and motor at 0.02 m^3/s"

@@ -87,9 +87,22 @@ def test_of_a_laws_shapes_those_are_tried_that_these_runs_could_show():
 
 
 def test_a_loss_of_the_flow_through_each_motor_is_a_lines_and_a_ports():
-    """By whatever exponent and whichever way: the equations are one, and no run tells the two apart."""
-    causes = {each.name for each in module.literature() if each.law_name == "line_each_motor"}
-    assert causes == {"line_pressure_drop", "port_turbulence"}
+    """Whichever way, up to the square of the flow: the equations are one, no run tells the two apart, and neither may
+    be larger; where a line was sized by the flow of all motors, it was named alone for a port's loss."""
+    both = [each for each in module.literature() if each.law_name == "line_each_motor"]
+    assert {each.name for each in both} == {"line_pressure_drop", "port_turbulence"}
+    sizes = [each.plausible * each.scale(each.linear[0], {"line_pressure_drop": 2.5, "Pa": 0.7}) for each in both]
+    assert sizes == [both[0].plausible * both[0].linear[0].typical] * 2
+
+
+def test_by_more_than_the_square_of_its_flow_no_line_loses():
+    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02)]
+    of = {each.name: each for each in module.literature() if each.law_name == "line_each_motor"}
+    tried = {name: {shape.values["n_le"] for shape in law.shapes(runs)} for name, law in of.items()}
+    assert tried["port_turbulence"] - tried["line_pressure_drop"] == {2.6}
+    steepest = next(s for s in of["line_pressure_drop"].shapes(runs) if s.values == {"n_le": 2.0, "b_le": 0.0})
+    finer = [shape.values["n_le"] for shape in of["line_pressure_drop"].refined(steepest).shapes(runs)]
+    assert max(finer) == 2.0
 
 
 @pytest.mark.parametrize(("name", "values"), [

@@ -29,7 +29,7 @@ STRIBECK = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
 DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
-POWERS = (0.5, 1.5, 2.0, 3.0)
+POWERS, FLOWS, EACH_WAY = (0.5, 1.5, 2.0, 3.0), (1.0, 1.75, 2.0), (-1.0, -0.5, 0.0, 0.5, 1.0)
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL, HUNG = ("oil_temperature",), ("hook_load", "wire_out")
 RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose zero means nothing
@@ -68,10 +68,10 @@ def literature() -> list[Candidate]:
         _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
-        line("line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": (-1.0, -0.5, 0.0, 0.5, 1.0)}, continuous=("n_l",)),
-        # of the flow through each motor it is a port's loss as well, by whatever exponent
-        *(_of(cause, "line_each_motor", {"n_le": (1.0, 1.75, 2.0), "b_le": (-1.0, -0.5, 0.0, 0.5, 1.0)},
-              continuous=("n_le",)) for cause in ("line_pressure_drop", "port_turbulence")),
+        line("line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": EACH_WAY}, continuous=("n_l",)),
+        # of the flow through each motor it is a port's loss as well, by whatever exponent: a line's is 2 at most
+        *(_of(cause, "line_each_motor", {"n_le": powers, "b_le": EACH_WAY}, continuous=("n_le",), own_size=True)
+          for cause, powers in (("line_pressure_drop", FLOWS), ("port_turbulence", (*FLOWS, 2.6)))),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
         line("line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)}, law_name="cracking pressure one way",
              continuous=("n_l",)),

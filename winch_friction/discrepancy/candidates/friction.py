@@ -226,6 +226,7 @@ CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain,
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 # rad/s: speeds of laws are stated for motors that turn so fast or faster; one of large stroke turns at a tenth of it
 FULL_SPEED = 100.0
+TURBULENT = 2.0  # exponent of a flow
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 
@@ -274,6 +275,12 @@ def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
     return values["d_z"] > CLEAR * blurred_travel(runs)
 
 
+def line(values: Values, _: Sequence[PreparedRun]) -> bool:
+    """A line, a bend or an orifice loses by the square of its flow at most; by more it is a motor's port."""
+    return all(v <= TURBULENT for name, v in values.items() if name in ("n_l", "n_le"))
+
+
 POSSIBLE: Mapping[str, Possible] = {
     "stribeck": stribeck, "viscosity_temperature": hersey, "notch_loss": notch, "presliding": presliding,
+    "line_pressure_drop": line,
 }  # fmt: skip

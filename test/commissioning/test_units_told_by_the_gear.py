@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.commissioning.check import lone_units
 from winch_friction.commissioning.kinematics import MOST_BEYOND, range_score
+from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import fixed_mistakes
 from winch_friction.commissioning.summaries import summaries
 from winch_friction.commissioning.view import RunView
@@ -45,3 +47,28 @@ def test_one_channel_far_beyond_the_machine_does_not_outweigh_every_other_sign()
         drop=np.full(9, 1e7), pressure_sum=np.full(9, 3e7), displacement=np.full(9, 3e-5), torque=np.zeros(9), count=3.0
     )  # fmt: skip
     assert range_score(seen(np.full(9, 1e12), groups={"main": group})) == MOST_BEYOND
+
+
+def ports(name, port_a, port_b):
+    return Run(name, {"main.pressure_a": np.full(50, port_a), "main.pressure_b": np.full(50, port_b)})
+
+
+@pytest.mark.parametrize(("port_a", "said"), [(230e5, ["r3"]), (26e5, [])])
+def test_ports_that_are_exchanged_hold_no_other_unit(port_a, said):
+    """The load's 250 bar at port B are ten times the boost's by chance: "bar under [MPa]" was said of a swap."""
+    runs = [ports(f"r{k}", 200e5 + k * 1e5, 25e5) for k in range(3)]
+    found = list(lone_units([*runs, ports("r3", port_a, 250e5)]))
+    assert [name for each in found for name in each.runs] == said
+
+
+@pytest.mark.parametrize(("left", "hint"), [(354.0, False), (300.0, True)])
+def test_a_mistake_that_closes_next_to_nothing_is_no_hint(left, hint):
+    """ "two mistakes ... would close (misfit 399 -> 354)" was said where the limit is 100."""
+    closure = SimpleNamespace(run="r1", before=40.0, level=500.0)
+    nearest = SimpleNamespace(mistake=SimpleNamespace(words="the ports are swapped"), score=left)
+    diagnosis = SimpleNamespace(
+        best=None, contradicting=("r1",), names=("r1",), scores=(399.0,), score=399.0, closures=(closure,),
+        hypotheses=(nearest,),
+    )  # fmt: skip
+    (found,) = likeliest_mistake(diagnosis, SimpleNamespace(drive=SimpleNamespace(hydraulic=True)))
+    assert ("nearest: the ports are swapped" in found.sentence) is hint

@@ -56,8 +56,11 @@ def lone_units(runs: Sequence[Run]) -> Iterator[Finding]:
         alike = (medians < ALIKE * usual) & (medians > usual / ALIKE)
         if 2 * alike.sum() <= len(own):
             continue
+        # the load's pressure at port B is ten times the boost's by chance, and port A has the boost's then
+        ports_a = np.array([float(np.nanmedian(run.columns.get(f"{channel[:-1]}a", [np.nan]))) for run in own])
+        exchanged = (ports_a < ALIKE * usual) & (ports_a > usual / ALIKE)
         for factor, words in PRESSURE_UNITS:
-            odd = ~alike & (np.abs(medians * factor / usual - 1.0) < EXACT)
+            odd = ~alike & ~exchanged & (np.abs(medians * factor / usual - 1.0) < EXACT)
             if odd.any():
                 names = tuple(run.name for run, off in zip(own, odd, strict=True) if off)
                 said = (

@@ -10,6 +10,7 @@ from winch_friction.commissioning.diagnose import Diagnosis, Hypothesis
 from winch_friction.commissioning.kinematics import CONTRADICTS
 from winch_friction.physics.winch.crane import Crane
 
+HINTS = 0.8  # of a misfit: a mistake that leaves more of it is no hint, be it the nearest of all
 RIVALS = 12.0  # score by which another mistake may be worse and still be told beside the likeliest
 
 
@@ -103,6 +104,6 @@ def _unexplained(diagnosis: Diagnosis, crane: Crane) -> Finding:
     words = f"{runs} cannot be this crane's and no single mistake explains it: {off}; check crane file, units and signs"
     words += " one by one"
     nearest = diagnosis.hypotheses[0] if diagnosis.hypotheses else None
-    if nearest is not None and nearest.score < diagnosis.score:
+    if nearest is not None and nearest.score < HINTS * diagnosis.score:
         words += f"; nearest: {nearest.mistake.words} (misfit {diagnosis.score:.3g} -> {nearest.score:.3g})"
     return Finding("error", "unexplained", words, "", bad, {"misfit_before": diagnosis.score, "limit": CONTRADICTS})

@@ -9,7 +9,7 @@ import pytest
 
 from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
-from winch_friction.discrepancy import proposals
+from winch_friction.discrepancy import proposals, vocabulary
 from winch_friction.discrepancy.engine.grammar import Factor, Law
 from winch_friction.discrepancy.proposals import explained
 from winch_friction.discrepancy.vocabulary import (
@@ -220,3 +220,10 @@ def test_a_law_that_acts_once_in_all_is_divided_by_the_motors_that_its_term_is_t
 ])  # fmt: skip
 def test_what_a_name_or_an_equation_says_is_no_fault_of_the_seed(verdict, closed, says):
     assert explained(verdict, [SimpleNamespace(closed=each) for each in closed]) == says
+
+
+@pytest.mark.parametrize("span", [1.0, 12.0, 55.0, 300.0])
+def test_what_comes_once_is_no_period(span):
+    """A friction that grew while it ran came "periodically, every 54.3 m", of a wire of which 55 m came and went."""
+    periods = {each["c"] for each in vocabulary._constants("wave", vocabulary.WORDS[0], (1.0,), span)}
+    assert periods == {each for each in vocabulary.PERIODS if each <= 0.5 * span}

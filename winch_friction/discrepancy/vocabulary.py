@@ -25,6 +25,7 @@ from winch_friction.physics.friction import Parameter, Scope, State, Term, symbo
 QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 LAGS = (3.0, 10.0, 30.0, 90.0)  # s
 FADES = (15.0, 45.0, 140.0)  # s
+SEEN = 2.0  # times, what is to be called periodic: a period of all the wire that came and went is any curve over it
 PERIODS = tuple(float(x) for x in np.geomspace(0.6, 60.0, 41))  # m of wire, from a groove to a layer
 SECTORS, WIDTHS = 12, (0.15, 0.3, 0.5)  # of a turn
 
@@ -141,7 +142,7 @@ def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> li
     if kind == "lag":
         return [{"c": c} for c in LAGS]
     if kind == "wave":
-        periods = [p for p in PERIODS if p < span]
+        periods = [p for p in PERIODS if SEEN * p <= span]
         return [{"c": p, "h": share * p} for p in periods for share in (0.125, 0.375, 0.625, 0.875)]
     if kind == "sector":
         return [{"c": (k + 0.5) / SECTORS, "h": width} for k in range(SECTORS) for width in WIDTHS]

@@ -226,7 +226,7 @@ CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain,
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 # rad/s: speeds of laws are stated for motors that turn so fast or faster; one of large stroke turns at a tenth of it
 FULL_SPEED = 100.0
-TURBULENT = 2.0  # exponent of a flow
+TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 
@@ -276,7 +276,7 @@ def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
 
 
 def line(values: Values, _: Sequence[PreparedRun]) -> bool:
-    """A line, a bend or an orifice loses by the square of its flow at most; by more it is a motor's port."""
+    """A line loses by the square of its flow, a valve by a little more; what grows faster still is a motor's port."""
     return all(v <= TURBULENT for name, v in values.items() if name in ("n_l", "n_le"))
 
 

@@ -12,9 +12,10 @@ from campaign import rig
 from campaign.second_rig import SETS, write_set
 from winch_friction.commissioning.balance import closure
 from winch_friction.commissioning.channels import first_contradiction
-from winch_friction.commissioning.check import diagnosed, quick_check, shipped_cranes
+from winch_friction.commissioning.check import diagnosed, quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.diagnose import Diagnosis
+from winch_friction.commissioning.other_cranes import known_cranes
 from winch_friction.commissioning.view import view_of
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Drum
@@ -134,7 +135,7 @@ def test_another_crane_is_named(tmp):
     crane, _ = world(0, rig.DRAWN, tmp)
     runs = runs_of(columns_of(0, rig.DRAWN))
     big = load_crane("crane_150t")
-    found = first_contradiction(quick_check(runs, big, None, {**shipped_cranes(), crane.name: crane}))
+    found = first_contradiction(quick_check(runs, big, None, lambda: {**known_cranes(), crane.name: crane}))
     assert found is not None
     assert found.cause == "crane"
     assert crane.name in found.sentence
@@ -148,7 +149,9 @@ def test_another_crane_is_claimed_only_where_its_motors_are_those_of_the_log(tmp
 
     def said(of_other, of_own=2.0 * largest):
         other = replace(crane, name="other", max_displacement=of_other)
-        return next(iter(quick_check(runs, replace(wrong, max_displacement=of_own), None, {"other": other}))).sentence
+        return next(
+            iter(quick_check(runs, replace(wrong, max_displacement=of_own), None, lambda: {"other": other}))
+        ).sentence
 
     assert said(shown).startswith("these are runs of crane 'other'")
     assert "whose motors these are the log does not say" in said(1.5 * shown)
@@ -286,11 +289,29 @@ def times_drop(columns, factor):
     return found
 
 
+def test_other_cranes_are_asked_for_only_where_runs_are_doubted_or_name_one(tmp):
+    """Every call of `gap`, `identify` and `replay` read the files of all of them, though no run was doubted."""
+    crane, model = world(0, rig.DRAWN, tmp)
+    runs, asked = runs_of(columns_of(0, rig.DRAWN))[::4], []
+
+    def others():
+        asked.append(1)
+        return known_cranes()
+
+    assert first_contradiction(quick_check(runs, crane, model, others)) is None
+    assert not asked
+    named = [replace(run, metadata={"crane": "crane_150t"}) for run in runs]
+    assert first_contradiction(quick_check(named, crane, model, others)).cause == "crane"
+    assert len(asked) == 1
+    assert quick_check(runs, replace(crane, gear_ratio=3.0 * crane.gear_ratio), model, others)
+    assert len(asked) == 2
+
+
 def test_mistakes_are_ranked_only_where_one_could_be_named_or_the_page_shows_them(tmp):
     crane, model = world(0, rig.DRAWN, tmp)
     runs = runs_of(columns_of(0, rig.DRAWN))[::4]
-    assert not isinstance(diagnosed(runs, crane, model, {})[1], Diagnosis)
-    whole = check(runs, crane, model, {}).diagnosis
+    assert not isinstance(diagnosed(runs, crane, model, dict)[1], Diagnosis)
+    whole = check(runs, crane, model, dict).diagnosis
     assert whole.hypotheses
     assert whole.best is None
 
@@ -298,7 +319,7 @@ def test_mistakes_are_ranked_only_where_one_could_be_named_or_the_page_shows_the
 def test_a_mistake_is_named_where_each_run_by_itself_would_pass(tmp):
     crane, model = world(0, rig.DRAWN, tmp)
     columns = [{**each, "speed_reference": 2.0 * each["speed_reference"]} for each in columns_of(0, rig.DRAWN)[-4:]]
-    findings, diagnosis = diagnosed(runs_of(columns), crane, model, {})
+    findings, diagnosis = diagnosed(runs_of(columns), crane, model, dict)
     assert not diagnosis.contradicting
     assert [(each.cause, each.channel) for each in findings] == [("companion", "speed_reference")]
 
@@ -314,7 +335,7 @@ def test_a_transmitter_that_hangs_and_lost_telegrams_are_told(tmp):
         )
     columns["active.pressure_a"][300:400] = columns["active.pressure_a"][300]
     columns["active.pressure_b"][700] = 0.0
-    result = check([Run("run", columns)], crane, model, {})
+    result = check([Run("run", columns)], crane, model, dict)
     assert result.plausible
     assert [(each.severity, each.sentence) for each in result.findings if each.channel.startswith("active.p")] == [
         ("warning", "run: active.pressure_a stands still for 3.96 s: nobody measured that"),

@@ -36,7 +36,7 @@ def test_a_measured_torque_tells_no_speed(name):
 
 def test_one_run_that_leaves_the_balance_open_is_not_one_of_them():
     run, crane = example_of_the_worm_drive("20.csv"), load_crane("worm_drive")
-    sentence = check([run], crane, load_model("worm_viscous"), {}).sentence
+    sentence = check([run], crane, load_model("worm_viscous"), dict).sentence
     assert "nothing contradicts 1 run of crane 'worm_drive', but it leaves more of the torque balance open" in sentence
 
 
@@ -44,10 +44,10 @@ def test_a_channel_that_is_wrong_beside_the_balance_is_in_the_first_line(crane_1
     """The balance closed, and was said to be open, and that to be friction."""
     run = read_run(config_directory() / "examples" / "practice_150t" / "test_02.parquet")
     turned = replace(run, columns={**run.columns, "wire_out": 400.0 - run["wire_out"]})
-    result = check([turned], crane_150t, crane2_model, {})
+    result = check([turned], crane_150t, crane2_model, dict)
     assert result.plausible
     assert (
         "1 run of crane 'crane_150t' closes the torque balance, but wire_out contradicts motor_speed" in result.sentence
     )
     assert result.sentence.endswith("times the speed")
-    assert check([run], crane_150t, crane2_model, {}).sentence.endswith("closes the torque balance")
+    assert check([run], crane_150t, crane2_model, dict).sentence.endswith("closes the torque balance")

@@ -1,6 +1,7 @@
 """`winch-friction check`: can these runs be this crane's, and which mistake would explain why not?"""
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -35,7 +36,6 @@ def command(
       winch-friction check run.csv --crane crane_150t --model a6vm215_crane2 --out check/
     """
     from winch_friction.cli.inputs import (
-        folders_of_cranes,
         load_terms,
         read_inputs,
         refuse_foreign,
@@ -43,8 +43,8 @@ def command(
         run_paths,
     )
     from winch_friction.cli.provenance import provenance_of
-    from winch_friction.commissioning.check import known_cranes
     from winch_friction.commissioning.commissioning import check
+    from winch_friction.commissioning.other_cranes import cranes_near
     from winch_friction.records.runs import refuse_same_names
 
     load_terms(terms_file)
@@ -53,8 +53,8 @@ def command(
     refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
     read, winch, seed = read_inputs(paths, crane, model)
     refuse_same_names(read)
-    near = folders_of_cranes([*paths, *([Path(crane)] if crane else [])])
-    result = check(read, winch, seed, known_cranes(*near))
+    near = [*paths, *([Path(crane)] if crane else [])]
+    result = check(read, winch, seed, partial(cranes_near, near))
     content = result.content()
     if out is not None:
         _write(result, content, out, provenance_of(paths, winch.name, model))

@@ -4,6 +4,7 @@ they write to, that no input and no other kind of file is lost. And what they sa
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -199,11 +200,6 @@ def recorded_crane(paths: Sequence[Path]) -> tuple[str, str]:
     return "", ""
 
 
-def folders_of_cranes(near: Sequence[Path]) -> list[Path]:
-    """Where the user's other cranes may lie: here, and beside these files."""
-    return list(dict.fromkeys([Path.cwd(), *(Path(each).resolve().parent for each in near)]))
-
-
 def refuse_implausible(
     runs: Sequence[Any], crane: Any, model: Any = None, force: bool = False, near: Sequence[Path] = ()
 ) -> dict[str, Any]:
@@ -213,9 +209,10 @@ def refuse_implausible(
     nothing where the data are plausible, `forced` with the sentence where they are not.
     """
     from winch_friction.commissioning.channels import first_contradiction
-    from winch_friction.commissioning.check import known_cranes, quick_check, refuse
+    from winch_friction.commissioning.check import quick_check, refuse
+    from winch_friction.commissioning.other_cranes import cranes_near
 
-    findings = quick_check(runs, crane, model, known_cranes(*folders_of_cranes(near)))
+    findings = quick_check(runs, crane, model, partial(cranes_near, near))
     show_warnings(f"{each.sentence}" for each in findings if each.severity == "warning")
     contradiction = first_contradiction(findings)
     if contradiction is None:

@@ -4,8 +4,8 @@ Every channel by itself, the runs against each other, sensors that are not there
 and the single mistakes.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from winch_friction.commissioning.diagnose import diagnose
 from winch_friction.commissioning.kinematics import Fit, agreements, fit_of, ways
 from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
+from winch_friction.commissioning.other_cranes import known_cranes, same_machine
 from winch_friction.commissioning.view import RunView, views_of
 from winch_friction.physics.channels import BAR, GRAVITY, RPM
 from winch_friction.physics.corrections import corrected
@@ -33,9 +34,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.crane_file import load_crane
 from winch_friction.records.runs import apart
-from winch_friction.records.strict_yaml import config_directory, read_yaml
 
 # -- runs against each other
 FEWEST = 3  # runs of a motor group, for most of them to say what is usual
@@ -177,33 +176,33 @@ def _measured(run: Run, name: str) -> FloatArray | None:
 
 
 # -- the quick check
-MOST_FILES = 40  # crane files of a folder that are looked at
+Others = Callable[[], Mapping[str, Crane]]  # cranes that runs might be of instead, by name; each is a file to read
 
 
 def quick_check(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Mapping[str, Crane] | None = None
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Others = known_cranes
 ) -> list[Finding]:
     """What speaks against these runs being this crane's, the likeliest mistake first; below a second for a dozen runs.
 
-    `others` are cranes that the runs might be of instead, by name (default: the shipped ones). An empty list, or one
-    without an `error`, means that ordinary friction and ordinary sensor errors explain the runs."""
+    `others` (default: the shipped cranes) is asked where the runs are doubted or say another crane's name, else not. An
+    empty list, or one without an `error`, means that ordinary friction and ordinary sensor errors explain the runs."""
     return diagnosed(apart(runs)[0], crane, model, others)[0]
 
 
 def diagnosed(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Mapping[str, Crane] | None,
-    ranked: bool = False,
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None, others: Others, ranked: bool = False
 ) -> tuple[list[Finding], Fit]:  # fmt: skip
     """The findings of `quick_check` and how the runs fit: diagnosed where they are doubted or `ranked`."""
-    others = shipped_cranes() if others is None else others
-    known = {name: each for name, each in others.items() if each != crane}
+    others = cache(others)
     clock = [finding for run in runs for finding in clock_findings(run)]
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
     own = model if model is not None and model.corrections else None
     views = views_of([corrected(run, crane, own) if own else (run, crane) for run in usable])
     fit = fit_of(views, model)
-    diagnosis = diagnose(fit, views, crane, model, known) if ranked or fit.doubted else None
+    diagnosis = None
+    if ranked or fit.doubted:
+        diagnosis = diagnose(fit, views, crane, model, {n: each for n, each in others().items() if each != crane})
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [w for run, rates in zip(usable, told, strict=True) for w in told_slow_clock(run, rates | ways(run, crane))]
     readings = [*reading_findings(runs, crane)]
@@ -224,48 +223,17 @@ def diagnosed(
     return sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)), diagnosis or fit
 
 
-def _named_crane(runs: Sequence[Run], crane: Crane, others: Mapping[str, Crane]) -> list[Finding]:
+def _named_crane(runs: Sequence[Run], crane: Crane, others: Others) -> list[Finding]:
     """What the runs themselves say of their crane; a differing name alone is no contradiction, another machine is."""
     said = {run.name: str(run.metadata.get("crane") or "") for run in runs}
     foreign = {name: own for name, own in said.items() if own and own != crane.name}
-    machines = sorted({own for own in foreign.values() if own in others and not same_machine(others[own], crane)})
+    known = others() if foreign else {}
+    machines = sorted({own for own in foreign.values() if own in known and not same_machine(known[own], crane)})
     if not machines:
         return []
     names = tuple(name for name, own in foreign.items() if own in machines)
     words = f"{runs_say(names, len(runs), 'say')} that they are of crane '{', '.join(machines)}', not of '{crane.name}'"
     return [Finding("error", "crane", words, "", names, {"recorded": machines})]
-
-
-def same_machine(first: Crane, second: Crane) -> bool:
-    """Whether two cranes are one to the torque balance, whatever their names."""
-    own = lambda c: (c.gear_ratio, c.drum.layer_radii, dict(c.groups), c.max_displacement, c.drive)
-    return own(first) == own(second)
-
-
-def shipped_cranes() -> dict[str, Crane]:
-    """The shipped cranes by name."""
-    return _cranes_in(config_directory() / "cranes")
-
-
-def known_cranes(*places: Path) -> dict[str, Crane]:
-    """The shipped cranes and those of crane files in these folders."""
-    found = shipped_cranes()
-    for place in dict.fromkeys(places):
-        found |= _cranes_in(place)
-    return found
-
-
-def _cranes_in(folder: Path) -> dict[str, Crane]:
-    found = {}
-    for path in sorted(folder.glob("*.yaml"))[:MOST_FILES] if folder.is_dir() else ():
-        try:
-            content = read_yaml(path)
-            if isinstance(content, dict) and str(content.get("schema", "")).startswith("winch_friction.crane/"):
-                crane = load_crane(path)
-                found[crane.name] = crane
-        except InputError:  # not a crane file that can be read: nothing to compare with
-            continue
-    return found
 
 
 def refuse(findings: Sequence[Finding]) -> None:

@@ -6,10 +6,11 @@ from typing import Any
 
 from winch_friction.commissioning.balance import Closure
 from winch_friction.commissioning.channels import SEVERITIES, Finding, first_contradiction
-from winch_friction.commissioning.check import diagnosed
+from winch_friction.commissioning.check import Others, diagnosed
 from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.kinematics import CONTRADICTS, Agreement, agreements
+from winch_friction.commissioning.other_cranes import known_cranes
 from winch_friction.commissioning.summaries import ChannelSummary, channel_findings, summaries
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.errors import counted
@@ -97,7 +98,7 @@ class CheckResult:
 
 
 def check(
-    runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Mapping[str, Crane] | None = None
+    runs: Sequence[Run], crane: Crane, model: FrictionModel | None = None, others: Others = known_cranes
 ) -> CheckResult:
     """Everything that can be said of runs before they are used; raises `InputError` for runs without a drive."""
     runs, holes = apart(runs)  # block means over days would each be one of minutes, in which nothing moves

@@ -1,14 +1,51 @@
-"""Whether runs may be another crane's, as far as the motors that the log shows allow it, and in which words."""
+"""Which other cranes there are, and whether runs may be one's, as far as the motors that the log shows allow it.
 
-from collections.abc import Sequence
+Asked of runs that are doubted, or that say another crane's name; nobody else reads another crane's file.
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from winch_friction.commissioning.view import RunView
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.strict_yaml import config_directory, read_yaml
 
+MOST_FILES = 40  # of a folder that are looked at: a folder of crane files holds fewer, one of logs is no such folder
 STOP = 0.03  # relative: motors of different size differ by more, a swivel angle's sensor by less
+
+
+def known_cranes(*folders: Path) -> dict[str, Crane]:
+    """The shipped cranes and those of crane files in these folders, by name.
+
+    A file that is no crane's, or that cannot be read, is passed over: there is nothing to compare with.
+    """
+    places = dict.fromkeys((config_directory() / "cranes", *folders))
+    return {crane.name: crane for folder in places for crane in _cranes_in(folder)}
+
+
+def cranes_near(files: Sequence[Path]) -> dict[str, Crane]:
+    """The same with the user's own: those that lie here, and beside these files."""
+    return known_cranes(Path.cwd(), *(Path(each).resolve().parent for each in files))
+
+
+def _cranes_in(folder: Path) -> Iterator[Crane]:
+    for path in sorted(folder.glob("*.yaml"))[:MOST_FILES] if folder.is_dir() else ():
+        try:
+            content = read_yaml(path)
+            if isinstance(content, dict) and str(content.get("schema", "")).startswith("winch_friction.crane/"):
+                yield load_crane(path)
+        except InputError:
+            continue
+
+
+def same_machine(first: Crane, second: Crane) -> bool:
+    """Whether two cranes are one to the torque balance, whatever their names."""
+    own = lambda c: (c.gear_ratio, c.drum.layer_radii, dict(c.groups), c.max_displacement, c.drive)
+    return own(first) == own(second)
 
 
 def claim(views: Sequence[RunView], crane: Crane, name: str, other: Crane) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import again, workflow
-from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, GapOptions, Side
 from winch_friction.discrepancy.expansion import Split
 from winch_friction.discrepancy.search import Study
 
@@ -15,10 +15,14 @@ RUNS = tuple(SimpleNamespace(name=f"run_{k}") for k in range(9))
 SPLIT = Split(RUNS, tuple(run.name for run in RUNS[:6]), tuple(run.name for run in RUNS[6:]))
 
 
+class Left(SimpleNamespace):
+    most_left_first = Side.most_left_first
+
+
 def side(left, by_run=()):
     """What is left of runs, in all and of each one's ten blocks."""
     size = SimpleNamespace(value=left, interval=(0.9 * left, 1.1 * left))
-    return SimpleNamespace(
+    return Left(
         size_after=size, floor=FLOOR, excused=FLOOR, runs=RUNS[: len(by_run)],
         left_by_run=[(run, np.full(10, own) / FLOOR) for run, own in zip(RUNS, by_run, strict=False)],
     )  # fmt: skip

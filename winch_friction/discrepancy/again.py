@@ -11,7 +11,7 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
-from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, rms, share_left, worse_runs
+from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, share_left, worse_runs
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Search, Study, search_runs
 from winch_friction.discrepancy.standing import standing, tried
@@ -82,10 +82,9 @@ def by_beyond(study: Study, trial: Trial, search: Search) -> tuple[Study, Trial]
     beyond = worse_runs(full.holdout, study.rng)
     if not beyond or not at_the_floor(full.train):
         return study, trial
-    left = {run.name: rms(own) for run, own in trial.train.left_by_run}
-    most_first = sorted(left, key=lambda name: -left[name])
     kept = [name for name in study.split.holdout if name not in beyond]
-    other = replace(study, split=_locking(study.split, most_first[: 2 * len(beyond)], kept))
+    showing = list(trial.train.most_left_first)[: 2 * len(beyond)]
+    other = replace(study, split=_locking(study.split, showing, kept))
     proven = standing(other, search_runs(other, trial.search.given))
     stands = proven.search.verdict.kind in (MISSING, AMBIGUOUS) and not far_off(proven.train)
     return (other, proven) if stands and share_left(proven.holdout) <= LIMITS.small_left_over else (study, trial)

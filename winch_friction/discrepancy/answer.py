@@ -14,7 +14,7 @@ from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate, Untestable
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks
-from winch_friction.discrepancy.engine.chance import Dependence, Size
+from winch_friction.discrepancy.engine.chance import Dependence, Size, rms
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.regions import Region
 from winch_friction.discrepancy.engine.selection import Considered, Selection
@@ -24,10 +24,6 @@ from winch_friction.physics.friction import FrictionModel
 
 # -- what may be chosen
 STEPS = 4  # that `told` hears of
-
-
-def _silent(_: str) -> None:
-    """For who does not watch."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +36,7 @@ class GapOptions:
     proposals: bool = True  # laws are looked for where no name fits
     plan: bool = True  # look for the experiment that separates rivals
     candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given
-    told: Callable[[str], None] = _silent  # what begins: for a progress bar
+    told: Callable[[str], None] = lambda _: None  # hears what begins: for a progress bar
 
 
 # -- what is found
@@ -127,6 +123,12 @@ class Side:
         floor = max(self.floor, 1e-12)
         return [(run, self.after[self.blocks.run == k] / floor) for k, run in enumerate(self.runs)]
 
+    @property
+    def most_left_first(self) -> dict[str, float]:
+        """RMS of what each run's blocks keep, in floors, by its name, from the run on that keeps most."""
+        left = {run.name: rms(own) for run, own in self.left_by_run}
+        return dict(sorted(left.items(), key=lambda pair: -pair[1]))
+
 
 @dataclass(frozen=True)
 class GapResult:
@@ -203,11 +205,6 @@ def _before_after(side: Side) -> dict[str, Any]:
     }
 
 
-def relative_error(residual: FloatArray, blocks_torque: FloatArray) -> float:
-    """Norm of the residual over the norm of the measured torque."""
-    return float(np.sqrt((residual**2).sum() / max(float((blocks_torque**2).sum()), 1e-300)))
-
-
 # -- the verdict
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
 INSUFFICIENT = "insufficient"
@@ -276,11 +273,10 @@ def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
 
     There the balance holds whatever swings on the wire or rings in the oil, which no friction model is to answer for.
     """
-    left = cross.remainder(explanation)
     acceleration = np.abs(cross.problem.blocks.features["acceleration"])
     steady = acceleration <= LIMITS.steady * np.percentile(acceleration, 99)
     chosen = steady if steady.sum() >= LIMITS.fewest_steady else np.ones_like(steady)
-    return float(np.mean(left[chosen] ** 2 - 1.0 - cross.problem.unresolved[chosen]))
+    return cross.inside_excess(explanation, chosen)
 
 
 def named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:

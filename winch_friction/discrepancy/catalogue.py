@@ -33,7 +33,7 @@ from winch_friction.discrepancy.candidates.friction import friction_candidate, n
 from winch_friction.discrepancy.candidates.geometry import gas_candidates, geometry_candidates, layers_apart
 from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Slot, first_halves
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -215,10 +215,7 @@ def levels_of(
     """Size of a candidate in the first half of each run, or in all of it where it is `whole`, and its deviation from
     the others', in its units, the base fitted to all of them; NaN where a run has none of it."""
     blocks, base = problem.blocks, list(problem.base_columns)
-    half = np.array(
-        [np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in range(runs)]
-    )
-    first = blocks.position <= half[blocks.run]
+    first = first_halves(blocks)
     first |= np.asarray(whole if whole is not None else [False] * runs)[blocks.run]
     weight, run = blocks.weight[first], blocks.run[first]
     own = blocks.x[first, slot.columns[0]] * weight

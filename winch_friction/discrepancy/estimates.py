@@ -249,16 +249,11 @@ def _cost(cross: CrossFit, explanation: Explanation, count: int) -> float:
 def _something_else(wide: CrossFit, freed: Explanation, search: Search, rng: np.random.Generator) -> bool:
     """Whether the freed base keeps something that the names, if there are any, do not keep."""
     base, final = search.selection.base, search.selection.final
-    if final.slots and _excess(wide, freed) <= LIMITS.as_much * _excess(search.cross, final):
+    if final.slots and wide.inside_excess(freed) <= LIMITS.as_much * search.cross.inside_excess(final):
         return False
     depends = telling(wide, dependences(wide, wide.remainder(freed), rng))
-    excess = max(_excess(wide, freed), steady_excess(wide, freed))
-    return keeps_something(excess, max(_excess(wide, base), 1e-9), depends)
-
-
-def _excess(cross: CrossFit, explanation: Explanation) -> float:
-    left = cross.remainder(explanation)
-    return float(np.mean(left**2 - 1.0 - cross.problem.unresolved))
+    excess = max(wide.inside_excess(freed), steady_excess(wide, freed))
+    return keeps_something(excess, max(wide.inside_excess(base), 1e-9), depends)
 
 
 # -- what the making of a log explains, which is no name

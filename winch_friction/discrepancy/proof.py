@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtr
 
-from winch_friction.discrepancy.answer import Side, relative_error
+from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks, segment_length
-from winch_friction.discrepancy.engine.chance import chance_of_no_gain, rms_with_interval
+from winch_friction.discrepancy.engine.chance import chance_of_no_gain, rms, rms_with_interval
 from winch_friction.discrepancy.engine.problem import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -182,9 +182,9 @@ def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.nda
     return refit.after[first], repaired.after[second], own.segment[second], own.run[second]
 
 
-def rms(values: FloatArray) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+def _relative(residual: FloatArray, drive: FloatArray) -> float:
+    """Norm of what is left over the norm of the measured drive."""
+    return float(np.sqrt((residual**2).sum() / max(float((drive**2).sum()), TINY)))
 
 
 def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Generator) -> Side:
@@ -205,7 +205,7 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
         size_before=rms_with_interval(y_before, blocks.segment, blocks.run, rng),
         size_after=rms_with_interval(y_after, blocks.segment, blocks.run, rng), noise_floor=floor,
         least_noise=closes,
-        relative=(relative_error(y_before, torque), relative_error(y_after, torque)),
+        relative=(_relative(y_before, torque), _relative(y_after, torque)),
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
+from winch_friction.discrepancy.engine.blocks import Slot, first_halves, on_their_own
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
@@ -260,7 +260,5 @@ def _told(search: Search, k: int, shapes: list[Slot], split: Split) -> Search:
 def _left_of_first_halves(locked: CrossFit, explanation: Explanation) -> float:
     """Sum of squares, in units of the noise, that an explanation of the training runs leaves of the first half of every
     locked run."""
-    blocks, left = locked.problem.blocks, locked.remainder(explanation)
-    runs = range(int(blocks.run.max(initial=-1)) + 1)
-    half = np.array([np.median(blocks.position[blocks.run == k]) if (blocks.run == k).any() else 0 for k in runs])
-    return float((left[blocks.position <= half[blocks.run]] ** 2).sum()) if len(left) else 0.0
+    left = locked.remainder(explanation)
+    return float((left[first_halves(locked.problem.blocks)] ** 2).sum())

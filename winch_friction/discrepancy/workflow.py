@@ -37,7 +37,7 @@ from winch_friction.discrepancy.next_experiment import (
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.preparation.prepare import READ_AS
-from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys, rms
+from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
 from winch_friction.discrepancy.search import Search, Study, search_runs
@@ -141,8 +141,7 @@ def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
     learned from and proven on."""
     if not at_the_floor(trial.holdout):
         return study, trial
-    left = {run.name: rms(own) for run, own in trial.train.left_by_run}
-    showing = [name for name in sorted(left, key=lambda name: -left[name]) if left[name] > LIMITS.far_off_the_floor]
+    showing = [name for name, left in trial.train.most_left_first.items() if left > LIMITS.far_off_the_floor]
     return by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from winch_friction.discrepancy.answer import Effect
 from winch_friction.discrepancy.candidates.candidate import SOURCE, ParameterEstimate
-from winch_friction.discrepancy.engine.chance import sign_flip_p_value
+from winch_friction.discrepancy.engine.chance import rms, sign_flip_p_value
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.fluid import LEAKAGE_LAWS, REFERENCE_PRESSURE
 from winch_friction.physics.friction.correction import Correction
@@ -98,7 +98,7 @@ class Leakage:
             after = after - value * rates[law]
         if len(table) < FEWEST_TO_FLIP:  # too few for any to be surprising: each must be plainly better
             return len(table) > 1 and bool((np.abs(after) < 0.5 * np.abs(before)).all())
-        return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and _rms(after) < _rms(before)
+        return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and rms(after) < rms(before)
 
 
 def leakage_of(table: FloatArray, change: float, full_displacement: float) -> Leakage:
@@ -109,14 +109,14 @@ def leakage_of(table: FloatArray, change: float, full_displacement: float) -> Le
     before = _held_out(motion, lost, of_run)
     singles: list[tuple[str, ...]] = [(law,) for law in LEAKAGE_LAWS]
     fits = {laws: _fitted(laws, motion, rates, lost, of_run) for laws in singles}
-    laws = min(fits, key=lambda k: _rms(fits[k][2]))
+    laws = min(fits, key=lambda k: rms(fits[k][2]))
     for other in [law for law in LEAKAGE_LAWS if law not in laws]:
         pair = (laws[0], other)
         fits[pair] = _fitted(pair, motion, rates, lost, of_run)
     first = motion.shape[1]  # of the laws' own coefficients
     allowed = {k: fit for k, fit in fits.items() if len(k) == 1 or min(fit[0][first:]) > 0.0}
-    best = min(allowed, key=lambda k: _rms(allowed[k][2]))
-    if len(best) > 1 and _rms(allowed[best][2]) < WORTH_A_LAW * _rms(allowed[laws][2]):
+    best = min(allowed, key=lambda k: rms(allowed[k][2]))
+    if len(best) > 1 and rms(allowed[best][2]) < WORTH_A_LAW * rms(allowed[laws][2]):
         laws = best
     coefficients, covariance, after = allowed[laws]
     full = REFERENCE_PRESSURE / full_displacement
@@ -124,7 +124,7 @@ def leakage_of(table: FloatArray, change: float, full_displacement: float) -> Le
     return Leakage(
         {law: (float(coefficients[k]), float(std[k])) for k, law in enumerate(laws, start=first)},
         float(coefficients[first:].sum()) * full, float(np.sqrt(covariance[first:, first:].sum())) * full,
-        sign_flip_p_value(before**2 - after**2), _rms(before), _rms(after), change,
+        sign_flip_p_value(before**2 - after**2), rms(before), rms(after), change,
         tuple(map(float, coefficients[:first])), tuple(map(float, _fit(motion, lost)[0])),
     )  # fmt: skip
 
@@ -160,10 +160,6 @@ def _held_out(x: FloatArray, lost: FloatArray, of_run: FloatArray) -> FloatArray
         out = of_run == run
         left[out] = lost[out] - x[out] @ _fit(x[~out], lost[~out])[0]
     return left
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 # -- air

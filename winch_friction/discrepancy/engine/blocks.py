@@ -181,6 +181,14 @@ def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float], x: FloatArra
     )
 
 
+def first_halves(blocks: Blocks) -> np.ndarray:
+    """Whether each block is one of the first half of its record's, (blocks,)."""
+    half = np.zeros(int(blocks.run.max(initial=-1)) + 1)
+    for k in np.unique(blocks.run):
+        half[k] = np.median(blocks.position[blocks.run == k])
+    return np.asarray(blocks.position <= half[blocks.run])
+
+
 def grams(blocks: Blocks) -> Grams:
     """Gram matrices of every part, and which blocks are a segment's."""
     order = np.argsort(blocks.segment, kind="stable")

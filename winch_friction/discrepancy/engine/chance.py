@@ -25,6 +25,11 @@ from winch_friction.discrepancy.thresholds import LIMITS
 
 
 # -- how large a residual is
+def rms(values: FloatArray) -> float:
+    """Root mean square; 0 of nothing."""
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+
+
 @dataclass(frozen=True)
 class Size:
     """A root mean square with its 95 % interval over redrawn runs and segments."""
@@ -84,6 +89,9 @@ def _redrawn(of_run: np.ndarray, rng: np.random.Generator) -> FloatArray:
 
 
 # -- rivals of what was found
+REDRAWS = 200  # of segments: how often an effect wins is known to 0.035, and only said
+
+
 def rivals_of(
     cross: CrossFit, current: Explanation, without: Explanation, k: int, rng: np.random.Generator, same: bool = False
 ) -> tuple[tuple[Slot, ...], float]:
@@ -163,10 +171,11 @@ def does_as_well(trial: Explanation, current: Explanation, without: Explanation,
     return bool(flip_p_values(worse[None], rng)[0] > LIMITS.rival_p or worse.sum() < LIMITS.rival_share * worth)
 
 
-def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator, draws: int = 200) -> float:
+def _frequency(own: FloatArray, others: Sequence[FloatArray], rng: np.random.Generator) -> float:
+    """How often an effect leaves no more than the best of the others when segments are redrawn."""
     if not others:
         return 1.0
-    weights = rng.multinomial(len(own), np.full(len(own), 1.0 / len(own)), size=draws)
+    weights = rng.multinomial(len(own), np.full(len(own), 1.0 / len(own)), size=REDRAWS)
     rival = (weights @ np.array(others).T).min(axis=1)
     return float(np.mean(weights @ own <= rival * (1.0 + 1e-12)))
 
@@ -247,7 +256,7 @@ def least_part(cross: CrossFit, every: Explanation, names: Iterable[str]) -> flo
     return min((cross.explain(rest).loss - every.loss) / saved for rest in rests)
 
 
-def sign_flip_p_value(gains: FloatArray, flips: int = 2000) -> float:
+def sign_flip_p_value(gains: FloatArray) -> float:
     """Sign-flip p-value of a positive mean gain over segments."""
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(flips, len(gains)))
-    return float((1 + (signs @ gains >= gains.sum()).sum()) / (1 + flips))
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(LIMITS.flips, len(gains)))
+    return float((1 + (signs @ gains >= gains.sum()).sum()) / (1 + LIMITS.flips))

@@ -69,6 +69,11 @@ class CrossFit:
         variance."""
         return (explanation.loss - self.floor) / float(self.problem.grams.count.sum())
 
+    def inside_excess(self, explanation: "Explanation", where: np.ndarray | slice = slice(None)) -> float:
+        """The same of the blocks that it was fitted to, or of those of them that `where` chooses."""
+        left = self.remainder(explanation)[where]
+        return float(np.mean(left**2 - 1.0 - self.problem.unresolved[where]))
+
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
         """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)

@@ -23,8 +23,9 @@ def side(left):
 def trial(kind, locked=FAR, train=FAR, law=EACH_RUN):
     slot = SimpleNamespace(name="brake_drag", law=law)
     search = SimpleNamespace(
-        verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)])
-    )
+        verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)]),
+        flow=(), ripple=None,
+    )  # fmt: skip
     return SimpleNamespace(search=search, holdout=side(locked), train=side(train))
 
 
@@ -73,7 +74,8 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
-    monkeypatch.setattr(workflow, "search_runs", lambda *_: SimpleNamespace(verdict=SimpleNamespace(untold=False)))
+    searched = SimpleNamespace(verdict=SimpleNamespace(untold=False), flow=(), ripple=None)
+    monkeypatch.setattr(workflow, "search_runs", lambda *_: searched)
     monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "standing", lambda *_: trial(first))
     monkeypatch.setattr(workflow, "_once_more", lambda study, given, trial, search: (study, trial))

@@ -29,6 +29,8 @@ class Found:
 
     kind: str
     given: Balance = ELASTIC
+    flow: tuple = ()
+    ripple: object = None
 
     @property
     def verdict(self):

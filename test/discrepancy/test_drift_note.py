@@ -16,7 +16,7 @@ def side(losses, present=frozenset(), scatter=0.05):
     runs = [
         SimpleNamespace(
             start=3600.0 * k, present=present, used=np.ones(40, bool), gap=np.zeros(40), predicted=np.full(40, DRIVE),
-            unit_torque=1.0,
+            drive_torque=np.full(40, DRIVE), unit_torque=1.0,
         )
         for k in range(len(losses))
     ]  # fmt: skip

@@ -168,7 +168,7 @@ def test_what_a_load_cell_is_off_by_is_more_of_the_motors_that_carry_a_part():
 @pytest.mark.parametrize(("rated", "least"), [(0.0, 0.1), (300.0, 0.3), (50.0, 0.1)])
 def test_a_drives_torque_is_off_by_a_share_of_what_it_is_rated_for(rated, least):
     """N m: a light run of 100 N m knows its own torque no better than a heavy one."""
-    run = SimpleNamespace(groups=[], gap=np.zeros(5), predicted=np.full(5, 100.0), rated_torque=rated, unit_torque=1.0)
+    run = SimpleNamespace(groups=[], drive_torque=np.full(5, 100.0), rated_torque=rated, unit_torque=1.0)
     assert least_noise_of(run) == pytest.approx(least)
 
 

@@ -8,6 +8,7 @@ from scipy.stats import linregress
 
 from winch_friction.discrepancy import proof as module
 from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
 
 RUNS, BLOCKS = 8, 100
@@ -91,8 +92,12 @@ def test_a_large_share_of_a_small_gap_is_no_more_than_twice_the_floor(after, eno
     assert bool(leaves_too_much(side(after, 0.23))) is enough
 
 
+class Driven(SimpleNamespace):
+    drive_torque = PreparedRun.drive_torque
+
+
 def test_the_drive_of_a_run_is_what_was_measured():
-    run = SimpleNamespace(
+    run = Driven(
         used=np.array([True, True, False]),
         gap=np.array([30.0, 30.0, 1e3]),
         predicted=np.full(3, 100.0),
@@ -105,7 +110,7 @@ def test_a_drift_is_said_with_the_interval_and_the_chance_of_its_line():
     hours = np.arange(9.0)
     loss = 2.0 * hours + 4.0 * np.array([1.0, -1.0, 0.5, 1.0, -1.5, -1.0, 1.0, 0.0, 0.5])
     runs = [
-        SimpleNamespace(
+        Driven(
             start=3600.0 * hour, present=frozenset(), used=np.ones(4, bool), gap=np.zeros(4),
             predicted=np.full(4, 100.0), unit_torque=1.0,
         )

@@ -133,11 +133,11 @@ def test_a_run_of_which_little_is_known_hides_no_two_levels():
 
 
 def test_what_a_logged_signal_tells_is_no_state():
-    def run(load, mode=("main",), swash=2e-5, layer=0):
+    def run(load, kind=("main",), swash=2e-5, layer=0):
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
         channels |= {"wire_layer": np.full(5, layer)} if layer else {}
         group = SimpleNamespace(balances=True, displacement=np.full(5, swash), pressure=np.zeros(5))
-        return SimpleNamespace(channels=channels, used=np.ones(5, bool), mode=mode, groups=[group])
+        return SimpleNamespace(channels=channels, used=np.ones(5, bool), kind=kind, groups=[group])
 
     there = np.array([True, True, False, False, False])
     assert told_by_a_signal([run(60e3), run(55e3), run(20e3), run(25e3), run(30e3)], there)
@@ -166,13 +166,13 @@ def test_what_a_logged_signal_tells_is_no_state():
 
 
 def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake():
-    def run(k, load, mode=("main",)):
+    def run(k, load, kind=("main",)):
         group = SimpleNamespace(balances=True, displacement=np.full(5, 2e-5), pressure=np.zeros(5))
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
         channels["wire_layer"] = np.full(5, 1.0 + k % 4)
         channels["oil_temperature"] = np.full(5, 20.0 + 7.0 * (k * 5 % 12))
         return SimpleNamespace(
-            channels=channels, used=np.ones(5, bool), mode=mode, groups=[group], start=1e9 + 41_000.0 * k,
+            channels=channels, used=np.ones(5, bool), kind=kind, groups=[group], start=1e9 + 41_000.0 * k,
             load=channels["hook_load"],
         )  # fmt: skip
 

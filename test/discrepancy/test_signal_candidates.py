@@ -114,7 +114,7 @@ def test_laws_of_the_speed_follow_a_motor_of_large_stroke(rpm, octaves):
 def test_an_electric_drive_that_carries_like_several_motors_may_lose_as_much(given, one, whole):
     """A motor of 215 cm3 gives 1027 N m at 300 bar; a small drive is not held to less than that motor's sizes."""
     gap, used = np.full(400, (given or 0.0) / 4.0), np.full(400, given is not None)
-    run = SimpleNamespace(constants=(), groups=[], gap=gap, predicted=3.0 * gap, used=used)
+    run = SimpleNamespace(constants=(), groups=[], gap=gap, drive_torque=4.0 * gap, used=used)
     sizes = machine_sizes([run])
     assert set(sizes) == {"N*m", "N*m*s/rad", "torque_offset", "direction_asymmetry"}
     assert sizes["N*m"] == sizes["N*m*s/rad"] == pytest.approx(one, rel=0.01)

@@ -1,6 +1,6 @@
 """Can these runs answer at all, in numbers, and which of them are locked? Asked before the search."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -177,7 +177,7 @@ def _untold(run: PreparedRun, crane: Crane) -> bool:
     return len(run.groups) > 1
 
 
-def _joined(runs: Sequence[PreparedRun], values) -> FloatArray:  # type: ignore[no-untyped-def]
+def _joined(runs: Sequence[PreparedRun], values: Callable[[PreparedRun], FloatArray]) -> FloatArray:
     return np.concatenate([np.empty(0), *(values(run)[run.used] for run in runs)])
 
 

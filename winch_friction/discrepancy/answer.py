@@ -208,6 +208,7 @@ def _before_after(side: Side) -> dict[str, Any]:
 # -- the verdict
 NOTHING, MISSING, AMBIGUOUS, UNEXPLAINED = "nothing_missing", "missing_effect", "ambiguous", "unexplained"
 INSUFFICIENT = "insufficient"
+POINTS = 0.5  # of the share that tells of something where no effect was found: beside one there is less to point at
 
 
 @dataclass(frozen=True)
@@ -264,7 +265,7 @@ def keeps_something(excess: float, before: float, depends: Sequence[Dependence])
     remains = excess > LIMITS.least_excess and excess / before > LIMITS.left_over
     remains |= excess > LIMITS.large_excess and excess / before > LIMITS.small_left_over
     return remains and (
-        excess > LIMITS.obvious_excess or any(d.share >= 0.5 * LIMITS.least_unexplained for d in depends)
+        excess > LIMITS.obvious_excess or any(d.share >= POINTS * LIMITS.least_unexplained for d in depends)
     )
 
 

@@ -256,7 +256,7 @@ def _something_else(wide: CrossFit, freed: Explanation, search: Search, rng: np.
     return keeps_something(excess, max(wide.inside_excess(base), 1e-9), depends)
 
 
-# -- what the making of a log explains, which is no name
+# -- what the making of a log explains, or a mere refit, and is no name
 def within_a_sample(parameters: Mapping[str, Estimates], side: Side) -> str:
     """Why a delay, in s among the parameters by name, is none; empty where it is one, or there is none.
 

@@ -116,7 +116,7 @@ def met_in_turn(given: Given, model: FrictionModel, modes: Mapping[str, Mode]) -
 
 def swings(given: Given) -> bool:
     """Whether the balance takes the wire of any run for one on which the load swings."""
-    return any(run.wire_mode[1] > 0.0 for run in given.prepared)
+    return any(run.wire_mode.damping > 0.0 for run in given.prepared)
 
 
 def as_rigid(given: Given) -> Given:
@@ -124,12 +124,12 @@ def as_rigid(given: Given) -> Given:
 
     def rigid(run: Run, old: PreparedRun) -> PreparedRun:
         load = given.loads.get(run.name, NAN)
-        mode = Mode(old.wire_mode[0], 0.0)
+        mode = Mode(old.wire_mode.frequency, 0.0)
         new = prepare(run, given.crane, given.model, load, mode=mode, spikes=old.spikes, seen=old.seen)
         return replace(new, corrections=old.corrections)
 
     pairs = zip(given.runs, given.prepared, strict=True)
-    return replace(given, prepared=tuple(rigid(run, old) if old.wire_mode[1] > 0.0 else old for run, old in pairs))
+    return replace(given, prepared=tuple(rigid(run, old) if old.wire_mode.damping > 0.0 else old for run, old in pairs))
 
 
 def _corrected(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> tuple[tuple[Run, ...], Crane]:
@@ -193,21 +193,21 @@ def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
         ratio = None
     if ratio is None:
         ratio = wire.pooled_damping(modes, left, variances)
-    swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode[1] > 0.0]
+    swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode.damping > 0.0]
     if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
-        every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode[1] > 0.0]
+        every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode.damping > 0.0]
         ratio = wire.agreed_damping(swinging) or wire.agreed_damping(every)
         ratio = None if ratio is not None and _outvoted(able, ratio) else ratio
     if ratio is None:
-        return [Mode(run.wire_mode[0], 0.0) for run in prepared]
-    said = [run.wire_mode[2] for run in prepared if run.wire_mode[2] is not None]
+        return [Mode(run.wire_mode.frequency, 0.0) for run in prepared]
+    said = [run.wire_mode.follows for run in prepared if run.wire_mode.follows is not None]
     follows = 2 * sum(said) >= len(said)  # as a spring's stiffness does, unless the runs that tell deny it
     return [
         Mode(
             at, ratio(at, _mass(run)) if _slow(run) else 0.0,
-            run.wire_mode[2] if run.wire_mode[1] > 0.0 else follows, _rings(run, ratio, bool(ringing)),
+            run.wire_mode.follows if run.wire_mode.damping > 0.0 else follows, _rings(run, ratio, bool(ringing)),
         )
-        for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode[0]) for run in prepared)
+        for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode.frequency) for run in prepared)
     ]  # fmt: skip
 
 
@@ -218,26 +218,26 @@ def _length(run: PreparedRun) -> float:
 
 def _in_tune(run: PreparedRun, stiffness: float) -> float:
     """The frequency of a run's mode, rad/s, unless it is off what the wire's stiffness times its length, N, gives."""
-    given, own = float(np.sqrt(stiffness / max(_mass(run) * _length(run), 1e-9))), run.wire_mode[0]
+    given, own = float(np.sqrt(stiffness / max(_mass(run) * _length(run), 1e-9))), run.wire_mode.frequency
     return given if own > 0.0 and abs(np.log(own / given)) > wire.IN_TUNE else own
 
 
 def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
     """Whether as many runs speak against a load that swings so damped as ring like one on a rope: a mode that is damped
     more than any rope takes the noise of a motion sensor out of heave compensation, and tears the other runs apart."""
-    ringing = sum(0.0 < run.wire_mode[1] < MOST_DAMPED for run in able)
+    ringing = sum(0.0 < run.wire_mode.damping < MOST_DAMPED for run in able)
     return sum(_denied(run, ratio) for run in able) >= max(ringing, 1)
 
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
     """Whether a run speaks against a load that swings so damped."""
-    return run.wire_mode[1] <= 0.0 and wire.denies(_said(run), ratio(run.wire_mode[0], _mass(run)))
+    return run.wire_mode.damping <= 0.0 and wire.denies(_said(run), ratio(run.wire_mode.frequency, _mass(run)))
 
 
 def _rings(run: PreparedRun, ratio: Callable[[float, float], float], plain: bool) -> bool:
     """Whether a computed wire would make noise ring that no motor feels; any, where others ring `plain`."""
-    tells = (run.swing_noise or plain) and run.wire_mode[1] <= 0.0 and _slow(run)
-    return tells and wire.denies(run.swing_left, ratio(run.wire_mode[0], _mass(run)))
+    tells = (run.swing_noise or plain) and run.wire_mode.damping <= 0.0 and _slow(run)
+    return tells and wire.denies(run.swing_left, ratio(run.wire_mode.frequency, _mass(run)))
 
 
 def _said(run: PreparedRun) -> tuple[float, ...]:
@@ -248,7 +248,7 @@ def _said(run: PreparedRun) -> tuple[float, ...]:
 
 def _slow(run: PreparedRun, turn: float = FOLLOWED) -> bool:
     """Whether the wire's mode turns by less than so much, rad, in a sample."""
-    return 0.0 < run.wire_mode[0] * run.dt < turn
+    return 0.0 < run.wire_mode.frequency * run.dt < turn
 
 
 def _mass(run: PreparedRun) -> float:

@@ -22,9 +22,9 @@ def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
     """Whether a parabola or a step over the medians of something that was logged, or over the date, a product with the
     load, the layer of the drum or the time of day says most of what the runs' levels differ by, beside what hoisting
     and heave compensation differ by."""
-    modes = sorted({run.mode for run in runs})
-    beside = np.array([[float(run.mode == mode) for mode in modes] for run in runs])
-    if len(runs) - len(modes) - 2 < FEWEST_FREE:
+    kinds = sorted({run.kind for run in runs})
+    beside = np.array([[float(run.kind == kind) for kind in kinds] for run in runs])
+    if len(runs) - len(kinds) - 2 < FEWEST_FREE:
         return True
     most = LIMITS.told_by_signal * _left_by(beside, levels)
     medians, starts = _medians(runs), np.array([run.start for run in runs])
@@ -71,8 +71,9 @@ def _left_by(columns: FloatArray, values: FloatArray) -> float:
 def told_by_a_signal(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
     """Whether something that was logged is larger in all runs of one level than in any of the other: then what is there
     may hang on it."""
-    if len({(run.mode, bool(on)) for run, on in zip(runs, there, strict=True)}) == len({run.mode for run in runs}):
-        return len({run.mode for run in runs}) > 1
+    kinds = {run.kind for run in runs}
+    if len({(run.kind, bool(on)) for run, on in zip(runs, there, strict=True)}) == len(kinds):
+        return len(kinds) > 1
     for name, medians in _medians(runs).items():
         yes, no = medians[there], medians[~there]
         if np.nanmin(yes) > np.nanmax(no) or np.nanmax(yes) < np.nanmin(no):

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.families import shapes_over
-from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor

@@ -13,7 +13,7 @@ from scipy.special import stdtr
 
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, joined, run_blocks, segment_length
+from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, joined, run_blocks, segment_length
 from winch_friction.discrepancy.engine.chance import chance_of_no_gain, rms, rms_with_interval
 from winch_friction.discrepancy.engine.problem import noise_of_run
 from winch_friction.discrepancy.expansion import Given
@@ -209,11 +209,12 @@ def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Ge
     )  # fmt: skip
 
 
-def _blocks(old: PreparedRun, new: PreparedRun, length: float):  # type: ignore[no-untyped-def]
+def _blocks(old: PreparedRun, new: PreparedRun, length: float) -> RunBlocks:
+    """The gap of a run before, and in the columns the gap after it and what signals out of step leave, in its unit."""
     at = old.time + old.start
     own = new.time + new.start
     inside = (at >= own[0] - 1e-9) & (at <= own[-1] + 1e-9)
-    used = old.used & inside & (np.interp(at, own, new.used.astype(float)) > 0.99)
+    used = old.used & inside & new.used_at(at)
     gap = np.interp(at, own, new.gap) / new.unit_torque
     return run_blocks(
         old.time,
@@ -239,9 +240,7 @@ def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: 
 
 def drive_of(run: PreparedRun) -> float:
     """RMS of a run's measured drive while moving, in the gap's unit."""
-    if not run.used.any():
-        return 0.0
-    return float(np.sqrt(np.mean(((run.gap + run.predicted)[run.used] / run.unit_torque) ** 2)))
+    return rms(run.drive_torque[run.used] / run.unit_torque)
 
 
 # -- from run to run

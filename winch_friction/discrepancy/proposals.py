@@ -38,6 +38,8 @@ from winch_friction.physics.channels import beside
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import known_for_now
 
+FIRST_STEP = 0.25  # of a constant: half the way between two of the grid's
+
 
 @dataclass(frozen=True)
 class Proposal:
@@ -186,8 +188,7 @@ def _order(scored: Scored, before: float) -> float:
 
 def _tuned(grammar: Grammar, scored: Scored, runs: Sequence[PreparedRun], most: int) -> Scored:
     """The law with its constants moved to where it fits best, one after the other between the grid's values."""
-    best = scored
-    step = 0.25
+    best, step = scored, FIRST_STEP
     for _ in range(LIMITS.tuning_rounds):
         for k, factor in enumerate(best.law.factors):
             if BY_NAME[factor.signal].whole:

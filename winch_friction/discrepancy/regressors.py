@@ -20,6 +20,7 @@ from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length, usable_blocks
+from winch_friction.discrepancy.engine.chance import rms
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
@@ -34,6 +35,7 @@ UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
 STEP = LIMITS.step * LIMITS.least_noise
+SMALL = 0.1  # of the typical size: a value below it says nothing of how far off it may be
 HELD = 1e-6  # of a tolerance: so little that it is none
 # what every measurement is off by without being wrong: (name, one sigma, bounds), bounded like the parameters
 TOLERANCES = (
@@ -60,7 +62,8 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     swept = dict(run.constants).get("max_displacement", 0.0)
     motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
     if not swept or not motors:
-        given = max((float(np.quantile(np.abs(drive), TOP)) for drive in map(_drive, runs) if len(drive)), default=0.0)
+        drives = [np.abs(each.drive_torque[each.used]) for each in runs if each.used.any()]
+        given = max((float(np.quantile(drive, TOP)) for drive in drives), default=0.0)
         one = max(given / (REFERENCE_MOTOR * REFERENCE_PRESSURE), 1.0)
         return {**dict.fromkeys(("N*m", "N*m*s/rad"), one), **dict.fromkeys(OF_WINCH, max(one / REFERENCE_MOTORS, 1.0))}
     one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
@@ -73,11 +76,6 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 
-def _drive(run: PreparedRun) -> FloatArray:
-    """What the drive gave, N m at the shaft."""
-    return (run.gap + run.predicted)[run.used]
-
-
 def base_of(
     model: FrictionModel, expanded: FrictionModel, loose: Mapping[str, float] | None = None, held: Collection[str] = ()
 ) -> Base:
@@ -87,8 +85,8 @@ def base_of(
     """
     seed, at = np.array(model.values), np.array(expanded.values)
     std = np.array([(loose or {}).get(n, s) for n, s in zip(model.parameter_names, model.std, strict=True)])
-    least = np.maximum(np.abs(seed), [abs(p.typical) * 0.1 for p in model.parameters])
-    scale = np.where(std > 0.0, std, LIMITS.default_relative_std * least)
+    unstated = [_unstated_std(value, p.typical) for value, p in zip(model.values, model.parameters, strict=True)]
+    scale = np.where(std > 0.0, std, unstated)
     bounds = np.array([model.bounds_of(name) for name in model.parameter_names]).reshape(-1, 2)
     shift = (at - seed) / scale
     lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
@@ -121,8 +119,12 @@ def key_of(correction: Correction) -> str:
 
 def correction_std(correction: Correction) -> float:
     """Its standard deviation; where none is given, as uncertain as a parameter of which nothing is known."""
-    size = max(abs(correction.value), 0.1 * abs(correction.declared.parameter.typical))
-    return correction.std or LIMITS.default_relative_std * size
+    return correction.std or _unstated_std(correction.value, correction.declared.parameter.typical)
+
+
+def _unstated_std(value: float, typical: float) -> float:
+    """The deviation of what states none: a share of its size, which is that of a small typical one at least."""
+    return LIMITS.default_relative_std * max(abs(value), SMALL * abs(typical))
 
 
 def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel) -> Layout:
@@ -278,7 +280,7 @@ def least_noise_of(run: PreparedRun) -> float:
         # where a passive side carries the load, what a load cell is off by is many times as much of the driving side
         hangs = float(np.sqrt(np.mean(run.drum_torque**2))) / run.gear_ratio / run.unit_torque
         return float(np.hypot(own, LIMITS.least_share_of_load * hangs))
-    given = float(np.sqrt(np.mean((run.gap + run.predicted) ** 2)))
+    given = rms(run.drive_torque)
     return LIMITS.least_share_of_torque * max(given, run.rated_torque) / run.unit_torque
 
 

@@ -32,6 +32,7 @@ from winch_friction.physics.friction.term import unique_parameters
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
 
+UNTOLD = 0.99  # of the deviation that a parameter was freed to: with so much of it left the fit has told nothing
 REPAIRED, REFITTED = "_repaired", "_refitted"  # behind the name of the given model
 
 
@@ -216,10 +217,9 @@ def polished(
 
 def _as_found(model: FrictionModel, drafted: FrictionModel, seed: FrictionModel) -> FrictionModel:
     """The model with the draft's deviation of what was freed and of which the fit tells nothing: a step's place."""
-    freed = (
-        LIMITS.loosened * np.array(drafted.std) * [name not in seed.parameter_names for name in model.parameter_names]
-    )
-    share = np.where((freed > 0.0) & (np.array(model.std) >= 0.99 * freed), 1.0 / LIMITS.loosened, 1.0)
+    new = [name not in seed.parameter_names for name in model.parameter_names]
+    freed = LIMITS.loosened * np.array(drafted.std) * new
+    share = np.where((freed > 0.0) & (np.array(model.std) >= UNTOLD * freed), 1.0 / LIMITS.loosened, 1.0)
     return replace(model, covariance=model.covariance * np.outer(share, share)) if len(share) else model
 
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.signals import DELAY
-from winch_friction.discrepancy.engine.blocks import Slot, on_their_own
+from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part
+from winch_friction.discrepancy.engine.crossfit import on_their_own
 from winch_friction.discrepancy.engine.selection import Selection, with_fewer
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much
 from winch_friction.discrepancy.search import Search, refused

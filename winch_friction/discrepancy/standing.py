@@ -10,8 +10,8 @@ import numpy as np
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.engine.blocks import Slot, first_halves, on_their_own
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.blocks import Slot, first_halves
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Split, meet

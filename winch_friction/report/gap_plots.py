@@ -62,7 +62,7 @@ def _with_breaks(columns: dict[str, FloatArray], x: str, dt: float) -> dict[str,
 def _measured(run: PreparedRun) -> FloatArray:
     """What was measured in the gap's unit: the balancing group's pressure drop, or the drive torque."""
     others = sum((g.count * g.displacement * g.pressure for g in run.groups if not g.balances), np.zeros(len(run.time)))
-    total = run.gap + run.predicted - others
+    total = run.drive_torque - others
     own = next((g for g in run.groups if g.balances), None)
     return total / (BAR * own.count * own.displacement) if own else total / run.unit_torque
 

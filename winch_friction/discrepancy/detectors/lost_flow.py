@@ -36,6 +36,9 @@ FEWEST_TO_FLIP = 6  # segments; of five, all with the same sign, one flip in 32 
 # pump's command, rad/s: what 6e-12 m^3/s/Pa cost a motor of 215 cm^3, and so much of a smaller or larger one
 ORDINARY = 2.6
 SURE = 3.0  # standard deviations beyond the ordinary
+CHANCE = 0.01  # that stretches which lose nothing to a leak seem to
+MOST = 0.3  # of the lost speed's rms: half of its square
+PLAINLY = 0.5  # of what is lost, that a leak may leave of each of so few stretches that none is surprising
 # a second law of leakage beside the first must leave no more than this share of what is lost in other runs
 WORTH_A_LAW = 0.8
 
@@ -66,7 +69,7 @@ class Leakage:
     @property
     def found(self) -> bool:
         """More than ordinary leakage, surely, and it explains most of what is lost."""
-        return self.slip - SURE * self.slip_std > ORDINARY and self.p_value < 0.01 and self.gain > 0.3
+        return self.slip - SURE * self.slip_std > ORDINARY and self.p_value < CHANCE and self.gain > MOST
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
@@ -97,7 +100,7 @@ class Leakage:
         for law, (value, _) in self.leakage.items():
             after = after - value * rates[law]
         if len(table) < FEWEST_TO_FLIP:  # too few for any to be surprising: each must be plainly better
-            return len(table) > 1 and bool((np.abs(after) < 0.5 * np.abs(before)).all())
+            return len(table) > 1 and bool((np.abs(after) < PLAINLY * np.abs(before)).all())
         return sign_flip_p_value(before**2 - after**2) <= LIMITS.proof_p and rms(after) < rms(before)
 
 

@@ -126,25 +126,36 @@ def _moving(
     run: Run, prepared: PreparedRun, crane: Crane, model: FrictionModel, with_inertia: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Angle, fast part of the drive torque, T_d/i and speed of the moving samples."""
-    good = np.isfinite(run["time"])
-    time = run.time[good]
-    torque = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good])
-    grid = prepared.time + prepared.start
-    moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
-    angle = np.interp(time, grid, prepared.angle)
-    static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
+    own = AsLogged(run, prepared, crane)
+    torque = own.torque
     if TERM in model.term_names:
-        torque = torque - np.interp(time, grid, model.subset((TERM,)).torque(prepared.point))
+        torque = torque - own.of(model.subset((TERM,)).torque(prepared.point))
     if with_inertia:
-        inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
-        torque = torque - inertia * np.gradient(speed_of(run, crane)[good], time)
+        torque = torque - own.inertia * own.acceleration
     fast = torque - smooth(torque, samples_of(WINDOW, prepared.dt))
-    return angle[moving], fast[moving], static[moving], np.interp(time, grid, prepared.speed)[moving]
+    return tuple(each[own.moving] for each in (own.of(prepared.angle), fast, own.static, own.of(prepared.speed)))
 
 
-def speed_of(run: Run, crane: Crane) -> FloatArray:
-    speed = run["motor_speed"] if "motor_speed" in run else run["drum_speed"] * crane.gear_ratio
-    return np.nan_to_num(speed)
+class AsLogged:
+    """A run at the instants at which it was logged, before any smoothing, which takes a part of a ripple.
+
+    `torque` of the drive N m, `acceleration` of the shaft rad/s^2 from its speed, the whole `inertia` at it kg m^2,
+    T_d/i as `static` N m, and which samples are `moving`.
+    """
+
+    def __init__(self, run: Run, prepared: PreparedRun, crane: Crane) -> None:
+        good = np.isfinite(run.time)
+        self.time, self._grid = run.time[good], prepared.time + prepared.start
+        self.torque = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good])
+        speed = run["motor_speed"] if "motor_speed" in run else run["drum_speed"] * crane.gear_ratio
+        self.acceleration = np.gradient(np.nan_to_num(speed)[good], self.time)
+        self.inertia = crane.inertia + self.of(prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
+        self.static = self.of(prepared.drum_torque) / prepared.gear_ratio
+        self.moving = prepared.used_at(self.time)
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """What was prepared on the uniform grid, at these instants."""
+        return np.interp(self.time, self._grid, values)
 
 
 # -- lines in a spectrum: which stands out, how surely, and whether it is one of the sampling's

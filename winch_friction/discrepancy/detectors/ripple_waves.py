@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
-from winch_friction.discrepancy.detectors.ripple import Ripple, speed_of
+from winch_friction.discrepancy.detectors.ripple import AsLogged, Ripple
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import run_drive_torque
 
 SHARED_PHASE = 0.7  # of what own phases explain, that one phase for all must
 
@@ -68,18 +67,13 @@ def in_phase(
 
 
 def _unsmoothed(run: Run, prepared: PreparedRun, crane: Crane, with_inertia: bool) -> _Wave:
-    """Angle, gap before any smoothing and T_d/i of the moving samples: a smoothed gap has lost part of a ripple."""
-    grid = prepared.time + prepared.start
-    good = np.isfinite(run.time)
-    time = run.time[good]
-    gap = np.nan_to_num(np.asarray(run_drive_torque(run, crane))[good]) - np.interp(time, grid, prepared.predicted)
+    """Angle, gap before any smoothing and T_d/i of the moving samples."""
+    own = AsLogged(run, prepared, crane)
+    gap = own.torque - own.of(prepared.predicted)
     if with_inertia:
-        inertia = crane.inertia + np.interp(time, grid, prepared.load * (prepared.radius / prepared.gear_ratio) ** 2)
-        fast = np.gradient(speed_of(run, crane)[good], time) - np.interp(time, grid, prepared.acceleration)
-        gap = gap - inertia * fast
-    moving = np.interp(time, grid, prepared.used.astype(float)) > 0.99
-    static = np.interp(time, grid, prepared.drum_torque) / prepared.gear_ratio
-    return np.interp(time, grid, prepared.angle)[moving], gap[moving] - gap[moving].mean(), static[moving]
+        gap = gap - own.inertia * (own.acceleration - own.of(prepared.acceleration))
+    gap = gap[own.moving] - gap[own.moving].mean()
+    return own.of(prepared.angle)[own.moving], gap, own.static[own.moving]
 
 
 def _shared(tables: Sequence[_Wave], order: float) -> tuple[float, FloatArray, float]:

@@ -36,11 +36,6 @@ class Slot:
     part: str = ""
 
 
-def on_their_own(slots: Sequence[Slot]) -> list[Slot]:
-    """Those of a name of their own: not what a bare model lacks, nor what another of them always brings along."""
-    return [own for own in slots if not own.plain and not any(own.name in each.brings for each in slots)]
-
-
 @dataclass(frozen=True)
 class RunBlocks:
     """The blocks of one record; `position` is the block's number on the record's own grid."""
@@ -227,3 +222,11 @@ def _stretch(places: np.ndarray) -> np.ndarray | slice:
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
     """Parts behind each other, column by column in memory: a fit asks for a few columns of all blocks."""
     return np.concatenate([part.T for part in parts], axis=1).T
+
+
+FEWEST_TOLD = 20  # blocks, four seconds of a signal
+
+
+def varies(values: FloatArray, least: float) -> bool:
+    """Whether a signal's known values are enough to tell of it, and differ by more than so much of their size."""
+    return len(values) >= FEWEST_TOLD and bool(np.ptp(values) > least * (np.abs(values).max() + 1e-12))

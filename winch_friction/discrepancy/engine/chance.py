@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Slot, varies
 from winch_friction.discrepancy.engine.crossfit import (
     CrossFit,
     Explanation,
@@ -220,7 +220,7 @@ def _designs(values: FloatArray, direction: FloatArray) -> list[FloatArray]:
     """Hats over the quantiles of a signal and a straight line, hoisting and lowering apart; where the signal is absent,
     nothing."""
     good = np.isfinite(values)
-    if good.sum() < 20 or np.ptp(values[good]) <= 1e-9 * (np.abs(values[good]).max() + 1e-12):
+    if not varies(values[good], 1e-9):  # of its size: what varies by less is constant but for rounding
         return []
     line = np.column_stack([np.ones(len(values)), (values - values[good].mean()) / np.std(values[good])])
     knots = np.unique(np.quantile(values[good], np.linspace(0.0, 1.0, LIMITS.knots)))

@@ -15,6 +15,8 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.thresholds import LIMITS
 
+AT_BOUND = 0.999  # of a bound: nearer to it the fit was stopped there
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -38,6 +40,11 @@ class Explanation:
     def names(self) -> tuple[str, ...]:
         """Names of the effects; one whose law is a mixture of two is one effect."""
         return tuple(dict.fromkeys(slot.name for slot in self.slots))
+
+
+def on_their_own(slots: Sequence[Slot]) -> list[Slot]:
+    """Those of a name of their own: not what a bare model lacks, nor what another of them always brings along."""
+    return [own for own in slots if not own.plain and not any(own.name in each.brings for each in slots)]
 
 
 class CrossFit:
@@ -117,7 +124,7 @@ class CrossFit:
         columns, upper = list(self.problem.columns(explanation.slots)), self.problem.layout.upper
         most = [upper[c] if slot.plain else slot.most for c in slot.columns]
         sizes = [abs(explanation.beta[columns.index(c)]) for c in slot.columns]
-        return any(size >= 0.999 * limit for size, limit in zip(sizes, most, strict=True))
+        return any(size >= AT_BOUND * limit for size, limit in zip(sizes, most, strict=True))
 
     def covariance(self, explanation: Explanation) -> FloatArray:
         """Covariance of an explanation's coefficients, data and prior."""

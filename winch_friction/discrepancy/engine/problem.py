@@ -89,7 +89,8 @@ def bounded_fit(
     return beta
 
 
-def _to_free_optimum(h, g, beta, free, index):  # type: ignore[no-untyped-def]
+def _to_free_optimum(h: FloatArray, g: FloatArray, beta: FloatArray, free: np.ndarray, index: np.ndarray) -> FloatArray:
+    """The coefficients with those of `index`, the free ones, at their optimum beside the others."""
     if len(index) == len(g):
         return _solved(h, g)
     target = beta.copy()
@@ -99,12 +100,15 @@ def _to_free_optimum(h, g, beta, free, index):  # type: ignore[no-untyped-def]
     return target
 
 
-def _solved(h, g):  # type: ignore[no-untyped-def]
+def _solved(h: FloatArray, g: FloatArray) -> FloatArray:
     _, solution, failed = dposv(h, g)  # at these sizes `np.linalg.solve` takes twice as long to begin
-    return np.linalg.solve(h, g) if failed else solution
+    return np.asarray(np.linalg.solve(h, g) if failed else solution)
 
 
-def _longest_step(beta, step, lower, upper, index):  # type: ignore[no-untyped-def]
+def _longest_step(
+    beta: FloatArray, step: FloatArray, lower: FloatArray, upper: FloatArray, index: np.ndarray
+) -> tuple[float, int]:
+    """The share of a step that stays in the box, and the coefficient that ends it; -1 where none does."""
     if not len(index):
         return 1.0, -1
     move, at = step[index], beta[index]
@@ -114,7 +118,8 @@ def _longest_step(beta, step, lower, upper, index):  # type: ignore[no-untyped-d
     return (float(max(room[k], 0.0)), int(index[k])) if room[k] < 1.0 else (1.0, -1)
 
 
-def _release(gradient, beta, lower, upper, free):  # type: ignore[no-untyped-def]
+def _release(gradient: FloatArray, beta: FloatArray, lower: FloatArray, upper: FloatArray, free: np.ndarray) -> int:
+    """The coefficient at a bound that most wants to leave it; -1 where none does."""
     if free.all():
         return -1
     wrong = np.where(~free & (beta <= lower), -gradient, np.where(~free, gradient, 0.0))

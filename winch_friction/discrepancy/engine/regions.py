@@ -1,6 +1,6 @@
 """Where a gap lies, in words: regions of the operating space with a share each."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks
+from winch_friction.discrepancy.engine.blocks import Blocks, varies
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_ONCE = 8192  # blocks, of which all conditions are looked at together
@@ -16,6 +16,7 @@ AT_ONCE = 8192  # blocks, of which all conditions are looked at together
 ONE_WAY = 0.9
 # and one that holds nearly all blocks of that direction says nothing but the direction
 SAME_AS_DIRECTION = 0.9
+BORDERS = (0.15, 0.33, 0.5, 0.67, 0.85)  # quantiles of a signal: of a half, thirds and what is rare but not single
 
 Mask = NDArray[np.bool_]
 Condition = tuple[str, Mask, tuple[str, ...]]  # its words, its blocks, the signals in it
@@ -56,10 +57,10 @@ def _conditions(blocks: Blocks, read_as: ReadAs) -> list[Condition]:
     ]
     for name, values in blocks.features.items():
         good = np.isfinite(values)
-        if good.sum() < 20 or np.ptp(values[good]) <= 1e-6 * (np.abs(values[good]).max() + 1e-12):
+        if not varies(values[good], 1e-6):  # of its size: so little is no condition that anybody can read
             continue
         factor, unit = read_as.get(name.rpartition(".")[2], (1.0, ""))
-        for threshold in np.unique(np.quantile(values[good], (0.15, 0.33, 0.5, 0.67, 0.85))):
+        for threshold in np.unique(np.quantile(values[good], BORDERS)):
             text = f"{threshold * factor:.3g} {unit}".strip()
             found += _directed(blocks.direction, f"{name} < {text}", good & (values < threshold), name)
             found += _directed(blocks.direction, f"{name} > {text}", good & (values > threshold), name)
@@ -78,7 +79,7 @@ def _directed(direction: FloatArray, words: str, mask: Mask, name: str) -> list[
     return [(words, mask, (name,))]
 
 
-def _best(conditions, left):  # type: ignore[no-untyped-def]
+def _best(conditions: Sequence[Condition], left: FloatArray) -> Condition | None:
     """The condition, or the pair of two signals, whose mean explains most of what is left."""
     size = len(left)
     if not conditions:

@@ -24,6 +24,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
 TAKEN = "taken"
 NO_BETTER = 1e-3  # of the held-out loss: a tenth of the least gain
+EXCHANGES = 3  # rounds over a set, of four effects at most: what still improves then goes in circles
 THE_SAME = 1e-5  # of the held-out loss: a thousand times its rounding; laws that are one over these runs
 
 
@@ -212,7 +213,7 @@ def _considered(
 
 def _exchanged(cross: CrossFit, current: Explanation) -> Explanation:
     """The set in which no single effect can be swapped for a better one: an early choice may have stood in for two."""
-    for _ in range(3):
+    for _ in range(EXCHANGES):
         improved = False
         for k in range(len(current.slots)):
             rest = current.slots[:k] + current.slots[k + 1 :]
@@ -293,8 +294,7 @@ def _found(
         current, k = cross.explain(lower), lower.index(own)
     rest = current.slots[:k] + current.slots[k + 1 :]
     without = cross.explain(rest)
-    gain_losses = without.losses - current.losses
     rivals, frequency = rivals_of(cross, current, without, k, rng, same=bool(bringers))
-    p = p_values.get(own.name, float(flip_p_values(gain_losses[None], rng)[0]))
+    p = p_values.get(own.name, float(flip_p_values((without.losses - current.losses)[None], rng)[0]))
     sets = rivals[: LIMITS.most_names - 1], tuple(slot.name for slot in rivals[LIMITS.most_names - 1 :])
     return Finding(own, sets[0], p, float(cross.gain(without, current)), frequency, sets[1])

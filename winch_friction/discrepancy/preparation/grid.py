@@ -18,6 +18,13 @@ MIN_SAMPLES = 10  # below it not even a speed can be smoothed
 LONG_RECORD, FASTEST_PERIOD = 60_000, 0.01  # samples; s
 MOST_EMPTY = 5_000_000  # samples of a grid most of which nobody logged; a day of 50 Hz
 HOLE = 5.0  # sampling periods without a sample
+# the standard deviation of a normal variable over the median of its magnitude, and that of third differences of white
+# noise, of weights 1, 3, 3, 1, over its own
+OF_MEDIAN, THIRD_DIFFERENCE = 1.4826, float(np.sqrt(20.0))
+FEWEST_FOR_NOISE = 8  # samples, five third differences
+# of the second differences' deviation, that counts as noise at least: an encoder's steps may be so rare that the median
+# of the third differences sees none
+RARE_STEPS = 0.1
 SMOOTHING_TIME = 0.3  # s: short against a wave, long against an encoder's step
 FEWEST_SMOOTHED = 5  # samples: a parabola through fewer smooths nothing
 WIDE = 61  # samples of a window
@@ -78,10 +85,10 @@ def uniform(run: Run) -> Grid:
 
 def noise_level(values: FloatArray) -> float:
     """Standard deviation of the fast noise of a record, from its third differences (robust against steps)."""
-    if len(values) < 8:
+    if len(values) < FEWEST_FOR_NOISE:
         return 0.0
     third = np.diff(values, 3)
-    return float(1.4826 * np.median(np.abs(third - np.median(third))) / np.sqrt(20.0))
+    return float(OF_MEDIAN * np.median(np.abs(third - np.median(third))) / THIRD_DIFFERENCE)
 
 
 def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:
@@ -138,7 +145,7 @@ def samples_of(seconds: float, dt: float, fewest: int = FEWEST_SMOOTHED) -> int:
 def speed_window(speed: FloatArray, dt: float) -> int:
     """Window for a speed record in samples: longer where the encoder is coarse."""
     scale = float(np.percentile(np.abs(speed), 99)) or 1.0
-    noise = max(noise_level(speed), float(np.std(np.diff(speed, 2))) * 0.1 if len(speed) > 3 else 0.0)
+    noise = max(noise_level(speed), float(np.std(np.diff(speed, 2))) * RARE_STEPS if len(speed) > 3 else 0.0)
     relative = noise / scale * np.sqrt(dt / USUAL_PERIOD)  # the more samples a window holds, the more it averages out
     widening = min(max((relative / FINE_NOISE) ** (2.0 / 3.0), 1.0), MAX_WIDENING)
     return samples_of(SMOOTHING_TIME * widening, dt)
@@ -163,7 +170,7 @@ def spikes_of(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
         np.arange(len(gap)), np.arange(0, len(gap), coarse), median_filter(gap[::coarse], max(size // coarse, 3))
     )
     off = np.abs(gap - slow)
-    spread = 1.4826 * float(np.median(off[moving]))
+    spread = OF_MEDIAN * float(np.median(off[moving]))
     found = moving & (off > SPIKE * max(spread, 1e-12))
     return dilated(found, int(SPIKE_MARGIN / dt)) if 0 < found.sum() < MOST_SPIKES * moving.sum() else none
 

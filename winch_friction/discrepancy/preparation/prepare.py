@@ -44,6 +44,8 @@ FEWEST_MOVING = 100  # samples in which a swing can be looked for
 USUAL_DAMPING = 0.05  # ratio of a load on a rope, by which is told when a swing from before the record hides no other
 RINGS = 2.0  # times the gap's deviation later in the run, by which its beginning swings
 MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
+BOTH_SIDES = 0.99  # of two samples that are in the regime or not, as a line between them says: only 1 is both
+HEAVIER = 0.01  # relative change of the drum torque for a derivative of the friction: small, but far above rounding
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
 
 
@@ -88,9 +90,18 @@ class PreparedRun:
     seen: Seen | None = None  # for preparing the same run once more; None where nobody will
 
     @property
-    def mode(self) -> tuple[str, ...]:
-        """Names of the motor groups: which kind of run this is."""
+    def kind(self) -> tuple[str, ...]:
+        """Names of the motor groups, by which hoisting and heave compensation are told apart."""
         return tuple(group.name for group in self.groups)
+
+    @property
+    def drive_torque(self) -> FloatArray:
+        """What the drive gave as it was measured, N m at the shaft."""
+        return self.gap + self.predicted
+
+    def used_at(self, time: FloatArray) -> np.ndarray:
+        """Whether instants, in s from the origin of the run's own time, lie between two samples of the regime."""
+        return np.asarray(np.interp(time, self.time + self.start, self.used.astype(float)) > BOTH_SIDES)
 
     def sharing(self, other: "PreparedRun") -> "PreparedRun":
         """The same run, with the arrays of another that hold the same to the bit: most do not depend on the model, and
@@ -242,7 +253,7 @@ def _followed(
 
     Of a drive without pressures all of them: what its current or power tells is rougher than what is lost.
     """
-    rings = mode[1] > 0.0 and mode[0] * grid.dt > TURNS
+    rings = mode.damping > 0.0 and mode.frequency * grid.dt > TURNS
     if not crane.drive.hydraulic or (grid.dt <= SPARSEST and not rings):
         return np.ones(len(grid.time), bool)
     torque = np.pad(crane.inertia * motion.acceleration + load.inertial_torque, 1, mode="edge")
@@ -254,9 +265,9 @@ def _followed(
 
 
 def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:
-    more = tuple(1.01 * values if k == DRUM_TORQUE else values for k, values in enumerate(balance.point))
+    more = tuple((1.0 + HEAVIER) * values if k == DRUM_TORQUE else values for k, values in enumerate(balance.point))
     heavier, as_it_is = (np.asarray(model.torque(x, balance.states)) for x in (more, balance.point))
-    return np.asarray((heavier - as_it_is) / 0.01)
+    return np.asarray((heavier - as_it_is) / HEAVIER)
 
 
 def channels_of(

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.ndimage import binary_opening
 
 from winch_friction.discrepancy.preparation.grid import (
+    THIRD_DIFFERENCE,
     Grid,
     dilated,
     noise_level,
@@ -31,7 +32,10 @@ CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting en
 FEWEST_STEADY = 50  # samples, for a mean and its noise
 ONLY_NOISE = 1.5  # times the noise of the third differences: white noise has 1, a sine of ten samples 30
 GUARD_SHARE = 0.008  # of the largest speed: below it the direction is uncertain
+GUARD_NOISE = 4.0  # times what the smoothed speed keeps of its noise: by chance once in 16 000 samples
+STANDS = 0.125  # of that speed: below it the shaft has no direction at all
 GUARD_TIME = 0.08  # s kept away from a reversal on both sides, beyond half a smoothing window
+SURELY_GONE = 1.5  # times the travel below which a change of direction may be the encoder's own
 TOUCH_TIME = 0.1  # s: a touch of zero that short hides in the smoothed speed
 FAR_SHARE, FAR_TIME = 0.03, 3.0  # travel per top speed (6 rad at 2000 rpm) and seconds after which a reversal is past
 
@@ -61,11 +65,12 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
         return _steady(raw, grid, window)
     speed = smooth(raw, window)
     angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
-    guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), 4.0 * noise_level(raw) / np.sqrt(window / 3.0))
+    left = noise_level(raw) / np.sqrt(window / 3.0)  # of its noise, once smoothed
+    guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), GUARD_NOISE * left)
     if turning:
         direction, state_speed, used = _just_reversed(angle, raw, speed, guard, grid.dt, window)
     else:
-        direction = np.sign(np.where(np.abs(speed) > guard / 8.0, speed, 0.0))
+        direction = np.sign(np.where(np.abs(speed) > STANDS * guard, speed, 0.0))
         state_speed = np.where(direction != 0.0, speed, 0.0)
         still = _near_zero(speed, guard)
         still |= _near_zero(smooth(raw, samples_of(TOUCH_TIME, grid.dt, 3), 1), guard)  # a short touch hides in `speed`
@@ -89,7 +94,7 @@ def at_one_speed(raw: FloatArray) -> bool:
     """
     if len(raw) < FEWEST_STEADY or not np.isfinite(raw).all():
         return False
-    spread, noise = float(np.std(raw)), float(np.std(np.diff(raw, 3))) / np.sqrt(20.0)
+    spread, noise = float(np.std(raw)), float(np.std(np.diff(raw, 3))) / THIRD_DIFFERENCE
     return spread <= ONLY_NOISE * noise and abs(float(np.mean(raw))) > CERTAIN * spread / np.sqrt(len(raw))
 
 
@@ -131,12 +136,12 @@ def _just_reversed(
     turned = np.concatenate([[0], np.flatnonzero(np.diff(direction) != 0.0) + 1])
     samples = np.arange(len(angle))
     since = samples - turned[np.searchsorted(turned[1:], samples, "right")]
-    near = (travel > 1.5 * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
+    near = (travel > SURELY_GONE * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
     # sooner, most of the kernel reaches across the reversal: what is measured is smeared, what is predicted is not
     near &= since > window // 4
     # the smoothed speed swings below zero before a start; then the angle has not moved on
     advances = np.minimum(direction * speed, progress / dt)
-    near &= (direction != 0.0) & (advances > guard / 8.0)
+    near &= (direction != 0.0) & (advances > STANDS * guard)
     return direction, direction * progress / dt, near
 
 
@@ -177,16 +182,16 @@ MIN_DISPLACEMENT_SHARE = 0.05
 
 @dataclass(frozen=True)
 class GroupSignals:
-    """One motor group along a run: motors, predicted or smoothed |dp|, sum of pressures, displacement; Pa, m^3/rad."""
+    """One motor group along a run: motors, predicted or smoothed pressures Pa, displacement of each motor m^3/rad."""
 
     name: str
     count: int
-    pressure: FloatArray  # signed drop
+    pressure: FloatArray  # drop p_A - p_B
     pressure_sum: FloatArray
-    low_pressure: FloatArray
+    low_pressure: FloatArray  # of the two ports
     displacement: FloatArray
     balances: bool  # closes the torque balance: its pressure is predicted
-    logged: FloatArray  # signed drop as it was measured, smoothed
+    logged: FloatArray  # the drop as it was measured, smoothed
 
 
 Groups = tuple[GroupSignals, ...]

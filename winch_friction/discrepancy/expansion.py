@@ -1,4 +1,5 @@
-"""Runs prepared around a point: the seed model, or the best explanation so far."""
+"""Runs as a model sees them, around a point, the seed or the best explanation so far; and what no run tells alone: does
+the wire give, and what hangs where nobody weighed it?"""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,13 +19,12 @@ from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.signals import Run
+from winch_friction.physics.signals import NAN, Run
 from winch_friction.physics.winch import Crane
 
 LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then
 LOAD_CONVERGED = 1e-5  # relative; a tenth of what any load cell tells
 WEIGHED = {"hook_load", "rope_force", "load_torque"}  # columns that say what hangs there
-NAN = float("nan")
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from winch_friction.discrepancy.catalogue import candidates_for, run_states, tes
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.delay import without_delay
-from winch_friction.discrepancy.detectors.lost_flow import AIR, LEAK, FreeAir, Leakage
+from winch_friction.discrepancy.detectors.lost_flow import FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
 from winch_friction.discrepancy.engine import FloatArray
@@ -217,13 +217,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         # just after reversals there is too little of a run to tell a ripple from what is looked for
         cleaned = partial(_cleaned, ripple=ripple, waves=waves)
         reversal = after_reversals(given, expansion, selection.final, usable, train, rng, cleaned)
-    leakage, air = flow_balance.lost_speed(own_runs, own_prepared), flow_balance.free_air(own_runs, own_prepared)
-    flow: list[Leakage | FreeAir] = [leakage] if leakage is not None and leakage.found else []
-    flow += [air] if air is not None and flow_balance.is_air(air) else []
-    if any(each.name == AIR for each in usable):
-        blind += flow_balance.air_untestable(air)
-    if any(each.name == LEAK for each in usable):
-        blind += flow_balance.leak_untestable(own_runs, own_prepared)
+    flow, unseen = flow_balance.shown_by(own_runs, own_prepared, {each.name for each in usable})
     if verdict.kind == NOTHING and (reversal or ripple or flow):
         verdict = Verdict(MISSING)
     return Search(
@@ -237,8 +231,8 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         verdict,
         reversal,
         ripple,
-        tuple(flow),
-        tuple(blind),
+        flow,
+        (*blind, *unseen),
     )
 
 

@@ -8,7 +8,7 @@ compensation of leakage and the oil's own compressibility are linear in what is 
 first.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from functools import cache
 
 import numpy as np
@@ -43,6 +43,17 @@ SLOW_COMMAND = 30.0
 SEGMENT = 5.0  # s
 # of these, and runs that hold them: two runs say little of how runs differ, which is part of every deviation here
 FEWEST_SEGMENTS, FEWEST_RUNS = 20, 3
+
+
+def shown_by(
+    runs: Sequence[Run], prepared: Sequence[PreparedRun], asked: Container[str]
+) -> tuple[tuple[Leakage | FreeAir, ...], list[Untestable]]:
+    """What leaks and what air takes, where runs show it; and which of the names that are `asked` for they could not."""
+    leakage, air = lost_speed(runs, prepared), free_air(runs, prepared)
+    found: list[Leakage | FreeAir] = [leakage] if leakage is not None and leakage.found else []
+    found += [air] if air is not None and is_air(air) else []
+    unseen = air_untestable(air) if AIR in asked else []
+    return tuple(found), unseen + (leak_untestable(runs, prepared) if LEAK in asked else [])
 
 
 def holds_on(found: Leakage | FreeAir, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:

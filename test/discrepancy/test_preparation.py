@@ -119,7 +119,7 @@ def _kept(crane, quick):
     motion = SimpleNamespace(acceleration=np.zeros_like(time), used=np.ones(len(time), bool))
     return _followed(
         SimpleNamespace(dt=0.1, time=time), motion, SimpleNamespace(inertial_torque=quick),
-        SimpleNamespace(unit_torque=33.0), crane, (0.0, 0.0),
+        SimpleNamespace(unit_torque=33.0), crane, Mode(0.0, 0.0),
     )  # fmt: skip
 
 

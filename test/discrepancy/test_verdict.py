@@ -8,6 +8,7 @@ import pytest
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Combination, decide, steady_excess
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence
+from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.thresholds import LIMITS
 
 SIZE = 1000  # blocks
@@ -20,11 +21,15 @@ def left(steady, swinging):
     return np.sqrt(1.0 + np.where(STEADY, steady, swinging))
 
 
+class Crossed(SimpleNamespace):
+    inside_excess = CrossFit.inside_excess
+
+
 def crossed(acceleration=SWINGS, matters=0.0):
     problem = SimpleNamespace(
         matters=matters, blocks=SimpleNamespace(features={"acceleration": acceleration}), unresolved=np.zeros(SIZE)
     )
-    return SimpleNamespace(
+    return Crossed(
         problem=problem, remainder=lambda each: each, at_bound=lambda *_: False,
         excess=lambda each: float(np.mean(each**2 - 1.0)),
     )  # fmt: skip

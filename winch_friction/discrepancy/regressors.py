@@ -199,9 +199,7 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
         sum((g.count * g.displacement * BAR for g in run.groups if g.balances is own), np.zeros(len(run.time)))
         for own in (True, False)
     ]
-    if (
-        not run.groups
-    ):  # a drive without pressures has its torque from elsewhere, whose step is a share of the rated one
+    if not run.groups:  # its torque is known from elsewhere, and steps by a share of the rated one
         zeros[0] = zeros[0] + LIMITS.least_share_of_torque * run.rated_torque / LIMITS.least_noise
     return np.column_stack([weight, inertia, timing_column(run), *zeros, run.corrections])
 

@@ -27,9 +27,6 @@ LAGS = (3.0, 10.0, 30.0, 90.0)  # s
 FADES = (15.0, 45.0, 140.0)  # s
 SEEN = 2.0  # times, what is to be called periodic: a period of all the wire that came and went is any curve over it
 PERIODS = tuple(float(x) for x in np.geomspace(0.6, 60.0, 41))  # m of wire, from a groove to a layer
-PHASES = (0.125, 0.375, 0.625, 0.875)  # of a period
-HUMPS, FADING = (0.05, 0.12), (0.1, 0.3)  # of what was covered: how wide a hump is, and by how much a loss fades
-REACH = 20.0  # times its size: how far a proposal's amount or constant may move in a later fit
 SECTORS, WIDTHS = 12, (0.15, 0.3, 0.5)  # of a turn
 
 
@@ -139,14 +136,14 @@ def _constants(kind: str, word: Word, knots: Sequence[float], span: float) -> li
     if kind == "about" and not word.whole:
         return [{"c": c} for c in dict.fromkeys((knots[0], knots[len(knots) // 2], knots[-1]))]
     if kind == "hump":
-        return [{"c": c, "h": width * span} for c in knots for width in HUMPS]
+        return [{"c": c, "h": width * span} for c in knots for width in (0.05, 0.12)]
     if kind == "fade":
-        return [{"c": c} for c in (FADES if word.unit == "s" else [share * span for share in FADING])]
+        return [{"c": c} for c in (FADES if word.unit == "s" else (0.1 * span, 0.3 * span))]
     if kind == "lag":
         return [{"c": c} for c in LAGS]
     if kind == "wave":
         periods = [p for p in PERIODS if SEEN * p <= span]
-        return [{"c": p, "h": share * p} for p in periods for share in PHASES]
+        return [{"c": p, "h": share * p} for p in periods for share in (0.125, 0.375, 0.625, 0.875)]
     if kind == "sector":
         return [{"c": (k + 0.5) / SECTORS, "h": width} for k in range(SECTORS) for width in WIDTHS]
     return [{"c": c} for c in knots]
@@ -236,7 +233,7 @@ def _factor(factor: Factor, number: int, suffix: str) -> tuple[str, list[_Row], 
 
 
 def _parameter_text(name: str, unit: str, value: float, shape: bool, doc: str) -> str:
-    reach = REACH * max(abs(value), 1e-30)
+    reach = 20.0 * max(abs(value), 1e-30)
     lower = -reach if not shape or value <= 0.0 else 0.0
     more = ", shape=True" if shape else ""
     return f'Parameter("{name}", "{unit}", {value!r}, lower={lower!r}, upper={reach!r}{more}, doc="{doc}")'

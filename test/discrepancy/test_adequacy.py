@@ -9,7 +9,7 @@ import pytest
 from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.engine.chance import Size
-from winch_friction.discrepancy.next_experiment import insufficient, of_wire, with_what_was_seen
+from winch_friction.discrepancy.next_experiment import insufficient, of_runs, of_wire, with_what_was_seen
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
@@ -169,6 +169,20 @@ def test_a_wire_whose_length_is_not_told_may_be_the_gap(stiffness, silent, said)
     assert "".join(notes).startswith(said)
 
 
+@pytest.mark.parametrize(("left", "said"), [
+    ((1.0, 5.0, 1.1, 0.9, 6.0, 1.2), "b, e keep 5 times the noise and more, no other run more than 1.2 times"),
+    ((1.0, 5.0, 1.1, 0.9, 0.8, 1.2), "b keeps 5 times"),
+    ((1.0, 1.9, 0.3, 0.2, 0.3, 0.2), ""),  # nothing that matters
+    ((1.0, 5.0, 3.0, 2.0, 4.0, 2.6), ""),  # by and by
+    ((1.0, 5.0, 5.0, 5.0, 5.0, 1.0), ""),  # most of the runs: what is another is what the others are
+])  # fmt: skip
+def test_runs_that_keep_plainly_more_than_any_other_are_said(left, said):
+    runs = [(SimpleNamespace(name=name), np.array([value, -value])) for name, value in zip("abcdef", left, strict=True)]
+    notes = of_runs([SimpleNamespace(left_by_run=runs[:4]), SimpleNamespace(left_by_run=runs[4:])])
+    assert len(notes) == bool(said)
+    assert "".join(notes).startswith(said)
+
+
 @pytest.mark.parametrize(("share", "kept"), [(0.2, False), (0.8, True)])
 def test_a_run_whose_pressure_is_lost_in_most_rows_at_random_is_left_out(share, kept):
     """What lies between was drawn straight and had no noise: a floor of a thousandth of a bar, a verdict of chance."""
@@ -193,12 +207,11 @@ def test_runs_that_lack_something_say_what_was_seen_of_them_all_the_same(crane_1
     lacking = insufficient([], ["a note"], crane_150t, crane2_model)
     holdout = replace(lacking.holdout, size_after=Size(0.306, (0.3, 0.31)))
     result = replace(
-        lacking, regions=("where",), considered=("loss",), untestable=("signal",), holdout=holdout,
-        effects=("effect",) * named,
+        lacking, considered=("loss",), untestable=("signal",), holdout=holdout, effects=("effect",) * named,
     )  # fmt: skip
     said = with_what_was_seen(lacking, result)
     assert (said.verdict, said.effects, said.model) == ("insufficient", (), crane2_model)
-    assert (said.regions, said.considered, said.untestable) == (("where",), ("loss",), ("signal",))
+    assert (said.considered, said.untestable) == (("loss",), ("signal",))
     assert said.holdout is lacking.holdout  # of the model that is written, which is the given one
     assert said.notes[0] == "a note"
     assert [("0.306 bar" in note) for note in said.notes[1:]] == [True] * (not named)

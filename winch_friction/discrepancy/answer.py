@@ -5,6 +5,7 @@ The verdict follows from the selection and what it leaves; a fifth, `insufficien
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,9 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks
 from winch_friction.discrepancy.engine.chance import Dependence, Size, rms
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.regions import Region
+from winch_friction.discrepancy.engine.regions import Region, find_regions
 from winch_friction.discrepancy.engine.selection import Considered, Selection
-from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import READ_AS, PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 
@@ -137,7 +138,6 @@ class GapResult:
     verdict: str
     refused: str
     effects: tuple[Effect, ...]
-    regions: tuple[Region, ...]
     unit: str
     train: Side
     holdout: Side
@@ -155,6 +155,11 @@ class GapResult:
     adequacy: tuple[Check, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
+    @cached_property
+    def regions(self) -> tuple[Region, ...]:
+        """Where the training runs and the model as it was given disagree; no verdict hangs on it."""
+        return tuple(find_regions(self.train.blocks, self.train.before, READ_AS))
+
     def content(self) -> dict[str, Any]:
         """The JSON document of docs/interfaces.md; further keys only add."""
         return {
@@ -167,7 +172,7 @@ class GapResult:
             ],
             "gap": {
                 "unit": self.unit,
-                "train": {**_before_after(self.train)},
+                "train": _before_after(self.train),
                 "holdout": {
                     **_before_after(self.holdout),
                     "noise_floor": self.holdout.noise_floor if self.holdout.blocks.y.size else None,
@@ -197,12 +202,9 @@ class GapResult:
 def _before_after(side: Side) -> dict[str, Any]:
     if not side.blocks.y.size:  # nothing that could be looked at
         return dict.fromkeys(("before", "after", "relative_before", "relative_after"))
-    return {
-        "before": side.size_before.value,
-        "after": side.size_after.value,
-        "relative_before": side.relative[0],
-        "relative_after": side.relative[1],
-    }
+    before, after = side.relative
+    return {"before": side.size_before.value, "after": side.size_after.value, "relative_before": before,
+            "relative_after": after}  # fmt: skip
 
 
 # -- the verdict

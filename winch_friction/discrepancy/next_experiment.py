@@ -20,7 +20,7 @@ from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Expansion, Given, Split
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.proof import compare
+from winch_friction.discrepancy.proof import compare, rms
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
@@ -156,6 +156,26 @@ def of_wire(given: Given) -> list[str]:
     ]
 
 
+APART = 2.0  # times what any other run keeps, from where on it is a matter of the runs
+
+
+def of_runs(sides: Sequence[Side]) -> list[str]:
+    """Which runs keep a gap that nothing explains, where they are less than half of all and keep plainly more than any
+    other: a setting or a date that nobody logged depends on no signal."""
+    left = {run.name: rms(own) for side in sides for run, own in side.left_by_run}
+    names = sorted(left, key=lambda name: -left[name])
+    size = [left[name] for name in names]
+    most = range(1, (len(size) + 1) // 2)
+    k = max(most, key=lambda k: size[k - 1] / max(size[k], 1.0), default=0)
+    if not k or size[k - 1] <= LIMITS.far_off_the_floor or size[k - 1] < APART * size[k]:
+        return []
+    keep = "keeps" if k == 1 else "keep"
+    return [
+        f"{', '.join(sorted(names[:k]))} {keep} {size[k - 1]:.2g} times the noise and more, no other run more than "
+        f"{size[k]:.2g} times: look for what was another there, such as a setting, a sensor or the date"
+    ]
+
+
 # -- where the runs cannot answer
 def insufficient(
     checks: Sequence[Check], notes: Sequence[str], crane: Crane, model: FrictionModel,
@@ -174,7 +194,7 @@ def insufficient(
         "note": f"supplies what the runs lack ({lacking})",
     }  # fmt: skip
     return GapResult(
-        verdict=INSUFFICIENT, refused=lacking, effects=(), regions=(), unit=crane.drive.unit, train=sides[0],
+        verdict=INSUFFICIENT, refused=lacking, effects=(), unit=crane.drive.unit, train=sides[0],
         holdout=sides[1], depends=(), unexplained_share=0.0, considered=(), untestable=(), model=model,
         seed_model=model, next_experiment=plan if name else None,
         next_scenario=shipped("scenarios", name).read_text(encoding="utf-8") if name else "", notes=tuple(notes),
@@ -187,7 +207,7 @@ def with_what_was_seen(lacking: GapResult, result: GapResult) -> GapResult:
     left = f"{result.holdout.size_after.value:.3g} {result.unit}"
     said = [] if result.effects else [f"the model's own parameters, fitted anew, leave {left} of the locked runs"]
     return replace(
-        lacking, regions=result.regions, considered=result.considered, untestable=result.untestable,
+        lacking, considered=result.considered, untestable=result.untestable,
         notes=(*lacking.notes, *said),
     )  # fmt: skip
 

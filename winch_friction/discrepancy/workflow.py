@@ -23,20 +23,19 @@ from winch_friction.discrepancy.answer import (
     unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate
-from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Given, meet, swings
 from winch_friction.discrepancy.next_experiment import (
     NextExperiment,
     insufficient,
+    of_runs,
     of_wire,
     plan_experiment,
     with_what_was_seen,
 )
 from winch_friction.discrepancy.preparation.grid import thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
-from winch_friction.discrepancy.preparation.prepare import READ_AS
 from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
@@ -103,7 +102,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result, notes = assemble(study, trial), [*notes, *not_borne_out(search, trial.search)]
     if result.verdict == UNEXPLAINED:
-        notes += of_wire(given)
+        notes += of_wire(given) + of_runs((result.train, result.holdout))
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     if refuted and result.verdict == UNEXPLAINED and far_off(result.holdout):
         refuted = ()  # its freed parameters leave what is plainly more than noise: they imitate something
@@ -167,7 +166,6 @@ def assemble(study: Study, trial: Trial) -> GapResult:
     drift = drift_note((trial.train, trial.holdout), search.explanation.names, given.crane.drive.unit)
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
-        regions=tuple(find_regions(trial.train.blocks, trial.train.before, READ_AS)),
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout, seed_model=given.model,
         depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
         unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),

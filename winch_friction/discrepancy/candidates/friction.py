@@ -127,7 +127,9 @@ def _shapes_over(grid: Grid, speeds: Sequence[str] = ()) -> Shapes:
     """Every point of a grid; its `speeds` follow a machine that turns slowly, in octaves."""
 
     def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-        slow = 2.0 ** min(np.ceil(np.log2(max(_top(runs), 1e-3) / FULL_SPEED)), 0.0)
+        top = max(_top(runs), 1e-3)
+        # down, never up: a curve as wide as half of what was run is a constant there, and that is Coulomb friction
+        slow = 2.0 ** np.floor(np.log2(top / FULL_SPEED)) if top < 0.5 * FULL_SPEED else 1.0
         own = {name: tuple(slow * v if name in speeds else v for v in tried) for name, tried in grid.items()}
         points = [dict(zip(own, point, strict=True)) for point in itertools.product(*own.values())]
         return [Shape(label_of(values), values) for values in points]
@@ -224,7 +226,7 @@ def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
 # -- the speeds that were seen
 CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
-# rad/s: speeds of laws are stated for motors that turn so fast or faster; one of large stroke turns at a tenth of it
+# rad/s: speeds of laws are stated for motors that turn about so fast; one of large stroke turns at a tenth of it
 FULL_SPEED = 100.0
 TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant

@@ -157,24 +157,6 @@ def test_from_a_load_on_a_loss_grows_with_what_is_beyond(name, share):
     assert [shape.values[onset.name] for shape in tried[0].shapes(runs)] == pytest.approx([1.5e5, 3e5, 4.5e5, 6e5])
 
 
-@pytest.mark.parametrize(("name", "share"), [("gear_load_rate", 1.0), ("sheave_rate", 1.0 / 250.0)])
-def test_what_is_sheared_under_a_load_goes_with_the_load_and_with_a_power_of_the_speed(name, share):
-    term = term_named(name)
-    amount, exponent = (p.symbol for p in term.parameters)
-
-    def torque(load, speed):
-        at = {amount: 3.0, exponent: 0.5, symbols.gear_ratio: 250.0, symbols.T_d: load, symbols.w: speed}
-        return float(term.equation.subs(at)) / (1.0 if name == "gear_load_rate" else 5e5)
-
-    full = 2000.0 * 2.0 * np.pi / 60.0
-    assert torque(5e5, full) == pytest.approx(3.0 * share)
-    assert torque(1e6, full / 4.0) == pytest.approx(3.0 * share)
-    assert torque(5e5, 0.0) == pytest.approx(0.0, abs=1e-3 * share)
-    tried = next(each for each in module.literature() if each.law_name == name)
-    assert tried.name == {"g": "gear_load_loss", "s": "sheave_bending"}[name[0]]
-    assert [shape.values[exponent.name] for shape in tried.shapes([])] == [0.25, 0.5, 1.0]
-
-
 def test_a_level_falls_by_a_run_in_and_grows_again_by_wear():
     term = term_named("wear_bathtub")
     fall, rise, begin, lag = (p.symbol for p in term.parameters)

@@ -96,13 +96,12 @@ def literature() -> list[Candidate]:
 
 
 def _by_load(cause: str, stem: str, x: str, **more: Any) -> list[Candidate]:
-    """A cause that goes with the load: a power, a film of it, oil that is sheared, a contact that closes, an onset."""
+    """A cause that reads the load alone: a power, a film of it, a contact that closes, an onset."""
     of: Callable[..., Candidate] = partial(_of, cause, blind=friction.no_load, **more)
     points = {f"T_{x}s": ("saturating", friction.SATURATED), f"T_{x}o": ("onset", friction.ONSET)}
     films = of(f"{stem}_film", {f"w_{x}f": (40.0, 100.0, 250.0)}, continuous=())  # of shorter Stribeck's curve speaks
-    rates = of(f"{stem}_rate", {f"n_{x}r": (0.25, 0.5, 1.0)})
     bent = [of(f"{stem}_{law}", shapes=friction.loads(at, own), continuous=(at,)) for at, (law, own) in points.items()]
-    return [of(f"{stem}_power", {f"n_{x}p": POWERS}), films, rates, *bent]
+    return [of(f"{stem}_power", {f"n_{x}p": POWERS}), films, *bent]
 
 
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:

@@ -2,7 +2,6 @@
 
 import sympy as sp
 
-from winch_friction.physics.channels import RPM
 from winch_friction.physics.fluid import REFERENCE, walther
 from winch_friction.physics.friction.symbols import T_d, gear_ratio, oil_temperature, s, shaft_angle, time, w
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
@@ -29,7 +28,6 @@ def viscosity(celsius: sp.Expr | float) -> sp.Expr:
 
 
 NU_40 = float(viscosity(REFERENCE))
-FULL_SPEED = 2000.0 * RPM  # normalises powers of the speed: a factor keeps one unit for every exponent
 _CATALOGUE = "docs/discrepancy.md"
 
 viscosity_temperature = register(

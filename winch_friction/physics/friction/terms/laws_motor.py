@@ -4,7 +4,7 @@ exponents that the literature leaves open, one port, one direction.
 
 import sympy as sp
 
-from winch_friction.physics.channels import BAR
+from winch_friction.physics.channels import BAR, RPM
 from winch_friction.physics.friction.symbols import (
     ALL_OF_LOAD,
     D,
@@ -19,7 +19,7 @@ from winch_friction.physics.friction.symbols import (
     w,
 )
 from winch_friction.physics.friction.term import Parameter, Scope, Term, register
-from winch_friction.physics.friction.terms.effects_winch import FULL_SPEED, NU_40, viscosity
+from winch_friction.physics.friction.terms.effects_winch import NU_40, viscosity
 
 # -- the oil
 POLE = 95.0  # degC below zero of the Vogel-Fulcher-Tammann equation, usual for mineral oils
@@ -85,7 +85,7 @@ viscosity_each_way = _declare(
 
 
 # -- motors and lines
-FULL_PRESSURE = 200.0 * BAR  # normalises powers of the pressure: a factor keeps one unit for every exponent
+FULL_SPEED, FULL_PRESSURE = 2000.0 * RPM, 200.0 * BAR  # normalise powers: a factor keeps one unit for every exponent
 FULL_FLOW = 0.02  # m^3/s, of one group of motors at speed
 _TINY = 1e-6
 

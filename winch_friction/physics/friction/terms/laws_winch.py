@@ -4,7 +4,6 @@ import sympy as sp
 
 from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, gear_ratio, s, shaft_angle, time, w, wire_layer
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
-from winch_friction.physics.friction.terms.effects_winch import FULL_SPEED
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 SLIDING_TO_FORGET = 300.0  # rad of shaft, some turns of a gear wheel, after which the rest is forgotten
@@ -48,10 +47,6 @@ c_go = Parameter("c_go", "N*m", 5.0, upper=200.0, doc="loss per motor at 500 kN 
 T_go = Parameter("T_go", "N*m", 1.5e5, lower=1e2, upper=1e8, shape=True, doc="drum torque of the onset")
 c_so = Parameter("c_so", "1", 0.02, upper=0.5, doc="loss at 500 kN m beyond the onset, share of T_d/i")
 T_so = Parameter("T_so", "N*m", 1.5e5, lower=1e2, upper=1e8, shape=True, doc="drum torque of the onset")
-c_gr = Parameter("c_gr", "N*m", 5.0, upper=200.0, doc="loss per motor at 2000 rpm and a drum torque of 500 kN m")
-n_gr = Parameter("n_gr", "1", 0.5, lower=0.1, upper=2.0, shape=True, doc="exponent of the speed")
-c_sr = Parameter("c_sr", "1", 0.02, upper=0.5, doc="loss at a motor speed of 2000 rpm, share of T_d/i")
-n_sr = Parameter("n_sr", "1", 0.5, lower=0.1, upper=2.0, shape=True, doc="exponent of the speed")
 C_bu = Parameter("C_bu", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, hoisting")
 C_bd = Parameter("C_bd", "N*m", 3.0, upper=200.0, doc="drag of a brake that is not fully released, lowering")
 C_st = Parameter("C_st", "N*m", 30.0, upper=1e3, doc="loss whatever hangs there, at the shaft")
@@ -153,17 +148,6 @@ sheave_onset = register(
     Term(
         "sheave_onset", c_so.symbol * LOAD_SCALE / gear_ratio * _load_beyond(T_so), (c_so, T_so), Scope.SHAFT,
         "a rope that leaves its groove's ground from a tension on", "gear and drum",
-    )
-)  # fmt: skip
-_fast = w / FULL_SPEED + _tiny
-gear_load_rate = _system(
-    "gear_load_rate", c_gr.symbol * _load * _fast**n_gr.symbol, (c_gr, n_gr),
-    "bearings and meshes whose oil is sheared under the load (Niemann and Winter 2003)",
-)  # fmt: skip
-sheave_rate = register(
-    Term(
-        "sheave_rate", c_sr.symbol * LOAD_SCALE / gear_ratio * _load * _fast**n_sr.symbol, (c_sr, n_sr), Scope.SHAFT,
-        "greased wires and bushes, which resist by how fast they are bent and turned (Feyrer 2015)", "gear and drum",
     )
 )  # fmt: skip
 sheave_saturating = register(

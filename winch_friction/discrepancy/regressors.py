@@ -47,6 +47,7 @@ TOLERANCES = (
 )
 LINE, CHURNING = "line_pressure_drop", "churning"
 CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
+WITHIN = 6.0  # times a typical share of the drum's torque are plausible of it anywhere: up to there none is larger
 SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
 
 
@@ -55,8 +56,8 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
     winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
     its flow, what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed, and a share
-    of the drum's torque that each motor loses, under `OF_DRUM`, with the share that it carries. Of a drive without
-    pressures its torques with the largest that it gave, where that is more than one of those motors has.
+    of the drum's torque that each motor loses, under `OF_DRUM`, with what it carries beyond `WITHIN` times. Of a drive
+    without pressures its torques with the largest that it gave, where that is more than one of those motors has.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
@@ -71,8 +72,8 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
     top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
     churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
-    carried = REFERENCE_GEAR * REFERENCE_MOTORS / (run.gear_ratio * motors)
-    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole), OF_DRUM: max(carried, 1.0)}
+    carried = max(REFERENCE_GEAR * REFERENCE_MOTORS / (WITHIN * run.gear_ratio * motors), 1.0)
+    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole), OF_DRUM: carried}
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 

@@ -10,14 +10,17 @@ from winch_friction.discrepancy import search as search_module
 from winch_friction.discrepancy import several
 from winch_friction.discrepancy import standing as module
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.proof import Trial
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction.term import Parameter
 
 RNG = np.random.default_rng(0)
-SLOTS = tuple(Slot(name, "", (k,)) for k, name in enumerate(("one", "two", "three", "four")))
+ORIGIN = (SimpleNamespace(linear=()), None)
+SLOTS = tuple(Slot(name, "", (k,), origin=ORIGIN) for k, name in enumerate(("one", "two", "three", "four")))
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,17 @@ def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_sh
     assert (bool(found.ripple), bool(found.flow), bool(found.reversal)) == (shows,) * 3
     assert asked[0][1:3] == asked[1] == (runs[1:], ["of locked"])
     assert asked[2][0] == ("locked",)
+
+
+@pytest.mark.parametrize(("left", "std", "refused"), [(1.2, 0.5, True), (1.2, 0.1, False), (3.0, 0.5, False)])
+def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(left, std, refused):
+    """Of a null 0.20 +- 0.087 bar of a line's loss were named; the refit left 1.3 of the noise without it."""
+    amount, other = Parameter("a", "1", 1.0), Parameter("not in the file", "1", 1.0)
+    slot = Slot("one", "", (0,), origin=(SimpleNamespace(linear=(amount, other)), None))
+    found = {"one": {"a": ParameterEstimate(-1.0, std, "1"), "shape": ParameterEstimate(1.0, 0.0, "1")}}
+    full = SimpleNamespace(repaired=SimpleNamespace(parameters=found))
+    why = module._may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
+    assert why.startswith("one: ") if refused else not why
 
 
 def test_what_does_not_stand_in_the_end_is_said():
@@ -162,7 +176,7 @@ def test_what_shows_just_after_reversals_makes_no_locked_run_worse(monkeypatch, 
 def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypatch, late, stands):
     monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
-    search, own = searched(Slot("signal_delay", "", (0,))), side()
+    search, own = searched(Slot("signal_delay", "", (0,), origin=ORIGIN)), side()
     own.runs = (SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02))
     found = SimpleNamespace(parameters={"signal_delay": {"tau": SimpleNamespace(value=late)}})
     trial = Trial(search, found, side(), own)

@@ -1,6 +1,6 @@
 """Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -35,6 +35,7 @@ from winch_friction.discrepancy.several import each_proven, several_leave_more_t
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
+SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
 
 
 def standing(study: Study, search: Search) -> Trial:
@@ -139,11 +140,25 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
+        or _may_be_none(slots, full, refit)
         or within_a_step(
             cross, [search.explanation, *(cross.explain((each,)) for each in rivals)], full.holdout.least_noise
         )
     )
     return (None, why) if why else (full, "")
+
+
+def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
+    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
+    their floor: what it takes of the others is chance."""
+    if not at_the_floor(refit.holdout):
+        return ""
+    for slot in on_their_own(slots):
+        found = full.repaired.parameters.get(slot.name, {})
+        amounts = [found[p.name] for p in slot.origin[0].linear if p.name in found]
+        if amounts and all(abs(each.value) < SURE * each.std for each in amounts):
+            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
+    return ""
 
 
 def _stands_though_refused(

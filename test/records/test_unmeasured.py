@@ -55,6 +55,18 @@ def test_a_log_that_stands_still_as_a_whole_is_no_single_sensor():
     assert mended(coarse) == ({}, [])
 
 
+def test_a_pressure_that_leaps_to_zero_and_back_was_not_measured():
+    """Of a workboat's port A 0.3 to 1.5 s were zero under load: 25 bar of gap, named by nothing."""
+    off = log(main__pressure_a=(slice(500, 530), 0.0))
+    assert mended(off) == ({"main.pressure_a": 30}, ["r.csv: main.pressure_a drops to zero for 0.6 s"])
+    led = log()
+    led.columns["main.pressure_a"][400:700] *= np.abs(np.linspace(-1.0, 1.0, 300)).clip(0.2) - 0.2  # and kept there
+    assert mended(led) == ({}, [])
+    torque = log(main__pressure_a=(slice(500, 530), 0.0))
+    torque.columns["motor_torque"] = torque.columns.pop("main.pressure_a")
+    assert mended(torque) == ({}, [])  # a drive that is switched off has none
+
+
 @pytest.mark.parametrize("value", [0.0, 6.5535e7, -1e6])
 def test_single_samples_that_jump_are_lost_telegrams(value):
     lost = log(main__pressure_a=([100, 900, 1700], value), motor_speed=([300], 900.0))

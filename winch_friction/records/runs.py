@@ -3,8 +3,7 @@ them nobody measured: the silence between records that were merged into one file
 still while the others live, or jumps; for `gap` and `check` alike.
 
 A transmitter that hangs repeats its last value to the last digit, and where what it measures moved on meanwhile it
-leaps when it wakes; a lost telegram is one sample of 0 or of full scale.
-They are made missing, which every reader knows how to leave out, and said.
+leaps when it wakes; a lost telegram is one sample of 0 or of full scale. They are made missing, and said.
 """
 
 import itertools
@@ -167,8 +166,7 @@ def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
             found.append(run)
             continue
         found += [_part(run, f"{run.name}, part {k}", a, b) for k, (a, b) in enumerate(whole, start=1)]
-        longest = float(steps.max())
-        notes.append(f"{run.name}: nothing was logged for up to {longest:.3g} s; looked at as {len(whole)} runs")
+        notes.append(f"{run.name}: nothing was logged for up to {steps.max():.3g} s; looked at as {len(whole)} runs")
     whole_rows = [filled(run) for run in found]
     return [run for run, _ in whole_rows], notes + [note for _, said in whole_rows for note in said]
 
@@ -184,7 +182,7 @@ def _part(run: Run, name: str, start: int, end: int) -> Run:
 LIVING = (
     "pressure_a", "pressure_b", "motor_torque", "mechanical_power", "motor_current", "rope_force", "load_torque",
 )  # fmt: skip
-MEASURED = ("motor_speed", *LIVING)
+MEASURED, PRESSURES = ("motor_speed", *LIVING), ("pressure_a", "pressure_b")
 STILL, FEWEST = 1.0, 20  # s and samples that a channel must repeat; slow loggers repeat a value for some samples
 LIVES = 0.5  # of the steps between samples, in which a channel changes that has noise, and so does not stand by chance
 LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse digit stands still for most of it
@@ -220,13 +218,15 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
             find = _standing if name.rpartition(".")[2] in LIVING else _hanging
             still, jumping = find(run.time, values, changes[name], others), _jumping(values)
             jumping &= ~turning | (find is _hanging)
-            if still.any():
-                told.append(Broken(run.name, name, f"stands still for {_length(run.time, still):.3g} s"))
+            dropped = _dropped(values) if name.endswith(PRESSURES) else np.zeros(len(values), bool)
+            spells = {"stands still": still, "drops to zero": dropped}
+            told += [Broken(run.name, name, f"{what} for {np.diff(run.time)[each[1:]].sum():.3g} s")
+                     for what, each in spells.items() if each.any()]  # fmt: skip
             if jumping.any():
                 samples = counted(int(jumping.sum()), "single sample", "single samples")
                 told.append(Broken(run.name, name, f"jumps in {samples}"))
-            if (still | jumping).any():
-                mended[name] = np.where(still | jumping, np.nan, values)
+            if (lost := still | jumping | dropped).any():
+                mended[name] = np.where(lost, np.nan, values)
         found.append(replace(run, columns=mended))
     return found, told
 
@@ -248,15 +248,28 @@ def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others:
 
 def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
-    leaps: a coarse one rests on its digits, and goes on from there by steps.
-    """
-    still, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
-    moved = steps[np.isfinite(steps) & (steps > 0.0)]
-    for a, b in _long_spells(time, values, changes) if len(moved) else ():
-        leaps = b < len(values) and steps[b - 1] > LEAPS * float(np.percentile(moved, QUICK))
-        if leaps and any(each[a : b - 1].mean() >= LIVES for each in others):
+    leaps: a coarse one rests on its digits, and goes on from there by steps."""
+    still, leaps = np.zeros(len(values), bool), _leaps(values)
+    for a, b in _long_spells(time, values, changes):
+        if b < len(values) and leaps[b - 1] and any(each[a : b - 1].mean() >= LIVES for each in others):
             still[a + 1 : b] = True
     return still
+
+
+def _dropped(values: FloatArray) -> np.ndarray:
+    """Samples (samples,) of a pressure at zero to which it leaps, and from there: a wire comes off, no oil does so."""
+    lost, leaps = np.zeros(len(values), bool), _leaps(values)
+    edges = np.flatnonzero(np.diff(values == 0.0)) + 1
+    for a, b in zip(edges[::2], edges[1::2], strict=False) if len(values) and values[0] != 0.0 else ():
+        lost[a:b] = b - a > 1 and leaps[a - 1] and leaps[b - 1]
+    return lost
+
+
+def _leaps(values: FloatArray) -> np.ndarray:
+    """Steps (samples - 1,) that what is measured does not make by itself."""
+    steps = np.abs(np.diff(values))
+    moved = steps[np.isfinite(steps) & (steps > 0.0)]
+    return steps > LEAPS * float(np.percentile(moved, QUICK)) if len(moved) else np.zeros(len(steps), bool)
 
 
 def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
@@ -285,7 +298,3 @@ def _turning(speed: FloatArray) -> np.ndarray:
     the friction, between two ramps, and stands out from both of its neighbours."""
     turns = np.concatenate([[False], np.sign(speed[:-1]) * np.sign(speed[1:]) < 0.0, [False]])
     return np.asarray(np.convolve(turns, np.ones(4), "same")[1:] > 0.5)
-
-
-def _length(time: FloatArray, marked: np.ndarray) -> float:
-    return float(np.sum(np.diff(time)[marked[1:]]))

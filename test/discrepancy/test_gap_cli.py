@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -157,6 +158,19 @@ def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
 def test_what_depends_on_no_signal_is_not_said_to_depend_on_anything():
     assert _unexplained(["oil"], "too small", share_of_gap=0.5) == "it depends on: oil (too small)"
     assert _unexplained([], "too small", share_of_gap=0.5) == "no effect is named: too small"
+
+
+def test_what_is_doubted_of_the_runs_stands_in_the_answer_too(tmp_path, monkeypatch, capsys):
+    """That a wire_layer is one too low in three runs was said on the way, and nowhere in gap.json or on the page."""
+    doubt = SimpleNamespace(severity="warning", sentence="run_01: wire_layer seems one too low")
+    monkeypatch.setattr("winch_friction.commissioning.check.quick_check", lambda *_: [doubt])
+    monkeypatch.setattr("winch_friction.commissioning.channels.first_contradiction", lambda _: None)
+    write_run(runs_with(4010, "quiet", length=0.2)[0], path := tmp_path / "run_01.csv")
+    assert winch_friction(["gap", str(path), "--out", str(tmp_path / "out"), "--no-report"]) == 0
+    assert json.loads((tmp_path / "out/gap.json").read_text())["notes"][0] == doubt.sentence
+    shown = capsys.readouterr()
+    assert f"warning: {doubt.sentence}" in shown.err
+    assert doubt.sentence not in shown.out  # once
 
 
 @pytest.mark.parametrize("quiet", [False, True])

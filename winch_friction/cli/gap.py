@@ -199,7 +199,7 @@ def run_gap(
     refuse_copies(read)
     read = _simulated(read, fmu, fmu_map)
     try:
-        forced = refuse_implausible(read, loaded_crane, seed_model, force, paths)
+        forced = refuse_implausible(read, loaded_crane, seed_model, force, paths, warned.extend)
     except InputError as error:
         if not assumed:
             raise

@@ -201,19 +201,22 @@ def recorded_crane(paths: Sequence[Path]) -> tuple[str, str]:
 
 
 def refuse_implausible(
-    runs: Sequence[Any], crane: Any, model: Any = None, force: bool = False, near: Sequence[Path] = ()
-) -> dict[str, Any]:
+    runs: Sequence[Any], crane: Any, model: Any = None, force: bool = False, near: Sequence[Path] = (),
+    told: Callable[[Sequence[str]], object] = lambda _: None,
+) -> dict[str, Any]:  # fmt: skip
     """Refuse runs that cannot be this crane's in one sentence; with `force` only warn.
 
-    `near` are paths beside which the user's other cranes may lie. Returns what a result's provenance is to hold:
-    nothing where the data are plausible, `forced` with the sentence where they are not.
+    `near` are paths beside which the user's other cranes may lie; `told` hears what is doubted. Returns what a result's
+    provenance is to hold: nothing where the data are plausible, `forced` with the sentence where they are not.
     """
     from winch_friction.commissioning.channels import first_contradiction
     from winch_friction.commissioning.check import quick_check, refuse
     from winch_friction.commissioning.other_cranes import cranes_near
 
     findings = quick_check(runs, crane, model, partial(cranes_near, near))
-    show_warnings(f"{each.sentence}" for each in findings if each.severity == "warning")
+    doubts = [each.sentence for each in findings if each.severity == "warning"]
+    show_warnings(doubts)
+    told(doubts)
     contradiction = first_contradiction(findings)
     if contradiction is None:
         return {}

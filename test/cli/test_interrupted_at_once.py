@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import sys
+from functools import partial
 
 import pytest
 
@@ -20,9 +21,11 @@ WHEN_DONE = "import atexit, os, signal; atexit.register(lambda: os.kill(os.getpi
 CALL = "import sys; from winch_friction.cli.entry import main; sys.argv[1:] = {words!r}; main()"
 
 
-def _run(code, words, **options):
+def _run(code, words):
+    """As in a terminal: these tests may have been begun by a script that lets whatever it starts ignore Ctrl-C."""
     call = [sys.executable, "-c", code + CALL.format(words=words)]
-    done = subprocess.run(call, capture_output=True, text=True, timeout=60, **options)
+    heard = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    done = subprocess.run(call, capture_output=True, text=True, timeout=60, preexec_fn=heard)
     return done.returncode, done.stdout, done.stderr
 
 

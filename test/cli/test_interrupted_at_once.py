@@ -29,9 +29,10 @@ def _run(code, words):
     return done.returncode, done.stdout, done.stderr
 
 
-@pytest.mark.parametrize(
-    "name", ["winch_friction.cli.main", "typer", "rich.console", "winch_friction.cli.list", "sympy"]
-)
+@pytest.mark.parametrize("name", [
+    "winch_friction.cli.main", "sympy",
+    *(pytest.param(each, marks=pytest.mark.long) for each in ("typer", "rich.console", "winch_friction.cli.list")),
+])  # fmt: skip
 def test_an_interrupt_while_libraries_are_loaded_has_one_line(name):
     status, _, said = _run(WHILE_LOADING.format(name=name), ["list", "terms"])
     assert (status, said) == (130, "winch-friction: interrupted\n")

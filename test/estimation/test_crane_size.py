@@ -11,7 +11,7 @@ from winch_friction.estimation import EstimatorConfig, FrictionEstimator, chi_sq
 from winch_friction.estimation.config import at_its_size, damping_ratio, torque_ratio
 from winch_friction.records.crane_file import load_crane
 
-DRAWS, DIRECTIONS = 8, 3
+DRAWS, DIRECTIONS = 5, 3
 SIZES = {"5 t": (5.0, "hydraulic"), "16 t electric": (16.0, "electric"), "150 t": None, "900 t": (900.0, "hydraulic")}
 
 

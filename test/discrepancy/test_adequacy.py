@@ -177,8 +177,8 @@ def test_a_wire_whose_length_is_not_told_may_be_the_gap(stiffness, silent, said)
     ((1.0, 5.0, 5.0, 5.0, 5.0, 1.0), ""),  # most of the runs: what is another is what the others are
 ])  # fmt: skip
 def test_runs_that_keep_plainly_more_than_any_other_are_said(left, said):
-    runs = [(SimpleNamespace(name=name), np.array([value, -value])) for name, value in zip("abcdef", left, strict=True)]
-    notes = of_runs([SimpleNamespace(left_by_run=runs[:4]), SimpleNamespace(left_by_run=runs[4:])])
+    runs = list(zip("abcdef", left, strict=True))
+    notes = of_runs([SimpleNamespace(most_left_first=dict(part)) for part in (runs[:4], runs[4:])])
     assert len(notes) == bool(said)
     assert "".join(notes).startswith(said)
 

@@ -84,16 +84,17 @@ def test_typical_sizes_are_those_of_the_machine():
     assert offset.scale(offset.linear[0], small) == pytest.approx(11.0 * whole)
     # of four motors behind 150 each carries 4.6 times the share of the drum's torque, which is within what is
     # plausible of it anyway: a null with so much "had" a break-away of six times the typical share
+    direct = machine_sizes([machine(2, 80 * CM3_PER_REV, 4.6, 0.4)])
     for name in ("presliding", "dwell_stiction"):
         bristle = next(each for each in all_candidates() if each.name == name and not each.law_name)
         force, share = (bristle.scale(p, small) / p.typical for p in bristle.linear)
         assert (force, share) == pytest.approx((80 / 215, 1.0))
-        direct = machine_sizes([machine(2, 80 * CM3_PER_REV, 4.6, 0.4)])
         assert bristle.scale(bristle.linear[1], direct) / bristle.linear[1].typical == pytest.approx(
             250 * 11 / (4.6 * 2) / bristle.plausible
         )
     sheave = next(each for each in all_candidates() if each.name == "sheave_bending" and not each.law_name)
-    assert sheave.scale(sheave.linear[0], small) == sheave.linear[0].typical  # of the shaft, a share of what it carries
+    for sizes in (small, direct):  # of the shaft, a share of what it carries, however few motors turn it
+        assert sheave.scale(sheave.linear[0], sizes) == sheave.linear[0].typical
     assert machine_sizes([machine(14, 300 * CM3_PER_REV, 300.0, 1.3)])["drum_torque"] == 1.0  # large ones: no less
     assert small["kg*m^2"] == pytest.approx(0.14 / 1.54)
     assert small["kg"] == pytest.approx(whole * (150.0 / 0.4) / (250.0 / 1.136), rel=0.01)

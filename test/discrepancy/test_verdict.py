@@ -1,11 +1,20 @@
 """What makes a verdict: what is left where nothing swings and where something does, large gaps, ripples, and size."""
 
+import pickle
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Combination, decide, steady_excess
+from winch_friction.discrepancy.answer import (
+    MISSING,
+    NOTHING,
+    UNEXPLAINED,
+    Combination,
+    GapOptions,
+    decide,
+    steady_excess,
+)
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence
 from winch_friction.discrepancy.engine.crossfit import CrossFit
@@ -93,3 +102,9 @@ def test_the_steady_blocks_speak_alone_where_there_are_enough_of_them(steady, ex
 def test_a_combinations_interval_is_one_of_95_per_cent():
     low, high = Combination("x + y", 3.0, 0.5, "kg", "tied").content()["interval"]
     assert (low, high) == pytest.approx((3.0 - 0.98, 3.0 + 0.98))
+
+
+def test_what_a_user_has_chosen_goes_to_other_processes():
+    """Many cranes are searched at once."""
+    chosen = GapOptions(seed=3, plan=False)
+    assert pickle.loads(pickle.dumps(chosen)) == chosen

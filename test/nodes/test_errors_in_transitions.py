@@ -1,27 +1,17 @@
 """A transition that raises leaves nothing running and a node that can be configured anew."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-rclpy = pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
+pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
 
-from rclpy.context import Context  # noqa: E402
+from rclpy.context import Context
 
-from winch_friction.nodes.compensator import CompensatorNode  # noqa: E402
-from winch_friction.nodes.estimator import EstimatorNode  # noqa: E402
-from winch_friction.records.domain import unused_domain  # noqa: E402
+from winch_friction.nodes.compensator import CompensatorNode
+from winch_friction.nodes.estimator import EstimatorNode
 
 BOTH = pytest.mark.parametrize("kind", [CompensatorNode, EstimatorNode])
-
-
-@pytest.fixture
-def context() -> Iterator[Context]:
-    made = Context()
-    rclpy.init(context=made, domain_id=unused_domain())
-    yield made
-    rclpy.shutdown(context=made)
 
 
 def state(node: Any) -> str:

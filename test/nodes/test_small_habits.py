@@ -8,29 +8,20 @@ from typing import Any
 
 import pytest
 
-rclpy = pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
+pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
 
-from lifecycle_msgs.msg import Transition  # noqa: E402
-from lifecycle_msgs.srv import ChangeState  # noqa: E402
-from rclpy.clock import ROSClock  # noqa: E402
-from rclpy.context import Context  # noqa: E402
-from rclpy.parameter import Parameter  # noqa: E402
-from rclpy.time import Time  # noqa: E402
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
+from rclpy.clock import ROSClock
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+from rclpy.time import Time
 
-from winch_friction.nodes.base import ERROR, WARN  # noqa: E402
-from winch_friction.nodes.compensator import CompensatorNode  # noqa: E402
-from winch_friction.nodes.estimator import EstimatorNode  # noqa: E402
-from winch_friction.nodes.remote import QUESTIONS, RemoteNode  # noqa: E402
-from winch_friction.physics.errors import InputError  # noqa: E402
-from winch_friction.records.domain import unused_domain  # noqa: E402
-
-
-@pytest.fixture
-def context() -> Iterator[Context]:
-    made = Context()
-    rclpy.init(context=made, domain_id=unused_domain())
-    yield made
-    rclpy.shutdown(context=made)
+from winch_friction.nodes.base import ERROR, WARN
+from winch_friction.nodes.compensator import CompensatorNode
+from winch_friction.nodes.estimator import EstimatorNode
+from winch_friction.nodes.remote import QUESTIONS, RemoteNode
+from winch_friction.physics.errors import InputError
 
 
 @pytest.fixture

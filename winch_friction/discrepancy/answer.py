@@ -27,6 +27,10 @@ from winch_friction.physics.friction import FrictionModel
 STEPS = 4  # that `told` hears of
 
 
+def _silent(_: str) -> None:
+    """For who does not watch; by its name, so that options go to other processes."""
+
+
 @dataclass(frozen=True)
 class GapOptions:
     """`holdout` is the share of runs locked for the proof; `seed` drives every random choice."""
@@ -37,7 +41,7 @@ class GapOptions:
     proposals: bool = True  # laws are looked for where no name fits
     plan: bool = True  # look for the experiment that separates rivals
     candidates: tuple[Candidate, ...] = ()  # instead of the catalogue, when given
-    told: Callable[[str], None] = lambda _: None  # hears what begins: for a progress bar
+    told: Callable[[str], None] = _silent  # hears what begins: for a progress bar
 
 
 # -- what is found
@@ -202,9 +206,8 @@ class GapResult:
 def _before_after(side: Side) -> dict[str, Any]:
     if not side.blocks.y.size:  # nothing that could be looked at
         return dict.fromkeys(("before", "after", "relative_before", "relative_after"))
-    before, after = side.relative
-    return {"before": side.size_before.value, "after": side.size_after.value, "relative_before": before,
-            "relative_after": after}  # fmt: skip
+    return {"before": side.size_before.value, "after": side.size_after.value,
+            "relative_before": side.relative[0], "relative_after": side.relative[1]}  # fmt: skip
 
 
 # -- the verdict
@@ -225,8 +228,7 @@ class Verdict:
 
 def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], rippled: bool = False) -> Verdict:
     """`left`: what signals predict of the final explanation's remainder; `rippled`: a ripple may be part of it."""
-    before, after = steady_excess(cross, selection.base), steady_excess(cross, selection.final)
-    before = max(before, 1e-9)
+    before, after = max(steady_excess(cross, selection.base), 1e-9), steady_excess(cross, selection.final)
     depends = telling(cross, left)
     if not selection.found:
         strong = any(d.share >= LIMITS.least_unexplained for d in depends) or (
@@ -239,10 +241,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
         return Verdict(UNEXPLAINED, f"{implausible[0].name} would need an implausible size{times}")
     # plain terms that a bare model lacked from the start: several of them may be missing without being an imitation
     if len({f.slot.name for f in selection.found if not f.slot.plain}) > LIMITS.most_named:
-        names = ", ".join(selection.final.names)
-        return Verdict(
-            UNEXPLAINED, f"it would take {len(selection.final.names)} effects at once to imitate it ({names})"
-        )
+        many = selection.final.names
+        return Verdict(UNEXPLAINED, f"it would take {len(many)} effects at once to imitate it ({', '.join(many)})")
     whole, whole_before = cross.excess(selection.final), max(cross.excess(selection.base), 1e-9)
     elsewhere = whole > LIMITS.least_excess and whole / whole_before > LIMITS.left_over
     elsewhere &= any(d.share >= LIMITS.least_unexplained for d in depends)

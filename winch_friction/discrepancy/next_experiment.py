@@ -20,7 +20,7 @@ from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Expansion, Given, Split
 from winch_friction.discrepancy.preparation.prepare import prepare
-from winch_friction.discrepancy.proof import compare, rms
+from winch_friction.discrepancy.proof import compare
 from winch_friction.discrepancy.regressors import build_problem
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
@@ -162,9 +162,8 @@ APART = 2.0  # times what any other run keeps, from where on it is a matter of t
 def of_runs(sides: Sequence[Side]) -> list[str]:
     """Which runs keep a gap that nothing explains, where they are less than half of all and keep plainly more than any
     other: a setting or a date that nobody logged depends on no signal."""
-    left = {run.name: rms(own) for side in sides for run, own in side.left_by_run}
-    names = sorted(left, key=lambda name: -left[name])
-    size = [left[name] for name in names]
+    left = sorted((pair for side in sides for pair in side.most_left_first.items()), key=lambda pair: -pair[1])
+    names, size = [name for name, _ in left], [kept for _, kept in left]
     most = range(1, (len(size) + 1) // 2)
     k = max(most, key=lambda k: size[k - 1] / max(size[k], 1.0), default=0)
     if not k or size[k - 1] <= LIMITS.far_off_the_floor or size[k - 1] < APART * size[k]:
@@ -206,10 +205,7 @@ def with_what_was_seen(lacking: GapResult, result: GapResult) -> GapResult:
     """The answer of runs that lack something, with what their search showed all the same."""
     left = f"{result.holdout.size_after.value:.3g} {result.unit}"
     said = [] if result.effects else [f"the model's own parameters, fitted anew, leave {left} of the locked runs"]
-    return replace(
-        lacking, considered=result.considered, untestable=result.untestable,
-        notes=(*lacking.notes, *said),
-    )  # fmt: skip
+    return replace(lacking, considered=result.considered, untestable=result.untestable, notes=(*lacking.notes, *said))
 
 
 def nothing_compared() -> Side:

@@ -197,8 +197,7 @@ def _left(phase: dict[str, Any]) -> str:
 
 def _learned(results: dict[str, Any]) -> list[list[str]]:
     return [
-        [p["name"], p["unit"], *(f"{each:.4g}" for each in
-                                  (p["seed"], beside(p["learned"], p["std"]), p["std"], p["truth"])),
-         f"{p['sigmas_from_truth']:+.1f} σ"]
+        [p["name"], p["unit"], f"{p['seed']:.4g}", f"{beside(p['learned'], p['std']):.4g}", f"{p['std']:.4g}",
+         f"{p['truth']:.4g}", f"{p['sigmas_from_truth']:+.1f} σ"]
         for p in results["parameters"]
     ]  # fmt: skip

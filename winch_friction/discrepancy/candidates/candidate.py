@@ -168,8 +168,8 @@ class Candidate:
 
     def scale(self, parameter: Parameter, sizes: Mapping[str, float]) -> float:
         """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""
-        shared = self.term is not None and self.term.scope is not Scope.SHAFT and OF_DRUM in self.term.reads
-        unit = OF_DRUM if shared and parameter.unit == "1" else parameter.unit
+        own = self.term and parameter.unit == "1" and self.term.scope is not Scope.SHAFT and OF_DRUM in self.term.reads
+        unit = OF_DRUM if own else parameter.unit
         return parameter.typical * (1.0 if self.own_size else sizes.get(self.name, sizes.get(unit, 1.0)))
 
     @property

@@ -68,8 +68,8 @@ def literature() -> list[Candidate]:
         _of("high_pressure_mixed", "high_pressure_onset", {"p_ho": ONSETS, "w_ho": (20.0, 60.0, 180.0)}),
         _of("notch_loss", "notch_power", {"w_np": (10.0, 40.0, 160.0), "a_np": (0.7, 1.0, 1.5)}),
         _of("notch_loss", "notch_any_stroke", {"w_na": (10.0, 40.0, 160.0), "a_na": (0.7, 1.0, 1.5)}),
-        line("line_pressure_power", {"n_l": (1.0, 1.75, 2.0), "b_l": EACH_WAY}, continuous=("n_l",)),
-        # of the flow through each motor it is a port's loss as well, by whatever exponent: a line's is 2 at most
+        line("line_pressure_power", {"n_l": FLOWS, "b_l": EACH_WAY}, continuous=("n_l",)),
+        # of the flow through each motor it is a port's loss as well, by whatever exponent
         *(_of(cause, "line_each_motor", {"n_le": powers, "b_le": EACH_WAY}, continuous=("n_le",), own_size=True)
           for cause, powers in (("line_pressure_drop", FLOWS), ("port_turbulence", (*FLOWS, 2.6)))),
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way

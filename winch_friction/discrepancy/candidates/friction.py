@@ -127,7 +127,7 @@ def _shapes_over(grid: Grid, speeds: Sequence[str] = ()) -> Shapes:
     """Every point of a grid; its `speeds` follow a machine that turns slowly, in octaves."""
 
     def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-        top = max(_top(runs), 1e-3)
+        top = max(_top(runs), 1e-3) if speeds else FULL_SPEED
         # down, never up: a curve as wide as half of what was run is a constant there, and that is Coulomb friction
         slow = 2.0 ** np.floor(np.log2(top / FULL_SPEED)) if top < 0.5 * FULL_SPEED else 1.0
         own = {name: tuple(slow * v if name in speeds else v for v in tried) for name, tried in grid.items()}

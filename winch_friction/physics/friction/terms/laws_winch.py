@@ -100,15 +100,26 @@ dwell_by_speed = _system(
         doc="age of the contact, 0 ... 1"
     ),
 )  # fmt: skip
-_since = sp.Piecewise((0.0, time <= t_ws.symbol), ((time - t_ws.symbol) / tau_ws.symbol, True))
+
+
+def _since(begin: Parameter, lag: Parameter) -> sp.Expr:
+    """Time since a date, in lags; none before it."""
+    return sp.Piecewise((0.0, time <= begin.symbol), ((time - begin.symbol) / lag.symbol, True))
+
+
 wear_saturating = _system(
-    "wear_saturating", C_ws.symbol * (1 - sp.exp(-_since)), (C_ws, t_ws, tau_ws), "run-in of seals: a first-order lag"
+    "wear_saturating",
+    C_ws.symbol * (1 - sp.exp(-_since(t_ws, tau_ws))),
+    (C_ws, t_ws, tau_ws),
+    "run-in of seals: a first-order lag",
 )
-_after = sp.Piecewise((0.0, time <= t_wl.symbol), ((time - t_wl.symbol) / tau_wl.symbol, True))
 wear_logarithmic = _system(
-    "wear_logarithmic", C_wl.symbol * sp.log(1 + _after), (C_wl, t_wl, tau_wl), "Ludema 1996: logarithmic run-in"
+    "wear_logarithmic",
+    C_wl.symbol * sp.log(1 + _since(t_wl, tau_wl)),
+    (C_wl, t_wl, tau_wl),
+    "Ludema 1996: logarithmic run-in",
 )
-_running = sp.Piecewise((0.0, time <= t_wb.symbol), ((time - t_wb.symbol) / tau_wb.symbol, True))
+_running = _since(t_wb, tau_wb)
 wear_bathtub = _system(
     "wear_bathtub", C_wb.symbol * sp.exp(-_running) + C_wu.symbol * _running, (C_wb, C_wu, t_wb, tau_wb),
     "Blau 2009: friction falls while surfaces run in, and grows again as they wear",

@@ -122,7 +122,9 @@ def surrounded(monkeypatch, met, told=True):
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
-    monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
+    monkeypatch.setattr(workflow, "of_wire", lambda *_: ["how long is the wire"])
+    monkeypatch.setattr(workflow, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
+    monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
     monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
@@ -146,6 +148,8 @@ def test_a_rigid_wire_is_asked_for_where_nothing_explains_and_a_load_swings(answ
     found = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
     assert answers.asked == asked
     assert found.verdict == (MISSING if RIGID in asked[1:] else first)
+    open_still = ("how long is the wire", "which of 2 sides") if found.verdict == UNEXPLAINED else ()
+    assert tuple(found.notes) == (f"{first} at first", *open_still)
 
 
 @pytest.mark.parametrize(("verdict", "quiet", "said"), [

@@ -98,6 +98,17 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
     assert why.startswith("one: ") if refused else not why
 
 
+def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
+    for name in ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step"):
+        monkeypatch.setattr(module, name, lambda *_: "")
+    asked = []
+    monkeypatch.setattr(module, "_may_be_none", lambda *given: asked.append(given) or "it may be none")
+    search = searched(SLOTS[0])
+    full, refit = Trial(search, SimpleNamespace(parameters={}), side(), side()), SimpleNamespace(holdout=side(3.0))
+    assert module._stands(search, refit, lambda _: full, RNG) == (None, "it may be none")
+    assert asked == [((SLOTS[0],), full, refit)]
+
+
 def test_what_does_not_stand_in_the_end_is_said():
     """A leak of 6 rad/s in the training runs, of which the locked ones bore out no law, ended without a word."""
     leak, air, ripple = (SimpleNamespace(effect=SimpleNamespace(name=n, where="there")) for n in ("leak", "air", "r"))

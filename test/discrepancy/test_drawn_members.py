@@ -68,7 +68,7 @@ def test_a_curve_that_the_model_has_already_is_not_drawn_again():
 
 def test_a_finer_curve_bends_in_the_middle_of_every_interval_as_well():
     coarse = module._free(row_of(LOAD), [run()])
-    few, many = (each.term.table.knots[0][1] for each in (coarse, coarse.finer()))
+    few, many = (each.term.table.knots[0][1] for each in (coarse, coarse.finer(coarse.shapes([])[0])))
     assert len(many) == 2 * len(few) - 1
     assert set(few) <= set(many)
 

@@ -235,10 +235,54 @@ def test_the_columns_of_a_feedbacks_curve_are_its_zero_and_its_bends():
 def test_where_a_transducer_may_bend_stays_while_the_pressures_are_reckoned_anew():
     own = run()
     own.used, own.constants = np.ones(3, bool), (("max_displacement", 2.0 * SWASH),)
-    (found,) = [each for each in bends_over([own]) if each.name == "pressure_scale"]
+    (found,) = [each for each in bends_over([own, own]) if each.name == "pressure_scale"]
     other = run()
     other.used, other.constants, other.groups[0] = own.used, own.constants, replace(other.groups[0], pressure_sum=A)
     assert [each.label for each in found.shapes([other])] == [each.label for each in found.shapes([own])]
+
+
+def loaded(*levels):
+    """Runs whose high pressure wanders by 1 MPa around a level each, Pa."""
+    runs = []
+    for k, level in enumerate(levels):
+        high = level + 1e6 * np.sin(np.arange(200.0) + k)
+        group = GroupSignals("main", MOTORS, high, high, np.zeros(200), np.full(200, SWASH), True, high)
+        own = {"constants": (("max_displacement", 2.0 * SWASH),), "used": np.ones(200, bool), "time": np.zeros(200)}
+        runs.append(SimpleNamespace(groups=[group], **own))
+    return runs
+
+
+def bends_of(runs):
+    return next((each for each in bends_over(runs) if each.name == "pressure_scale"), None)
+
+
+def test_a_transducer_may_bend_where_few_runs_have_been():
+    """Ten of twelve runs are light: a bend at 15 MPa lies beyond nine tenths of what was sampled."""
+    runs = loaded(*np.linspace(3e6, 8e6, 10), 20e6, 24e6)
+    places = np.array([each.values["beyond"] for each in bends_of(runs).shapes(runs)])
+    assert np.abs(places - 15e6).min() < 1.5e6
+    assert np.ptp(np.diff(places)) < 1.0  # Pa: one pressure is as likely as another
+
+
+@pytest.mark.parametrize("levels", [(3e6, 5e6, 6e6, 7e6, 8e6, 24e6), (3e6, 20e6, 21e6, 22e6, 23e6, 24e6)])
+def test_what_one_run_alone_has_on_its_side_of_a_bend_is_that_runs_own(levels):
+    runs = loaded(*levels)
+    places = [each.values["beyond"] for each in bends_of(runs).shapes(runs)]
+    reached = np.array(levels) + 1e6 > np.array(places)[:, None], np.array(levels) - 1e6 < np.array(places)[:, None]
+    assert places
+    assert all(side.sum(axis=1).min() >= 2 for side in reached)
+
+
+def test_a_bend_that_is_found_is_looked_for_between_its_neighbours_of_the_same_side():
+    own = bends_of(runs := loaded(3e6, 5e6, 8e6, 12e6, 16e6, 20e6))
+    shapes = own.shapes(runs)
+    finer = own.refined(shapes[2]).shapes(runs)
+    more = sorted(each.values["beyond"] for each in finer if each not in shapes)
+    assert len(more) == 6
+    assert shapes[1].values["beyond"] < more[0] < more[-1] < shapes[3].values["beyond"]
+    assert len({each.label for each in finer}) == len(finer)
+    again = own.refined(shapes[2])
+    assert again.refined(shapes[2]) is again
 
 
 def test_a_feedback_may_bow_by_what_its_zero_may_be_off():

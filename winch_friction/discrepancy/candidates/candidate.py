@@ -149,7 +149,7 @@ class Candidate:
     brings: tuple[str, ...] = ()  # lower-order effects that belong to it
     possible: Possible | None = None  # whether over these runs a shape is still that of its cause; None: any is
     continuous: tuple[str, ...] = ()  # shape parameters on a grid over a positive quantity, refined once found
-    finer: "Callable[[], Candidate | None] | None" = None  # the same curve bent at more places, once it is found
+    finer: "Callable[[Shape], Candidate | None] | None" = None  # bent at more places, once one of its shapes is found
     reversal_gain: float | None = None  # share of the error just after reversals that names it there; None: never
     reversal_rival: bool = False  # may explain what happens there
     shortest: tuple[str, float] | None = None  # shape parameter and value that is within the timing's own blur
@@ -203,7 +203,7 @@ class Candidate:
         second effect. Itself where it has no grid to refine; of a curve the same one with more places to bend.
         """
         if self.finer is not None:
-            return self.finer() or replace(self, finer=None)
+            return self.finer(shape) or replace(self, finer=None)
         if not self.continuous:
             return self
         return replace(self, shapes=partial(_finer, self, shape), continuous=())

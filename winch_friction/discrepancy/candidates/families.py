@@ -193,7 +193,7 @@ def _free(row: Free, runs: Sequence[PreparedRun], fine: bool = False) -> Candida
     return Candidate(
         row.cause, "", term.parameters, partial(term_columns, term), term=term, needs=row.needs,
         hydraulic=row.scope is Scope.MOTOR, presumes=row.presumes, law_name=term.name, free=True, own_size=True,
-        plausible=FAR, finer=partial(_free, row, runs, True) if curve and not fine else None,
+        plausible=FAR, finer=(lambda _: _free(row, runs, True)) if curve and not fine else None,
     )  # fmt: skip
 
 

@@ -130,7 +130,12 @@ def feedback_candidates() -> list[Candidate]:
 
 
 # -- signals shown unevenly
-PRESSURES = (0.2, 0.4, 0.6)  # quantiles of what was covered, at which the gain may change
+# where the gain may change, of the way from the lowest to the highest pressure covered: a transducer bends at one
+# pressure as likely as at another, however many samples were taken below it
+PRESSURES = tuple(k / 8.0 for k in range(1, 8))
+CLOSER = (-0.75, -0.5, -0.25, 0.25, 0.5, 0.75)  # of the way to its neighbours, once one is found
+SEEN_BEYOND = 0.1  # share of a run's samples beyond a pressure that make it one of those that tell of the gain there
+FEWEST_BEYOND = 2  # runs; one alone tells its own load as well
 STROKES = (0.1, 0.4, 0.7)  # the same of the displacement, at which the feedback's curve bends
 FEWEST_OF_A_CURVE = (
     6  # displacements a twentieth of the largest apart: a zero, three bends, and two that could contradict
@@ -149,10 +154,10 @@ def _high(g: GroupSignals) -> FloatArray:
     return 0.5 * (g.pressure_sum + np.abs(g.pressure))
 
 
-def _covered(runs: Sequence[PreparedRun], values: Values) -> FloatArray:
-    """The high pressures that the moving samples of the groups have seen that a shape speaks of."""
-    parts = [np.broadcast_to(_high(g), run.time.shape)[run.used] for run in runs for g in affected_groups(run, values)]
-    return np.concatenate(parts) if parts else np.array([])
+def _covered(runs: Sequence[PreparedRun], values: Values) -> list[FloatArray]:
+    """The high pressures that the moving samples of the groups have seen that a shape speaks of, of each run's own."""
+    own = [[np.broadcast_to(_high(g), run.time.shape)[run.used] for g in affected_groups(run, values)] for run in runs]
+    return [np.concatenate(parts) for parts in own if sum(map(len, parts))]
 
 
 def bent_pressure_columns(run: PreparedRun, values: Values) -> FloatArray:
@@ -167,13 +172,38 @@ def bent_pressure_columns(run: PreparedRun, values: Values) -> FloatArray:
 
 
 def _pressure_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+    """The pressures at which each side's transducers may bend, with runs on both sides of them."""
     shapes = []
     for each in group_shapes(runs):
         covered = _covered(runs, each.values)
-        for at in np.quantile(covered, PRESSURES) if len(covered) else ():
-            label = f"{each.label}, beyond {at / 1e5:.0f} bar"
-            shapes.append(Shape(label, {**each.values, "beyond": float(at)}, carried=each.carried))
+        if covered:
+            low, high = np.quantile(np.concatenate(covered), (0.01, 0.99))
+            places = [low + way * (high - low) for way in PRESSURES]
+            shapes += [_bent(each, at) for at in places if _told_on_both_sides(covered, at)]
     return shapes
+
+
+def _told_on_both_sides(covered: Sequence[FloatArray], at: float) -> bool:
+    above = np.array([np.mean(own > at) for own in covered])
+    return min((above >= SEEN_BEYOND).sum(), (above <= 1.0 - SEEN_BEYOND).sum()) >= FEWEST_BEYOND
+
+
+def _bent(side: Shape, at: float) -> Shape:
+    own = {**side.values, "beyond": float(at)}
+    return Shape(f"{side.label.split(', beyond')[0]}, beyond {at / 1e5:.0f} bar", own, carried=side.carried)
+
+
+def _bent_at(shapes: Sequence[Shape]) -> Candidate:
+    law = r"\sum_g n_g D_g\,(e_p\,\Delta p_g + b_p\,(p_g - p_b)_+)"
+    return in_groups("pressure_scale", law, (e_p, b_p), bent_pressure_columns, lambda _: list(shapes), _to_pressure,
+                     law_name="bends at a pressure")  # fmt: skip
+
+
+def _closer(shapes: Sequence[Shape], found: Shape) -> Candidate:
+    """The same with places between the one found and its neighbours."""
+    own = [each.values["beyond"] for each in shapes if each.values["groups"] == found.values["groups"]]
+    step = min(np.diff(own), default=0.0)
+    return _bent_at([*shapes, *(_bent(found, found.values["beyond"] + way * step) for way in CLOSER if step)])
 
 
 def _to_pressure(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
@@ -237,11 +267,9 @@ def bends_over(runs: Sequence[PreparedRun]) -> list[Candidate]:
     bend is what these runs have covered, and stays so while the pressures are reckoned anew around what was found.
     """
     pressures, strokes = _pressure_shapes(runs), _curve_shapes(runs)
-    found = [
-        in_groups("pressure_scale", r"\sum_g n_g D_g\,(e_p\,\Delta p_g + b_p\,(p_g - p_b)_+)", (e_p, b_p),
-                  bent_pressure_columns, lambda _: pressures, _to_pressure, law_name="bends at a pressure"),
-        in_groups("swivel_offset", r"\sum_g n_g\,\Delta p_g\,(D_0 + \sum_k b_{Dk}\,(D_g - D_k)_+)", (D_0, *BENDS),
-                  curve_columns, lambda _: strokes, _to_curve, law_name="a curve over the stroke", blind=_few_bends,
-                  free=True, of_stroke=True),
-    ]  # fmt: skip
-    return [each for each, shapes in zip(found, (pressures, strokes), strict=True) if shapes]
+    curve = in_groups(
+        "swivel_offset", r"\sum_g n_g\,\Delta p_g\,(D_0 + \sum_k b_{Dk}\,(D_g - D_k)_+)", (D_0, *BENDS), curve_columns,
+        lambda _: strokes, _to_curve, law_name="a curve over the stroke", blind=_few_bends, free=True, of_stroke=True,
+    )  # fmt: skip
+    bent = replace(_bent_at(pressures), finer=partial(_closer, pressures))
+    return [each for each, shapes in ((bent, pressures), (curve, strokes)) if shapes]

@@ -6,14 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.candidate import ALL
+from winch_friction.discrepancy.candidates.candidate import ALL, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import (
     _swivel,
     bends_over,
     bent_pressure_columns,
     curve_columns,
     feedback_candidates,
+    parabola_columns,
     s_shaped_columns,
+    warm_parabola_columns,
 )
 from winch_friction.discrepancy.candidates.signals import (
     _offset,
@@ -30,8 +32,9 @@ from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM
-from winch_friction.physics.corrections import straight, unbent, unswung
+from winch_friction.physics.corrections import corrected, straight, unbent, unswung
 from winch_friction.physics.friction.correction import DECLARED, Correction
+from winch_friction.physics.signals import Run
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3
 
@@ -211,6 +214,44 @@ def test_the_column_of_an_s_is_the_torque_that_its_correction_takes_out(share):
     column = s_shaped_columns(own, {"groups": ALL})[:, 2]
     shown = SWASH + error * column / (MOTORS * (A - B))
     np.testing.assert_allclose(unswung(shown, swung), SWASH, rtol=1e-9)
+
+
+PARABOLA = {"D_0": 2e-8, "e_D": -3e-3, "D_b": 1.5e-8, "D_T": 4e-10}  # of a motor that sweeps SWASH at half stroke
+
+
+def shown_by_a_parabola(true, celsius):
+    stroke = true / (2.0 * SWASH)
+    bow = 4.0 * PARABOLA["D_b"] * stroke * (1.0 - stroke)
+    return true * (1.0 + PARABOLA["e_D"]) + PARABOLA["D_0"] + bow + PARABOLA["D_T"] * (celsius - 40.0)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.45, 0.9])
+def test_a_feedback_that_is_wrong_at_both_ends_adds_what_its_columns_say(share):
+    own, true = run(), share * 2.0 * SWASH
+    own.constants, own.channels = (("max_displacement", 2.0 * SWASH),), {"oil_temperature": np.full(3, 55.0)}
+    own.groups = [replace(own.groups[0], displacement=np.full(3, true))]
+    added = MOTORS * (A - B) * (shown_by_a_parabola(true, 55.0) - true)
+    columns = warm_parabola_columns(own, {"groups": ALL})
+    np.testing.assert_allclose(columns @ list(PARABOLA.values()), added, rtol=1e-9)
+    np.testing.assert_allclose(parabola_columns(own, {"groups": ALL}), columns[:, :3])
+
+
+def test_what_a_parabola_says_of_a_feedback_is_taken_out_by_its_corrections(crane_150t, crane2_model):
+    law = next(each for each in feedback_candidates() if each.law_name == "a parabola that shifts with the oil")
+    sides = Sides(replace(crane_150t, max_displacement=2.0 * SWASH), ("main",), ())
+    found = {p.name: ParameterEstimate(PARABOLA[p.name], 1e-3 * abs(PARABOLA[p.name]), p.unit) for p in law.linear}
+    corrections = law.corrects(found, Shape("all groups", {"groups": ALL}), sides)
+    true = SWASH * np.array([0.2, 0.9, 1.8])
+    columns = {
+        "time": np.arange(3.0), "motor_speed": np.ones(3), "main.pressure_a": A, "main.pressure_b": B,
+        "main.displacement": shown_by_a_parabola(true, 55.0), "oil_temperature": np.full(3, 55.0),
+    }  # fmt: skip
+    model = replace(crane2_model, corrections=tuple(corrections))
+    right, _ = corrected(Run("run", columns), crane_150t, model)
+    np.testing.assert_allclose(right["main.displacement"], true, rtol=2e-5)  # the bow bends what the gain has made
+    scale = next(each for each in corrections if each.name == "displacement_scale")
+    bow = 4.0 * PARABOLA["D_b"] / (2.0 * SWASH)
+    assert scale.std == pytest.approx(1e-3 * np.hypot(PARABOLA["e_D"], bow))
 
 
 @pytest.mark.parametrize(("strokes", "said"), [(3, True), (4, False)])

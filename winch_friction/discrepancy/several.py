@@ -11,8 +11,10 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part
 from winch_friction.discrepancy.engine.crossfit import on_their_own
 from winch_friction.discrepancy.engine.selection import Selection, with_fewer
-from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much
-from winch_friction.discrepancy.search import Search, refused
+from winch_friction.discrepancy.expansion import Expansion, meet
+from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much, read_back
+from winch_friction.discrepancy.regressors import base_of, layout_of
+from winch_friction.discrepancy.search import ReversalFinding, Search, Study, after_reversals, refused
 from winch_friction.discrepancy.thresholds import LIMITS
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
@@ -64,6 +66,22 @@ def each_proven(full: Trial, refit: Trial, trial_of: Callable[[Search], Trial], 
         full = replace(full, search=_judged_anew(full.search, rng))
         full = _with_those_as_good_alone(full, every, dropped, trial_of, rng)
     return full
+
+
+def by_reversals(study: Study, full: Trial, shown: ReversalFinding, trial_of: Callable[[Search], Trial]) -> Trial:
+    """The trial without what is `shown` just after reversals beside names, where the file of these alone shows nothing
+    of it: of a large effect a linear fit leaves most where the motion turns, and the file leaves none of that.
+    """
+    search = full.search
+    alone, own = trial_of(replace(search, reversal=None)), shown.slot.origin[0]
+    model = read_back(alone.repaired.model)
+    given = meet(study.split.runs, study.crane, model, (), search.given)
+    bare = replace(model, corrections=())  # the runs are without them, and what they would change is not asked again
+    seen = Expansion(given.prepared, layout_of(base_of(bare, bare), (), given.prepared, bare), bare)
+    base = seen.cross(study.split.train).explain(())
+    given, rng = replace(given, model=bare), study.rng
+    shows = after_reversals(given, seen, base, [own], study.split.train, rng, lambda each: each)
+    return full if shows is not None else alone
 
 
 def _with_those_as_good_alone(

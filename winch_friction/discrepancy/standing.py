@@ -31,7 +31,7 @@ from winch_friction.discrepancy.proof import (
 )
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.search import Search, Study, decided, nameless, unexplained
-from winch_friction.discrepancy.several import each_proven, several_leave_more_than_noise
+from winch_friction.discrepancy.several import by_reversals, each_proven, several_leave_more_than_noise
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
@@ -78,7 +78,8 @@ def _borne_out(study: Study, search: Search) -> Trial:
                 full = each_proven(full, beside, trial_of, rng)
             why = full.search.selection.untold or (several_leave_more_than_noise(full) if several else "")
             if not why:
-                return full
+                shown = full.search.reversal if full.search.explanation.slots else None
+                return full if shown is None else by_reversals(study, full, shown, trial_of)
         whys.append(why)
     if aside and not worse_runs(beside.holdout, rng):
         refit = beside

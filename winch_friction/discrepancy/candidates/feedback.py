@@ -14,6 +14,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     BALANCING,
     Candidate,
     Estimates,
+    ParameterEstimate,
     Shape,
     Sides,
     Values,
@@ -43,6 +44,7 @@ D_T = Parameter(
     "D_T", "m^3/rad/K", 0.1 * CM3_PER_REV, lower=-2.0 * CM3_PER_REV, upper=2.0 * CM3_PER_REV,
     doc="thermal zero shift of the displacement feedback",
 )  # fmt: skip
+e_D = Parameter("e_D", "1", 0.01, lower=-0.2, upper=0.2, doc="gain error of the displacement feedback")
 D_b = Parameter(
     "D_b", "m^3/rad", CM3_PER_REV, lower=-20 * CM3_PER_REV, upper=20 * CM3_PER_REV,
     doc="bow of the displacement feedback at half stroke, between ends at which it is right",
@@ -73,6 +75,18 @@ def warm_bowed_columns(run: PreparedRun, values: Values) -> FloatArray:
     return np.column_stack([bowed_columns(run, values), warm_columns(_swivel, run, values)[:, 1]])
 
 
+def parabola_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """Zero and gain error of the feedback and its bow, N m, shape (samples, 3): wrong at both ends of the stroke."""
+    gain = group_columns(lambda g: g.displacement * _swivel(g), run, values)
+    zero_and_bow = bowed_columns(run, values)
+    return np.hstack([zero_and_bow[:, :1], gain, zero_and_bow[:, 1:]])
+
+
+def warm_parabola_columns(run: PreparedRun, values: Values) -> FloatArray:
+    """The same, and what the oil's warmth adds to the zero, N m, shape (samples, 4)."""
+    return np.column_stack([parabola_columns(run, values), warm_columns(_swivel, run, values)[:, 1]])
+
+
 def s_shaped_columns(run: PreparedRun, values: Values) -> FloatArray:
     """Zero error of the feedback, its bow and its S, N m, shape (samples, 3): the third order of a linkage's error."""
     largest = dict(run.constants)[LARGEST]
@@ -94,11 +108,14 @@ def _few_strokes(runs: Sequence[PreparedRun], fewest: int = FEWEST_STROKES) -> t
 def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     """Zero, gain and curvature: what is right at both ends of the stroke has a gain against its bow."""
     groups, largest = groups_of(shape, sides), sides.crane.max_displacement
-    gain = 4.0 / largest  # the curvature bends what the gain has made of the true value
-    curvature = -gain / largest / (1.0 + gain * found[D_b.name].value) ** 2
+    gain, bow = 4.0 / largest, found[D_b.name]
+    own = found.get(e_D.name, ParameterEstimate(0.0, 0.0, e_D.unit))
+    scale = ParameterEstimate(own.value + gain * bow.value, float(np.hypot(own.std, gain * bow.std)), e_D.unit)
+    # the curvature bends what the gain has made of the true value
+    curvature = -gain / largest / (1.0 + scale.value) ** 2
     corrections = [
         correction("displacement_offset", found[D_0.name], groups=groups),
-        correction("displacement_scale", found[D_b.name], gain, groups=groups),
+        correction("displacement_scale", scale, groups=groups),
         correction("displacement_curvature", found[D_b.name], curvature, groups=groups),
     ]
     if D_s.name in found:
@@ -125,6 +142,14 @@ def feedback_candidates() -> list[Candidate]:
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
                   blind=_few_strokes),
+        # a calibration at two strokes that was wrong at both, and what lies between them
+        in_groups("swivel_offset", swivel + r"(D_0 + e_D D_g + 4 D_b\,x(1-x))", (D_0, e_D, D_b), parabola_columns,
+                  group_shapes, _to_bow, law_name="a parabola over the stroke",
+                  blind=partial(_few_strokes, fewest=FEWEST_OF_AN_S)),
+        in_groups("swivel_offset", swivel + r"(D_0 + e_D D_g + 4 D_b\,x(1-x) + D_T(\vartheta-40))",
+                  (D_0, e_D, D_b, D_T), warm_parabola_columns, group_shapes, _to_bow,
+                  law_name="a parabola that shifts with the oil", needs=OIL,
+                  blind=partial(_few_strokes, fewest=FEWEST_OF_AN_S)),
     ]  # fmt: skip
     return [replace(each, of_stroke=True) for each in found]
 

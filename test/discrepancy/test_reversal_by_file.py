@@ -1,0 +1,53 @@
+"""What shows just after reversals beside names stands where the file of the names alone still shows it."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from gap_rig import runs_with
+
+from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy.catalogue import all_candidates
+from winch_friction.discrepancy.expansion import Split, meet
+from winch_friction.discrepancy.search import Study
+from winch_friction.discrepancy.several import by_reversals
+from winch_friction.physics.friction.correction import Correction
+
+NAMED = SimpleNamespace(slots=("a name",))
+
+
+@dataclass(frozen=True)
+class Stands:
+    """What `by_reversals` reads of a search."""
+
+    given: Any
+    reversal: Any
+    explanation: Any
+
+
+@pytest.mark.parametrize(
+    ("hidden", "kept"), [((("presliding", 1.0),), True), ((), False), ((("churning", 1.0),), False)]
+)
+def test_bristles_stand_beside_names_where_their_file_leaves_something_of_bristles(
+    hidden, kept, crane_150t, crane2_model
+):
+    runs = runs_with(41, "quiet", *hidden)
+    names = tuple(run.name for run in runs)
+    study = Study(Split(runs, names[:9], names[9:]), crane_150t, GapOptions(), np.random.default_rng(0))
+    bristles = next(each for each in all_candidates() if each.name == "presliding")
+    reversal = SimpleNamespace(slot=SimpleNamespace(origin=(bristles, None)))
+    full = SimpleNamespace(search=Stands(meet(runs, crane_150t, crane2_model), reversal, NAMED))
+    asked = []
+    # a file that also corrects a signal: its runs are read without that error
+    file = SimpleNamespace(model=replace(crane2_model, corrections=(Correction("pressure_offset", 10.0),)))
+
+    def trial_of(search):
+        asked.append(search.reversal)
+        return SimpleNamespace(search=search, repaired=file)
+
+    stands = by_reversals(study, full, reversal, trial_of)
+    assert asked == [None]
+    assert (stands is full) is kept
+    assert stands.search.reversal is (reversal if kept else None)

@@ -1,7 +1,7 @@
 """Two messages of one instant: whether they say different things, and for how long neither is believed."""
 
 import pytest
-from sea import CRANE, TOPICS, swell
+from sea import CRANE, PERIOD, TOPICS, Fed, check_invariants, swell
 
 from winch_friction.online.agreement import DOUBTED, TOGETHER, Voices
 from winch_friction.physics.winch.operating_point import ChannelRanges
@@ -42,3 +42,76 @@ def test_neither_is_believed_again_before_the_torque_has_gone():
     assert not voices.contradict(SPEED, message(50.0, 10.2), 100.0 + 1.1 * DOUBTED)
     voices.forget()
     assert not voices.contradict(SPEED, message(50.0, 10.3), 100.0)
+
+
+# -- a recording or a simulator that sends beside the machine
+OFFSETS = [0.0, 0.3, -0.3, -3600.0, 3600.0]  # s between the two clocks
+
+
+def beside(fed: Fed, seconds: float, offset: float, speed: float = 40.0, live: bool = True) -> None:
+    """The machine, and half a period after it another's opposite motion, under stamps that are `offset` s off."""
+    for _ in range(round(seconds / PERIOD)):
+        fed.now += 0.5 * PERIOD
+        if live:
+            fed.send(swell(fed.now, speed=speed))
+        fed.now += 0.5 * PERIOD
+        other = swell(fed.now + 3.0, speed=speed)
+        other.time = fed.now + offset
+        fed.send(other)
+        fed.hear(fed.service.tick(fed.now))
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+@pytest.mark.parametrize("speed", [100.0, 40.0])
+def test_a_recording_beside_the_machine_is_not_obeyed_and_holds_nothing(offset, speed):
+    """Ahead by 0.3 s it took over, of the same clock it changed the torque's sign fifty times a second: `active`."""
+    fed = Fed()
+    fed.run(2.0, lambda sample: setattr(sample, "motor_speed", sample.motor_speed * speed / 100.0))
+    beside(fed, 1.0, offset, speed)
+    before = len(fed.published)
+    beside(fed, 5.0, offset, speed)
+    assert {said.friction_torque for _, said in fed.published[before:]} <= {0.0}
+    assert "two motions in turn" in fed.service.inputs.arrivals[SPEED.topic].reason
+    assert fed.service.status(fed.now)["state"] == "stale"
+    check_invariants(fed)
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_the_machine_is_not_obeyed_less_for_a_recording_that_was_there_first(offset):
+    """Whoever came first was believed for as long as the recording was played: against the motion, and `valid`."""
+    fed = Fed()
+    beside(fed, 3.0, offset, live=False)
+    assert abs(fed.torque) > 50.0
+    beside(fed, 1.0, offset)
+    assert fed.torque == 0.0
+    back = fed.run(5.0)
+    assert back[-1].state == "active"
+    assert back[-1].friction_torque * swell(fed.now).motor_speed > 0.0
+    check_invariants(fed)
+
+
+def test_a_machine_that_pauses_does_not_hand_over_to_a_recording():
+    fed = Fed()
+    fed.run(2.0)
+    beside(fed, 1.0, -3600.0)
+    before = len(fed.published)
+    beside(fed, 0.4, -3600.0, live=False)
+    beside(fed, 3.0, -3600.0)
+    assert {said.friction_torque for _, said in fed.published[before:]} <= {0.0}
+
+
+def test_a_coarse_encoder_and_a_sender_that_sends_the_same_twice_are_no_two_motions():
+    fed, states, steps = Fed(), set(), iter(range(10**6))
+
+    def coarse(sample) -> None:
+        sample.motor_speed = 20.0 * (round(sample.motor_speed / 20.0) + next(steps) % 2)
+
+    states |= {said.state for said in fed.run(8.0, coarse)[50:]}
+    for _ in range(200):  # a second gateway whose clock is off
+        fed.now += PERIOD
+        fed.send(swell(fed.now))
+        copy = swell(fed.now)
+        copy.time -= 7200.0
+        fed.send(copy)
+    assert states == {"active"}
+    assert fed.published[-1][1].state == "active"

@@ -188,8 +188,49 @@ class Voices:
         return max(abs(lower), abs(upper))
 
 
-# -- the inputs beside each other
+# -- two senders
+TURNS, TURNING = 4, 1.0  # to and fro, so many within so many s: a fifth of a second of a recording at 10 Hz is one
+USUAL = 0.2  # of the largest speed, a second: what heave asks for (130 rad/s^2)
+LATENESS = 0.1  # s that a network may let a message be late by
 
+
+class Motions:
+    """Whether speed and command tell of two motions in turn: a recording or a simulator beside the machine.
+
+    Its stamps may be of the same clock or of another; nobody knows which of the two is the machine. The speed of a
+    coarse encoder turns to and fro as well, but its command is smooth and its stamps are good.
+    """
+
+    def __init__(self, ranges: ChannelRanges) -> None:
+        self._reach, self._usual = ranges.speed, USUAL * ranges.speed
+        self._last: dict[str, tuple[float, float, float]] = {}  # stamp, value, the last jump
+        self._turns: dict[str, list[float]] = {}
+        self._seen = -math.inf
+
+    def hear(self, column: str, stamp: float, value: float, now: float) -> None:
+        """One reading, believed or not, arriving at `now` s."""
+        before, last, jump = self._last.get(column, (stamp, value, 0.0))
+        step, apart = value - last, abs(stamp - before)
+        late = self._usual * min(apart, LATENESS) if apart < BACKWARD_JUMP else 0.0
+        if abs(step) > max(APART * max(abs(value), abs(last)), NEAR * self._reach) + late:
+            if step * jump < 0.0:
+                self.note(now, column)
+            jump = step
+        if value == value:
+            self._last[column] = stamp, value, jump
+
+    def note(self, now: float, what: str = "stamps") -> None:
+        """One more turn of a column, or a stamp that was refused."""
+        self._turns[what] = [each for each in self._turns.get(what, ()) if 0.0 <= now - each < TURNING] + [now]
+
+    def two(self, now: float) -> bool:
+        """Whether there are two, or were a short while ago."""
+        often = [what for what, times in self._turns.items() if sum(0.0 <= now - t < TURNING for t in times) >= TURNS]
+        self._seen = now if "motor_speed" in often and len(often) > 1 else self._seen
+        return 0.0 <= now - self._seen < DOUBTED
+
+
+# -- the inputs beside each other
 # the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
 SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed
 SPEED_TIME = 0.5  # s

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from winch_friction.online.agreement import Plausibility, Stamp, StampWatch, Voices
+from winch_friction.online.agreement import Motions, Plausibility, Stamp, StampWatch, Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.errors import check, option
 from winch_friction.physics.signals import NAN, Run, Sample
@@ -72,6 +72,8 @@ class ServiceOptions:
 # -- all of them
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed is believed
 TWO_VOICES = "two values under one stamp"
+MOTION = "motor_speed", "speed_reference"
+TWO_MOTIONS = "two motions in turn: does a recording or a simulator send beside the machine?"
 UNREADABLE, LATE = "without the joint that it should show", "stamp before that of the last message"
 
 
@@ -102,7 +104,7 @@ class InputGate:
         self.arrivals = {topic: Arrivals() for topic in topics.inputs}
         self.last_stamp, self.last_arrival = -math.inf, math.inf
         self._plausible = Plausibility(self.ranges)
-        self._voices = Voices(self.ranges)
+        self._voices, self._motions = Voices(self.ranges), Motions(self.ranges)
         self._on_jump = on_jump
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit, on_held=self._note_arrival)
@@ -125,6 +127,9 @@ class InputGate:
         if source.stamped and self._voices.contradict(source, message, now):
             self._refuse(arrivals, TWO_VOICES)
             return None
+        if source.channels[0] in MOTION:
+            stamp, shown = stamp_time(message) if source.stamped else receipt, source.decode(message)
+            self._motions.hear(source.channels[0], stamp, shown.get(source.channels[0], NAN), now)
         if source.topic == self.topics.speed_topic:
             return self._speed(source, message, receipt, now, sent)
         if not source.stamped:
@@ -172,7 +177,9 @@ class InputGate:
             self._start_over()
             self._on_jump()
         elif worth is not Stamp.GOOD:
-            self._refuse(arrivals, worth.value)
+            self._motions.note(now)
+        if (two := self._motions.two(now)) or worth not in (Stamp.GOOD, Stamp.JUMP):
+            self._refuse(arrivals, TWO_MOTIONS if two else worth.value)
             return None
         if math.isinf(self.last_stamp):  # until now nothing told what is ahead
             self.hold.drop_after(stamp + self._window)

@@ -257,6 +257,15 @@ def test_what_waits_for_a_speed_says_what_is_missing_and_where_it_is_told_why(fe
     assert fresh.service.status(fresh.now)["missing"] == "motor_speed ('inputs' says why)"
 
 
+def test_a_speed_that_comes_and_is_not_believed_is_told_with_its_reason(fed: Fed) -> None:
+    """Of twenty inputs that two senders share, one line of 'inputs' said it."""
+    held = fed.now
+    fed.run(1.0, lambda sample: setattr(sample, "time", held))
+    assert fed.service.status(fed.now)["missing"] == "motor_speed, refused: stamp stands still"
+    fed.wait(0.5)
+    assert fed.service.status(fed.now)["missing"] == "motor_speed ('inputs' says why)"
+
+
 def test_an_estimator_that_waits_for_a_speed_says_what_is_missing() -> None:
     each, now = EstimatorService(CRANE, SEED, TOPICS), 0.0
     assert each.status(now)["state"] == "waiting"

@@ -1,9 +1,9 @@
 """Two messages of one instant: whether they say different things, and for how long neither is believed."""
 
 import pytest
-from sea import CRANE, PERIOD, TOPICS, Fed, check_invariants, swell
+from sea import CRANE, PERIOD, START, TOPICS, Fed, check_invariants, swell
 
-from winch_friction.online.agreement import DOUBTED, TOGETHER, Voices
+from winch_friction.online.agreement import DOUBTED, TOGETHER, Motions, Voices
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES
 
@@ -115,3 +115,40 @@ def test_a_coarse_encoder_and_a_sender_that_sends_the_same_twice_are_no_two_moti
         fed.send(copy)
     assert states == {"active"}
     assert fed.published[-1][1].state == "active"
+
+
+def test_a_recording_without_commands_is_seen_by_its_stamps():
+    fed = Fed()
+    fed.run(2.0)
+    for _ in range(100):
+        fed.now += 0.5 * PERIOD
+        fed.send(swell(fed.now), skip=("winch/reference",))
+        fed.now += 0.5 * PERIOD
+        other = swell(fed.now + 3.0)
+        other.time = fed.now - 3600.0
+        fed.send(other, skip=("winch/reference",))
+    assert "two motions" in fed.service.status(fed.now)["missing"]
+
+
+def test_a_network_that_exchanges_messages_is_no_second_machine():
+    """Every second one six periods late at the steepest of a wave: 16 rad/s, and the same of the command."""
+    motions = Motions(ChannelRanges(CRANE, TOPICS.groups))
+    for k in range(200):
+        now = START + k * PERIOD
+        stamp = now - (0.12 if k % 2 else 0.0)
+        for column in ("motor_speed", "speed_reference"):
+            motions.hear(column, stamp, 130.0 * (stamp - START - 2.0), now)
+        motions.note(now)
+        assert not motions.two(now)
+
+
+def test_where_two_motions_cross_neither_is_believed():
+    fed, valid = Fed(), []
+    fed.run(2.0)
+    beside(fed, 1.0, -3600.0)
+    before = len(fed.published)
+    for _ in range(3):
+        beside(fed, 1.0, -3600.0)
+        beside(fed, 1.2, -3600.0, speed=0.0)
+        valid += [said.valid for _, said in fed.published[before:]]
+    assert not any(valid)

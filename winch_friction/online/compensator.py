@@ -12,7 +12,7 @@ from typing import Any
 
 from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.inputs import SILENT, InputGate, ServiceOptions
+from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
@@ -235,9 +235,9 @@ class CompensatorService:
         """The law's state and counts, told true: a silence is stale, whatever the law last said."""
         status = dict(self.law.status())
         if not math.isfinite(self._last_stamp):
-            status["missing"] = SILENT
+            status["missing"] = self.inputs.without_speed(now)
         elif self.inputs.silence(now) > self.options.watchdog_timeout:
-            status["state"], status["missing"] = "stale", SILENT
+            status["state"], status["missing"] = "stale", self.inputs.without_speed(now)
         status["contradictions"] = "; ".join(self.contradictions)
         status["learned_model_refused"] = self.refusal
         return status

@@ -13,7 +13,7 @@ from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.doubt import LoadAgainstDrive, LoadBalance, StandingReadings, span
 from winch_friction.online.inertia_balance import InertiaBalance
-from winch_friction.online.inputs import SILENT, InputGate, ServiceOptions
+from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -174,7 +174,7 @@ class EstimatorService:
             status["state"] = "contradicted"
         elif self.last is not None and not self.last.accepted:
             status["state"] = "rejected"
-        status["missing"] = SILENT if silent else ", ".join(self.missing)
+        status["missing"] = self.inputs.without_speed(now) if silent else ", ".join(self.missing)
         status["contradictions"] = self.contradiction
         status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
         status["suspicion"] = "; ".join(filter(None, (self._balance.suspicion, str(status["lateness"]))))

@@ -70,7 +70,7 @@ class ServiceOptions:
 
 
 # -- all of them
-SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed is believed
+SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed comes
 TWO_VOICES = "two values under one stamp"
 MOTION = "motor_speed", "speed_reference"
 TWO_MOTIONS = "two motions in turn: does a recording or a simulator send beside the machine?"
@@ -268,6 +268,12 @@ class InputGate:
         if now < self.last_arrival < math.inf:
             self.last_arrival = now
         return max(0.0, now - self.last_arrival)
+
+    def without_speed(self, now: float) -> str:
+        """What is missing where no speed is believed, with the reason where some still come."""
+        speed = self.arrivals[self.topics.speed_topic]
+        comes = now - speed.arrived <= self.options.watchdog_timeout
+        return f"motor_speed, refused: {speed.reason}" if comes and speed.reason else SILENT
 
     def forget(self) -> None:
         """Drop what is held and believe the next stamp, after a jump of the clock or on request."""

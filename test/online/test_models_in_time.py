@@ -22,6 +22,9 @@ HOSTILE = {
     "no text": "\0",
     "python": "!!python/object/apply:os.system ['true']",
     "empty": "",
+    "lists of lists": "a: &a0 [1,1,1,1]\n"
+    + "".join(f"b{k}: &a{k} [{','.join([f'*a{k - 1}'] * 9)}]\n" for k in range(1, 8))
+    + "terms: []\ncorrections: *a7\n",  # held every thread for minutes, to show what was found
 }
 
 

@@ -149,6 +149,19 @@ def test_a_key_that_stands_in_a_merged_mapping_too_overrules_it():
     assert parse_yaml("a: &a {x: 1}\nb: {<<: *a, x: 2}\nc: {x: 3}", "here")["b"] == {"x": 2}
 
 
+def test_repetitions_that_make_a_billion_entries_are_refused_and_others_taken():
+    lists = "a: &a0 [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
+        f"b{k}: &a{k} [{','.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 4)
+    )
+    assert len(parse_yaml(lists, "here")["b3"]) == 10
+    more = lists + "b4: &a4 [*a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3]\n"
+    with pytest.raises(InputError, match="here: its repetitions .* more than 100000 entries"):
+        parse_yaml(more, "here")
+    with pytest.raises(InputError, match="here: its repetitions"):
+        parse_yaml("a: &a {b: *a}", "here")
+    assert len(parse_yaml(f"a: [{'1,' * 100_001}]", "here")["a"]) == 100_001  # long, and nothing repeated
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -149,14 +149,25 @@ def utf_8_text(path: Path) -> str:
 _OTHER_BASE = re.compile(r"[-+]?(0[0-7_]+|0[box].*|.*:.*)")
 
 
+# entries of what a text stands for with its repetitions (`*name`): ten lines of lists of lists make a billion, and
+# whatever shows or looks through these holds the process
+MOST_UNFOLDED = 100_000
+
+
 class _Loader(yaml.SafeLoader):
     """YAML's safe types. What YAML takes without a word is gathered: a key that stands twice in one mapping, of which
     it takes the last, and numbers to another base than ten."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
+        self.repeats = False  # whether anything stands for what was written before
         self.repeated: list[tuple[int, str, int]] = []  # line, key, the line on which it stood first; lines from 1
         self.other_base: list[tuple[int, str, Any]] = []  # line, what is written, the number that YAML makes of it
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """As YAML has it; notes a repetition."""
+        self.repeats |= self.check_event(yaml.AliasEvent)
+        return super().compose_node(parent, index)
 
     def number(self, node: Any, value: Any) -> Any:
         """A number as YAML reads it, gathered where people read it otherwise."""
@@ -187,7 +198,10 @@ def parse_yaml(text: str, where: str) -> Any:
     which is 12 to YAML."""
     try:
         loader = _Loader(text)
-        content = loader.get_single_data()
+        node = loader.get_single_node()
+        if loader.repeats and _unfolded(node, {}) > MOST_UNFOLDED:
+            raise InputError(f"{where}: its repetitions (*name) make more than {MOST_UNFOLDED} entries of it")
+        content = None if node is None else loader.construct_document(node)
     except RecursionError:
         raise InputError(f"{where}: nested too deeply to be a configuration") from None
     except yaml.YAMLError as error:
@@ -207,6 +221,16 @@ def parse_yaml(text: str, where: str) -> Any:
     if said:
         raise InputError(*(f"{where} line {line}: {text}" for line, text in said))
     return content
+
+
+def _unfolded(node: Any, sizes: dict[int, float]) -> float:
+    """Entries of a node with its repetitions; infinite of one that stands in itself."""
+    if id(node) not in sizes:
+        sizes[id(node)] = math.inf
+        inside = [] if isinstance(node, yaml.ScalarNode) else node.value
+        pairs = (each if isinstance(each, tuple) else (each,) for each in inside)
+        sizes[id(node)] = 1 + sum(_unfolded(each, sizes) for pair in pairs for each in pair)
+    return sizes[id(node)]
 
 
 def _said(value: Any) -> str:

@@ -3,6 +3,7 @@ over, when it begins anew."""
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,7 +22,9 @@ from winch_friction.nodes.base import ERROR, WARN
 from winch_friction.nodes.compensator import CompensatorNode
 from winch_friction.nodes.estimator import EstimatorNode
 from winch_friction.nodes.remote import QUESTIONS, RemoteNode
+from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.physics.errors import InputError
+from winch_friction.records.strict_yaml import config_directory
 
 
 @pytest.fixture
@@ -152,3 +155,67 @@ def test_a_transition_may_be_asked_for_by_its_name(active: Any) -> None:
     request = ChangeState.Request(transition=Transition(label="deactivate"))
     assert node._service_change_state.callback(request, ChangeState.Response()).success
     assert node._state_machine.current_state[1] == "inactive"
+
+
+def test_a_process_that_was_restarted_waits_where_it_is_told_to(active: Any) -> None:
+    """Whoever had switched it off, and saw it die, had it feed forward again by respawn."""
+    node = active(CompensatorNode, starts_enabled=False)
+    assert not node.service.law.status()["enabled"]
+    node._enable(True)
+    node.trigger_deactivate()
+    node.trigger_cleanup()
+    node.trigger_configure()
+    assert node.service.law.status()["enabled"]
+    assert not node.set_parameters([Parameter("starts_enabled", value=True)])[0].successful
+
+
+def test_a_model_that_waits_is_dropped_with_the_topic_that_it_came_from(active: Any) -> None:
+    """An hour ahead, by a clock that was set back, it took effect an hour after nobody was to be followed any more."""
+    node = active(CompensatorNode)
+    model = node.service.law.model
+    later = replace(model, provenance={**model.provenance, LEARNED_AT: 5000.0})
+    node.service.offer(later)
+    node.set_parameters([Parameter("follow_model_topic", value=False)])
+    assert node.service.schedule.due(1e9) is None
+    node.models._done.append(later)  # it was being read meanwhile
+    node._watch()
+    assert node.service.schedule.due(1e9) is None
+    node.set_parameters([Parameter("follow_model_topic", value=True)])
+    node._watch()
+    assert node.service.schedule.due(1e9) is None
+    node.models._done.append(later)
+    node._watch()
+    assert node.service.schedule.due(1e9) is later
+
+
+def test_the_last_report_warns(active: Any) -> None:
+    """A report of level 0 stands for as long as somebody shows it."""
+    for kind in (CompensatorNode, EstimatorNode):
+        node, said = active(kind), []
+        node._report = said.extend
+        node.trigger_deactivate()
+        assert {(each.level, each.summary) for each in said} == {(WARN, "not active")}
+
+
+@pytest.mark.parametrize("crane", ["crane_150t", "current"])
+def test_an_estimator_needs_what_its_drive_is_known_by(active: Any, crane: str, tmp_path: Any) -> None:
+    if crane == "current":
+        text = (config_directory() / "cranes" / "worm_drive.yaml").read_text()
+        crane = str(tmp_path / "crane.yaml")
+        (tmp_path / "crane.yaml").write_text(
+            text.replace("drive: electric", "drive: {kind: current, torque_constant: 0.5}")
+        )
+        node = active(EstimatorNode, crane=crane, model_file="worm_viscous")
+        assert node._needed() == {"winch/joint_states", "winch/motor_current"}
+    else:
+        assert len(active(EstimatorNode)._needed()) == 7
+
+
+def test_an_activation_begins_anew(active: Any) -> None:
+    """The senders' clock may have been set while nobody listened."""
+    for kind in (CompensatorNode, EstimatorNode):
+        node = active(kind)
+        node.trigger_deactivate()
+        node.service.inputs.last_stamp = 5000.0
+        node.trigger_activate()
+        assert node.service.inputs.last_stamp == float("-inf")

@@ -1,7 +1,14 @@
 """What is said of an input names what is wrong with it, and nothing else."""
 
 import pytest
-from sea import PERIOD, Fed
+from sea import PERIOD, SEED, Fed
+
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.signals import Sample
+from winch_friction.records.bag_write import MESSAGES
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
+from winch_friction.records.topics import crane_topics
 
 LOAD, PRESSURE, SPEED = "winch/hook_load", "winch/active/pressure_a", "winch/joint_states"
 
@@ -23,6 +30,22 @@ def test_inputs_whose_stamps_stand_still_do_not_come_after_the_speed_of_their_in
     fed.run(1.0, freeze)
     assert fed.service.inputs.arrivals[PRESSURE].after <= 1
     assert fed.service.inputs.arrivals[SPEED].reason == "stamp stands still"
+
+
+@pytest.mark.parametrize(("crane", "model", "said"), [("worm_drive", "worm_viscous", True), ("crane_150t", "", False)])
+def test_a_torque_beyond_any_motor_is_told_where_the_drive_is_known_by_it(crane: str, model: str, said: bool) -> None:
+    """The estimator waited for `motor_torque`, and of the inputs it was said that they arrive."""
+    machine, seed = load_crane(crane), load_model(model) if model else SEED
+    topics = crane_topics(machine)
+    service = EstimatorService(machine, seed, topics)
+    for k in range(5):
+        now = 1000.0 + k * PERIOD
+        sample = Sample(time=now, motor_speed=1.0, motor_torque=1e9, groups={})
+        for topic, message in topics.encode(sample, MESSAGES):
+            service.take(topics.inputs[topic], message, now, now)
+    speed = service.inputs.arrivals[SPEED]
+    assert (speed.refused, "motor_torque: 1e+09 N*m is outside" in speed.reason) == ((5, True) if said else (0, False))
+    assert service.last is not None  # the speed itself is taken
 
 
 def test_a_stamp_that_fell_back_is_told_from_a_message_that_shows_nothing(fed: Fed) -> None:

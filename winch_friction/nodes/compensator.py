@@ -36,6 +36,9 @@ LONGEST_WATCH = 0.1  # s between two looks of the watchdog where the time-out is
 class CompensatorNodeOptions:
     """What only the compensator node can be told. Raises `InputError` for values out of range."""
 
+    starts_enabled: bool = option(
+        True, doc="feed forward from the process's start on; false: not before ~/enable, however often it is restarted"
+    )
     follow_model_topic: bool = option(True, doc="take over the models that arrive on friction_model")
     model_delay: float = option(
         0.5, lower=0.0, upper=60.0, unit="s", doc="a learned model takes effect this long after its last measurement"
@@ -55,13 +58,14 @@ class CompensatorNode(WinchNode):
             "pressure_limit",
         )  # they change the pressure at once, which no ramp bounds
         self._config = OptionParameters(CompensatorConfig, fixed=fixed, keys=_a_gain_for_every_term)
-        self._own = OptionParameters(CompensatorNodeOptions)
+        self._own = OptionParameters(CompensatorNodeOptions, fixed=("starts_enabled",))
         self._files: Beside[FrictionModel] = Beside()
         self._moved = math.nan, math.inf  # the watchdog's clock when it moved last, and the steady one then, s
         self._said = ""  # why a learned model was refused, by the log
         self._models: Any = None  # the subscription of learned models, while active
-        self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("compensator", self._config, self._own, **node_arguments)
+        # whoever switched it off has to switch it on, whatever transitions come between
+        self._wanted = self._own.read(self).starts_enabled
 
     def build(self, crane: Crane, model: FrictionModel) -> None:
         """The feedforward law on its seed, its outputs and its switches."""
@@ -140,7 +144,8 @@ class CompensatorNode(WinchNode):
             self._publish(said)
 
     def _take_models(self) -> None:
-        for each in self.models.take():
+        taken = self.models.take()  # read before they were no longer wanted, perhaps
+        for each in taken if self.own.follow_model_topic else ():
             if isinstance(each, InputError):
                 self.service.refuse(str(each))
             else:
@@ -209,6 +214,8 @@ class CompensatorNode(WinchNode):
             self.own, config = self._own.read(self), self._config.read(self)
             self.service.configure(config, self._service_options())
             self.inputs.latest = self._latest(config)
+            if not self.own.follow_model_topic:
+                self.service.schedule.clear()
 
     def _needed(self) -> set[str]:
         """The topics without which nothing is fed forward."""

@@ -188,6 +188,7 @@ class EstimatorNode(WinchNode):
         """The topics without which nothing is learned."""
         topics = self.service.inputs.topics
         needed = {f"{g}.{c}" for g in topics.groups for c in ("pressure_a", "pressure_b", "displacement")}
+        needed |= set(self.crane.drive.channels)
         return {topics.speed_topic} | {t for t, source in topics.inputs.items() if needed & set(source.channels)}
 
     def _filter_health(self) -> Health:

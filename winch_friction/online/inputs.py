@@ -108,6 +108,7 @@ class InputGate:
         self._on_jump = on_jump
         self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit, on_held=self._note_arrival)
+        self._torque = crane.drive.channels  # the speed's message may bring it
         self._refusal = ""
         self._whole: Run | None = None  # at hand, each row of which shows all there is
         self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
@@ -187,8 +188,9 @@ class InputGate:
         if sample is None:
             self._refuse(arrivals, self._refusal or UNREADABLE)
             return None
-        self.last_stamp = stamp
-        self.last_arrival = now
+        if self._refusal.startswith(self._torque):
+            self._refuse(arrivals, self._refusal)
+        self.last_stamp, self.last_arrival = stamp, now
         self._without_stale(sample, now)
         return sample
 
@@ -219,8 +221,7 @@ class InputGate:
             self._came[column] = arrived
 
     def _refuse(self, arrivals: Arrivals, reason: str) -> None:
-        arrivals.refused += 1
-        arrivals.reason = reason
+        arrivals.refused, arrivals.reason = arrivals.refused + 1, reason
         arrivals.reasons[reason.split(": ")[0]] += 1
 
     # -- rows of a run

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH, limits_of
 from winch_friction.physics.friction.compiled import DEFAULTS, ORDER, group_point, operating_point
 from winch_friction.physics.signals import FloatArray, Run, Sample
 from winch_friction.physics.winch.crane import Crane
@@ -221,7 +221,7 @@ class ChannelRanges:
 
     def range(self, channel: str) -> tuple[float, float]:
         """Smallest and largest value of a channel (a run's column or its short name)."""
-        return self._ranges.get(channel.rpartition(".")[2], (-1.0e300, 1.0e300))
+        return self._ranges.get(channel.rpartition(".")[2]) or limits_of(channel)
 
     def plausible(self, channel: str, value: float) -> bool:
         """Whether this crane's channel can show this value; False for NaN."""

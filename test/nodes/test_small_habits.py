@@ -219,3 +219,10 @@ def test_an_activation_begins_anew(active: Any) -> None:
         node.service.inputs.last_stamp = 5000.0
         node.trigger_activate()
         assert node.service.inputs.last_stamp == float("-inf")
+
+
+@pytest.mark.parametrize(("report", "look"), [(1.0, 0.2), (60.0, 0.2), (0.1, 0.1)])
+def test_what_changes_is_looked_for_between_two_reports(active: Any, report: float, look: float) -> None:
+    node = active(CompensatorNode, diagnostics_period=report)
+    periods = sorted(timer.timer_period_ns * 1e-9 for timer in node.timers)
+    assert [each for each in periods if each > 0.05] == pytest.approx(sorted((look, report)))

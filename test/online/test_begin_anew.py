@@ -49,4 +49,4 @@ def test_a_consumer_that_begins_anew_takes_any_number() -> None:
     each.clear()
     assert each.value(1.0) == 0.0
     assert each.take(50.0, 1.02, "valid 1")
-    assert each.value(1.04) == 50.0
+    assert each.torque == 50.0

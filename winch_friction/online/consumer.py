@@ -12,7 +12,8 @@ RETURN_TIME = 0.2  # s in which it comes back after a silence
 
 @dataclass
 class HeldTorque:
-    """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step.
+    """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step; so is one
+    that stands already when the consumer begins.
 
     An `invalid` torque is a ramp to zero: it is followed, but not held beyond the next that is due. A torque that is
     not a number, larger than `largest` N m (what the crane's compensator may say at all), or that came before (by its
@@ -34,6 +35,8 @@ class HeldTorque:
         silent = now - self._came > self.hold_time
         if not abs(torque) <= self.largest or not math.isfinite(torque) or (0 <= number <= self._number and not silent):
             return False
+        if self._came == -math.inf:
+            self._gain = 0.0 if torque else 1.0
         self._update(now)
         self.torque, self._came, self._number = torque, now, number
         return True

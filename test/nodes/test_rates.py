@@ -78,3 +78,28 @@ def test_a_silence_is_said_when_the_input_counts_as_lost(heard: Heard, topic: st
     heard.hear(1.0)
     heard.hear(silent, without=(topic,))
     assert heard.health.report().level == level
+
+
+def test_an_optional_input_may_pause_longer_than_a_needed_one(heard: Heard) -> None:
+    """Half a second, or its own age limit where that is more."""
+    limits = [
+        heard.health._limit(topic, needed) for topic in ("winch/heave_velocity", LOAD) for needed in (True, False)
+    ]
+    assert limits == pytest.approx([0.1, 0.5, 2.0, 2.0])
+
+
+@pytest.mark.parametrize(("after", "said"), [(24, False), (26, True)])
+def test_a_message_that_is_overtaken_now_and_then_is_no_wrong_order(heard: Heard, after: int, said: bool) -> None:
+    heard.hear(1.0)
+    heard.health.report()
+    heard.hear(1.0)  # fifty messages
+    heard.gate.arrivals[PRESSURE].after += after
+    assert ("comes after the speed" in heard.health.report().summary) is said
+
+
+def test_a_needed_input_is_silent_from_its_age_limit_on(heard: Heard) -> None:
+    heard.hear(1.0)
+    heard.now += 0.09
+    assert heard.health.silent() == frozenset()
+    heard.now += 0.02
+    assert heard.health.silent() == {SPEED, PRESSURE}

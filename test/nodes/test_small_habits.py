@@ -17,7 +17,9 @@ from rclpy.clock import ROSClock
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 from rclpy.time import Time
+from std_msgs.msg import Float64
 
+from winch_friction.estimation import Estimate
 from winch_friction.nodes.base import ERROR, WARN
 from winch_friction.nodes.compensator import CompensatorNode
 from winch_friction.nodes.estimator import EstimatorNode
@@ -226,3 +228,53 @@ def test_what_changes_is_looked_for_between_two_reports(active: Any, report: flo
     node = active(CompensatorNode, diagnostics_period=report)
     periods = sorted(timer.timer_period_ns * 1e-9 for timer in node.timers)
     assert [each for each in periods if each > 0.05] == pytest.approx(sorted((look, report)))
+
+
+def test_a_silent_watch_counts_the_other_inputs(active: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    node, polled = active(CompensatorNode), []
+    monkeypatch.setattr(node.inputs, "poll", lambda: polled.append(True))
+    monkeypatch.setattr(node, "_publish", lambda said: None)
+    for said, looked in ((None, 0), ("a ramp", 1)):
+        monkeypatch.setattr(node.service, "tick", lambda _, said=said: said)
+        node._watch()
+        assert len(polled) == looked
+
+
+def test_a_backlog_is_as_old_as_the_age_limit_that_was_set(active: Any) -> None:
+    node = active(CompensatorNode)
+    node.set_parameters([Parameter("max_age", value=0.3)])
+    assert node.inputs.latest == 0.3
+    slow = active(CompensatorNode, watchdog_timeout=5.0)  # simulated time: nothing comes late
+    slow.set_parameters([Parameter("max_age", value=0.3)])
+    assert slow.inputs.latest == float("inf")
+
+
+def test_a_clock_that_stands_is_said_at_once(active: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    node, stands = active(CompensatorNode), [False]
+    monkeypatch.setattr(node, "_clock_stands", lambda: stands[0])
+    before = node.urgent()
+    stands[0] = True
+    assert node.urgent() != before
+
+
+def test_whether_anything_is_kept_is_known_before_anything_is_learned(active: Any, tmp_path: Any) -> None:
+    active(EstimatorNode, checkpoint=str(tmp_path / "learned.json"))
+    assert (tmp_path / "learned.json").is_file()
+
+
+@pytest.mark.parametrize(("accepted", "torque", "said"), [(True, 300.0, "valid"), (False, 300.0, "invalid")])
+def test_a_torque_whose_sample_was_rejected_is_not_valid(
+    active: Any, monkeypatch: pytest.MonkeyPatch, accepted: bool, torque: float, said: str
+) -> None:
+    node, came = active(EstimatorNode), []
+    monkeypatch.setattr(node, "_torque", SimpleNamespace(publish=came.append))
+    node._publish(Estimate(10.0, accepted, "steady", 0.0, 0.0, 0.0, 0.0, 50.0, torque))
+    assert came[0].header.frame_id.split()[0] == said
+
+
+def test_speeds_without_a_stamp_that_waited_together_are_all_taken(active: Any) -> None:
+    """A plain bridge's have no header to be late by."""
+    node = active(CompensatorNode, float64_inputs=["motor_speed"])
+    source = node.service.inputs.topics.inputs["winch/joint_states"]
+    waiting = [(Float64(data=float(k)), {}) for k in range(3)]
+    assert node.inputs._in_time(source, waiting) == waiting

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from winch_friction.nodes import run
 from winch_friction.nodes.inputs import ROS, Inputs
 from winch_friction.nodes.loop import Guarded, answered
 from winch_friction.nodes.run import Ending
@@ -71,3 +72,27 @@ def test_a_terminal_that_is_closed_is_an_end_but_not_under_nohup(before: signal.
     finally:
         for each, handler in kept.items():
             signal.signal(each, handler)
+
+
+@pytest.mark.parametrize(("good", "status"), [(True, 0), (False, 1)])
+def test_defects_end_a_node_only_in_a_row(monkeypatch: pytest.MonkeyPatch, good: bool, status: int) -> None:
+    """One a day would have ended it after three years of sailing."""
+    turns = iter(range(10_000))
+
+    class Turning:
+        def __init__(self, node: object) -> None:
+            self.node = node
+
+        def once(self) -> None:
+            turn = next(turns)
+            ending.asked = turn > 3 * run.MOST_DEFECTS
+            if turn % 2 or not good:
+                raise RuntimeError("a defect of the executor")
+
+        def end(self) -> None:
+            self.node = None
+
+    ending = SimpleNamespace(asked=False)
+    monkeypatch.setattr(run, "Loop", Turning)
+    monkeypatch.setattr(run.rclpy, "ok", lambda: True)
+    assert run._spin(SimpleNamespace(report_defect=lambda where: None), ending) == status

@@ -1,7 +1,7 @@
 """What begins anew remembers nothing of before: what is believed, what was read last, what was heard last."""
 
 import pytest
-from sea import CRANE, TOPICS
+from sea import CRANE, TOPICS, Fed
 
 from winch_friction.online.agreement import Plausibility
 from winch_friction.online.before_doubt import UNSEEN, BeforeDoubt
@@ -50,3 +50,12 @@ def test_a_consumer_that_begins_anew_takes_any_number() -> None:
     assert each.value(1.0) == 0.0
     assert each.take(50.0, 1.02, "valid 1")
     assert each.torque == 50.0
+
+
+def test_what_was_doubted_is_not_doubted_any_more_once_all_begins_anew() -> None:
+    fed = Fed()
+    fed.run(1.5, lambda sample: setattr(sample, "speed_reference", -sample.speed_reference))
+    assert fed.service.contradictions
+    fed.service.reset()
+    fed.run(0.1)
+    assert not fed.service.contradictions

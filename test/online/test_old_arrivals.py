@@ -3,8 +3,9 @@
 import math
 
 import pytest
-from sea import TOPICS, Fed, swell
+from sea import PERIOD, START, TOPICS, Fed, swell
 
+from winch_friction.online.inputs import ServiceOptions
 from winch_friction.physics.channels import SLOW_INPUTS
 
 LOAD = "winch/hook_load"
@@ -42,3 +43,14 @@ def test_a_load_that_stopped_stays_lost_while_speeds_go_on() -> None:
         if topic != LOAD
     ]
     assert math.isnan(samples[-1].hook_load)
+
+
+@pytest.mark.parametrize(("timeout", "state"), [(2.0, "fading"), (0.9, "stale")])
+def test_a_slow_simulation_makes_no_input_old(timeout: float, state: str) -> None:
+    """A pressure in every second scan is 0.02 s old, however long the simulator takes for one."""
+    fed = Fed(options=ServiceOptions(watchdog_timeout=timeout))
+    for k in range(20):
+        fed.now += 0.15
+        sample = swell(START + k * PERIOD)
+        fed.send(sample, skip=("winch/active/pressure_a",) if k % 2 else ())
+    assert fed.published[-1][1].state == state

@@ -12,8 +12,9 @@ RETURN_TIME = 0.2  # s in which it comes back after a silence
 
 @dataclass
 class HeldTorque:
-    """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step; so is one
-    that stands already when the consumer begins.
+    """The torque that is applied, N m: the last one that came, held, let go, and taken up again without a step.
+
+    One that stands already when the consumer begins is taken up the same way.
 
     An `invalid` torque is a ramp to zero: it is followed, but not held beyond the next that is due. A torque that is
     not a number, larger than `largest` N m (what the crane's compensator may say at all), or that came before (by its

@@ -9,6 +9,7 @@ from winch_friction.discrepancy.preparation.grid import (
     MAX_WIDENING,
     SMOOTHING_TIME,
     SPIKE_MARGIN,
+    digit_of,
     dilated,
     lagged,
     noise_level,
@@ -131,3 +132,14 @@ def test_a_margin_wider_than_the_record_covers_it_and_no_more():
     mask = np.array([False, True, False, False])
     assert dilated(mask, 1).tolist() == [True, True, True, False]
     assert dilated(mask, 6).tolist() == [True] * 4
+
+
+def test_the_digit_of_a_coarse_transducer_is_told_and_none_of_a_fine_one():
+    """Pa: ten bits over 400 bar step by 0.39 bar, and a channel held over three samples repeats as often."""
+    rng = np.random.default_rng(4)
+    fine = 2e7 + 4e6 * np.sin(DT * np.arange(4000)) + rng.normal(0.0, 3e4, 4000)
+    step = 4e7 / 1024
+    assert digit_of(np.round(fine / step) * step) == pytest.approx(step)
+    assert digit_of(fine) == 0.0
+    assert digit_of(np.repeat(fine, 3)) < 1e3
+    assert digit_of(np.round(fine[:200] / step) * step) == 0.0  # too few values to tell chance from a digit

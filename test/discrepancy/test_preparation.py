@@ -183,6 +183,19 @@ def test_a_drives_torque_has_a_zero_like_a_transducer():
     assert 0.15 * zero == pytest.approx(np.full(5, 1.5 * 1e-3 * 300.0))
 
 
+def test_a_coarse_transducer_may_be_off_by_its_own_step():
+    """10 bits over 400 bar step by 0.39 bar: 0.3 bar of the passive side were a zero of a winch that lacks nothing."""
+    ones, step = np.ones(1000), 4e7 / 1024
+    drop = np.round((2e7 + 4e6 * np.sin(0.01 * np.arange(1000)) + 5e4 * np.sin(1e5 * np.arange(1000.0))) / step) * step
+    columns = {"main.pressure_a": drop, "main.pressure_b": 2e6 * ones, "main.displacement": 3e-5 * ones}
+    run = Run("coarse", {"time": 0.02 * np.arange(1000), "motor_speed": ones, **columns})
+    crane = SimpleNamespace(motor_count=lambda name: 11, max_displacement=3.5e-5)
+    (own,) = measured_groups(columns, run, crane, 15)
+    bar = 11 * own.displacement * BAR
+    np.testing.assert_allclose(0.15 * own.of_zero(0.15), step / BAR * bar)
+    np.testing.assert_allclose(replace(own, digit=1e3).of_zero(0.15), bar)  # a fine one's is no less than before
+
+
 def test_where_port_b_is_the_higher_the_operating_point_has_its_pressure(crane_150t, crane2_model):
     prepared = meet(runs_with(917, "quiet", length=0.3), crane_150t, crane2_model).prepared
     names, seen = [signal.name for signal in GROUP_SIGNALS], 0

@@ -26,7 +26,7 @@ from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, pro
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.channels import BAR, GRAVITY
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
@@ -42,7 +42,7 @@ TOLERANCES = (
     ("weight", 5e-4, -1e-3, 1e-3),  # relative: local gravity, a calibrated load cell
     ("inertia", 5e-3, -1e-2, 1e-2),  # relative
     ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
-    # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar
+    # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar, or a coarser one's
     *((name, STEP / 3.0, -STEP, STEP) for name in ("zero", "passive zero")),
 )
 LINE, CHURNING = "line_pressure_drop", "churning"
@@ -197,7 +197,7 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     weight = run.load * run.radius / run.gear_ratio * GRAVITY
     inertia = run.inertia * run.acceleration * (UNSURE if run.dt > SPARSEST else 1.0)
     zeros = [
-        sum((g.count * g.displacement * BAR for g in run.groups if g.balances is own), np.zeros(len(run.time)))
+        sum((g.of_zero(STEP) for g in run.groups if g.balances is own), np.zeros(len(run.time)))
         for own in (True, False)
     ]
     if not run.groups:  # its torque is known from elsewhere, and steps by a share of the rated one

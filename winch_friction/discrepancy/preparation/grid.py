@@ -25,6 +25,7 @@ FEWEST_FOR_NOISE = 8  # samples, five third differences
 # of the second differences' deviation, that counts as noise at least: an encoder's steps may be so rare that the median
 # of the third differences sees none
 RARE_STEPS = 0.1
+FEWEST_LEVELS = 50  # of a channel: of fewer that are spread by chance over 100 bar, two may lie 0.15 bar apart
 SMOOTHING_TIME = 0.3  # s: short against a wave, long against an encoder's step
 FEWEST_SMOOTHED = 5  # samples: a parabola through fewer smooths nothing
 WIDE = 61  # samples of a window
@@ -89,6 +90,15 @@ def noise_level(values: FloatArray) -> float:
         return 0.0
     third = np.diff(values, 3)
     return float(OF_MEDIAN * np.median(np.abs(third - np.median(third))) / THIRD_DIFFERENCE)
+
+
+def digit_of(values: FloatArray) -> float:
+    """The step by which a channel is written, where its values stand there more than once; 0 where none can be told."""
+    known = values[np.isfinite(values)]
+    levels = np.unique(known)
+    if len(levels) < FEWEST_LEVELS or 2 * len(levels) > len(known):
+        return 0.0
+    return float(np.diff(levels).min())
 
 
 def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:

@@ -14,6 +14,7 @@ from scipy.ndimage import binary_opening
 from winch_friction.discrepancy.preparation.grid import (
     THIRD_DIFFERENCE,
     Grid,
+    digit_of,
     dilated,
     noise_level,
     samples_of,
@@ -22,6 +23,7 @@ from winch_friction.discrepancy.preparation.grid import (
     speed_window,
     uniform,
 )
+from winch_friction.physics.channels import BAR
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch import Crane
@@ -192,6 +194,12 @@ class GroupSignals:
     displacement: FloatArray
     balances: bool  # closes the torque balance: its pressure is predicted
     logged: FloatArray  # the drop as it was measured, smoothed
+    digit: float = 0.0  # Pa by which the coarser of its pressures is written; 0 where that cannot be told
+
+    def of_zero(self, step: float) -> FloatArray:
+        """Torque at the shaft in N m of an error of both transducers of 1 bar, or by as much more as their digit is
+        coarser than a `step` of so many bar."""
+        return self.count * self.displacement * max(BAR, self.digit / step)
 
 
 Groups = tuple[GroupSignals, ...]
@@ -262,7 +270,8 @@ def _measured(
     if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
         raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
     drop, total, low = (smooth(each, 2 * window) for each in (a - b, a + b, np.minimum(a, b)))
-    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop)
+    digit = max(digit_of(run[f"{name}.{port}"]) for port in ("pressure_a", "pressure_b"))
+    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop, digit)
 
 
 def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:

@@ -112,3 +112,44 @@ def test_a_speed_that_hangs_leaps_when_it_wakes_and_one_that_rests_does_not():
     begun = np.where(TIME < 10.0, 0.0, np.round(20.0 - 20.0 * np.cos(TIME - 10.0), 1))
     started = log(motor_speed=(slice(0, None), begun))
     assert mended(started) == ({}, [])
+
+
+def swell(top, period=5.0, digit=0.15, **more):
+    speed = np.round(60.0 * np.sin(2.0 * np.pi / period * TIME) / digit) * digit
+    return log(motor_speed=(slice(None), np.clip(speed, -top, top)), **more)
+
+
+def test_a_speed_that_is_cut_off_at_the_end_of_its_range_was_not_measured():
+    """Lifts and heave compensation of a drive that logs no more than 1000 rpm: 13 bar of gap, named by nothing."""
+    missing, notes = mended(swell(45.0))
+    assert len(notes) == 1
+    assert notes[0].startswith("r.csv: motor_speed is cut off at an end of its range for 2")
+    assert missing == {"motor_speed": pytest.approx(1400, abs=60)}
+
+
+def test_the_end_of_a_range_is_the_same_in_every_run():
+    lift = np.concatenate([np.zeros(500), 0.1 * np.arange(1250), 0.1 * np.arange(1250)[::-1]])
+    noise = 0.15 * np.round(np.random.default_rng(1).standard_normal(3000))
+    up = log(motor_speed=(slice(None), np.minimum(lift + noise * (lift > 0.0), 45.0)))
+    assert mended(up)[1] == []  # by itself it may have gone so fast
+    runs, told = without_broken([up, swell(45.0)])
+    assert [each.what.partition(" for ")[0] for each in told] == ["is cut off at an end of its range"] * 2
+    assert np.isnan(runs[0]["motor_speed"]).sum() > 1000
+
+
+@pytest.mark.parametrize("digit", [0.01, 0.15, 0.6, 2.0])
+def test_a_crest_that_rests_on_a_coarse_digit_is_no_end_of_a_range(digit):
+    assert mended(swell(1e9, digit=digit)) == ({}, [])
+    assert mended(swell(1e9, 20.0, digit)) == ({}, [])
+
+
+def test_a_plateau_is_no_end_of_a_range():
+    """An ideal ramp up and down, a speed that is never below zero and rests there, a transmitter that holds."""
+    up_and_down = np.clip(200.0 * (np.abs((TIME / 10.0) % 1.0 - 0.5) - 0.25), -45.0, 45.0)
+    assert mended(log(motor_speed=(slice(None), np.clip(up_and_down, -10.0, 10.0)))) == ({}, [])
+    noise = 0.15 * np.round(np.random.default_rng(2).standard_normal(3000))
+    lifts = np.maximum(60.0 * np.sin(1.2 * TIME) + 50.0, 0.0)
+    assert mended(log(motor_speed=(slice(None), lifts + noise * (lifts > 1.0)))) == ({}, [])
+    held = swell(45.0)
+    held.columns["motor_speed"] = np.repeat(held["motor_speed"][::5], 5)
+    assert mended(held) == ({}, [])

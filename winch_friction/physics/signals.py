@@ -3,7 +3,7 @@
 Everything is SI. An absent scalar is NaN in a `Sample` and a missing key in a `Run`.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from itertools import repeat
 from typing import Any
@@ -165,3 +165,44 @@ class Run:
         if column not in self.columns:
             return repeat(NAN)
         return iter(np.ascontiguousarray(self.columns[column], np.float64).data)
+
+
+# -- a channel that is cut off at an end of its sensor's range
+AT_END, SPELLS = 5, 3  # samples in a row at an end, and how often: a crest rests there once or twice
+ENTERED = 3  # steps before a spell and after it, by which it is entered and left
+SLOPE = 0.5  # of the usual step: a crest of coarse digits is entered by a fifth of it, a ramp that is cut off by most
+CHANGES = 0.8  # of the other steps, in which a channel of fine digits changes; an ideal ramp rests elsewhere as well
+MOST_AT_END = 0.5  # of the samples that are not zero; more are a plateau, and no end of a range
+
+
+def ends_of_range(values: FloatArray) -> tuple[float, ...]:
+    """The ends of a sensor's range that what is measured has passed: the channel comes there by the steps that it
+    usually makes, stays there to the last digit again and again, and never goes beyond; none of any other channel."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return ()
+    at = np.isin(values, [each for each in (known.min(), known.max()) if each != 0.0])  # at zero a winch stands
+    spells = _spells(at)
+    inside = [(a, b) for a, b in spells if a > ENTERED and b + ENTERED < len(values)]
+    steps = np.abs(np.diff(values))
+    others = steps[~(at[1:] | at[:-1]) & (values[1:] != 0.0) & np.isfinite(steps)]
+    if len(inside) < SPELLS or not len(others) or at.sum() > MOST_AT_END * np.sum(known != 0.0):
+        return ()
+    ways = [(values[a - 1] - values[a - 1 - ENTERED], values[b] - values[b + ENTERED]) for a, b in inside]
+    slopes = np.array([min(map(abs, way)) for way in ways]) / ENTERED
+    ramps = np.nanmedian(slopes) >= SLOPE * np.median(others)
+    rests = {float(values[a]) for a, _ in spells}
+    return tuple(sorted(rests)) if ramps and np.mean(others > 0.0) >= CHANGES else ()
+
+
+def cut_off(values: FloatArray, ends: Iterable[float]) -> NDArray[np.bool_]:
+    """Samples (samples,) that stay at one of the ends of a range, which says nothing but that it was passed."""
+    cut = np.zeros(len(values), bool)
+    for a, b in _spells(np.isin(values, list(ends))):
+        cut[a:b] = True
+    return cut
+
+
+def _spells(at: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], at, [False]])))
+    return [(a, b) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a >= AT_END]

@@ -2,8 +2,8 @@
 them nobody measured: the silence between records that were merged into one file, and samples of a channel that stands
 still while the others live, or jumps; for `gap` and `check` alike.
 
-A transmitter that hangs repeats its last value to the last digit, and where what it measures moved on meanwhile it
-leaps when it wakes; a lost telegram is one sample of 0 or of full scale. They are made missing, and said.
+A transmitter that hangs repeats its last value, and leaps when it wakes where what it measures moved on; a lost
+telegram is one sample of 0 or of full scale. They are made missing, and said.
 """
 
 import itertools
@@ -16,7 +16,7 @@ import numpy as np
 
 from winch_friction.physics.channels import GROUP_CHANNELS, SLOW_INPUTS
 from winch_friction.physics.errors import InputError, Problems, counted
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run, cut_off, ends_of_range
 from winch_friction.physics.winch.crane import Crane, held
 from winch_friction.records.run_checks import rows_between
 
@@ -98,10 +98,9 @@ def refuse_unknown_kind(path: Path) -> Path:
 
 
 # -- columns of a slower logger
-# A logger of several rates leaves cells empty in between. What changes slowly beside the motion (a load, a temperature,
-# a setting) is held at its latest value, as the nodes hold their inputs; what follows it (a pressure, a force) is taken
-# between its neighbours in time, for held ones come late. The speed alone says which rows are looked at: its change is
-# the acceleration.
+# A logger of several rates leaves cells empty in between. What changes slowly (a load, a temperature, a setting) is
+# held at its latest value, as the nodes hold their inputs; what follows the motion (a pressure, a force) is taken
+# between its neighbours in time, for held ones come late. The speed says which rows are looked at.
 SPEED = "motor_speed"
 HELD = (*SLOW_INPUTS, "displacement")  # all others follow the motion
 SCATTERED = 0.5  # of a channel's values, whose next row has one too: of fewer no noise can be told, and no balance made
@@ -208,6 +207,7 @@ class Broken:
 def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
     """The runs with what nobody measured as NaN, and what is said of these."""
     found, told = list[Run](), list[Broken]()
+    ends = {end for run in runs if SPEED in run for end in ends_of_range(run[SPEED])}  # one sensor's, in all of them
     for run in runs:
         own = {name: run[name] for name in run.columns if name.rpartition(".")[2] in MEASURED}
         changes = {name: np.abs(np.diff(values)) > 0.0 for name, values in own.items()}
@@ -219,13 +219,14 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
             still, jumping = find(run.time, values, changes[name], others), _jumping(values)
             jumping &= ~turning | (find is _hanging)
             dropped = _dropped(values) if name.endswith(PRESSURES) else np.zeros(len(values), bool)
-            spells = {"stands still": still, "drops to zero": dropped}
+            cut = cut_off(values, ends if name == SPEED else ())
+            spells = {"stands still": still, "drops to zero": dropped, "is cut off at an end of its range": cut}
             told += [Broken(run.name, name, f"{what} for {np.diff(run.time)[each[1:]].sum():.3g} s")
                      for what, each in spells.items() if each.any()]  # fmt: skip
             if jumping.any():
                 samples = counted(int(jumping.sum()), "single sample", "single samples")
                 told.append(Broken(run.name, name, f"jumps in {samples}"))
-            if (lost := still | jumping | dropped).any():
+            if (lost := still | jumping | dropped | cut).any():
                 mended[name] = np.where(lost, np.nan, values)
         found.append(replace(run, columns=mended))
     return found, told
@@ -281,8 +282,7 @@ def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> l
 
 def _jumping(values: FloatArray) -> np.ndarray:
     """Single samples (samples,) far from both of their neighbours."""
-    none = np.zeros(len(values), bool)
-    if len(values) < FEWEST:
+    if len(none := np.zeros(len(values), bool)) < FEWEST:
         return none
     middle = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
     off = np.abs(values[1:-1] - middle)

@@ -51,3 +51,19 @@ def test_a_channel_that_is_wrong_beside_the_balance_is_in_the_first_line(crane_1
     )
     assert result.sentence.endswith("times the speed")
     assert check([run], crane_150t, crane2_model, dict).sentence.endswith("closes the torque balance")
+
+
+@pytest.mark.parametrize(
+    ("channel", "factor", "unit"),
+    [("wire_out", 1000.0, "mm under [m]"), ("speed_reference", 30.0 / 3.14159, "rpm under [rad/s]")],
+)
+def test_a_channel_that_tells_the_speed_in_another_unit_is_refused(crane_150t, crane2_model, channel, factor, unit):
+    """A wire in mm in two runs of ten was "0.998 times the speed", and a stroke of a winch that lacks nothing."""
+    folder = config_directory() / "examples" / "practice_150t"
+    runs = [read_run(folder / f"test_0{k}.parquet") for k in (2, 3, 4)]
+    columns = {"speed_reference": runs[1]["motor_speed"], **runs[1].columns}
+    runs[1] = replace(runs[1], columns={**columns, channel: factor * columns[channel]})
+    (found,) = [each for each in quick_check(runs, crane_150t, crane2_model, dict) if each.contradicts]
+    assert found.sentence.startswith(f"{channel} contradicts motor_speed")
+    assert f" times the speed ({unit}?); with that put right" in found.sentence
+    assert channel == "speed_reference" or " in test_03.parquet: it tells " in found.sentence

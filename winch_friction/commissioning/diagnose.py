@@ -21,7 +21,7 @@ from winch_friction.commissioning.kinematics import (
 )
 from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
-from winch_friction.physics.channels import GRAVITY
+from winch_friction.physics.channels import GRAVITY, RPM
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 
@@ -58,6 +58,14 @@ def _is_usual_unit(mistake: Mistake) -> bool:
 COMPANION = 20.0  # prior cost of a wrong channel that only tells the speed again: above that of a mixed set of runs
 NOTICED = 0.5  # of the score left: a mistake is worth naming only when it takes at least half away
 MIXED = 10.0  # for a mistake that only some of the runs hold
+ODD = 0.5  # of the worst score of a channel that tells the speed again: the runs in which it is wrong
+EXACT = 0.05  # relative, by which a unit's factor is met: a layer's radius is off by 30 % at most
+# what tells the speed again in another unit: (times the speed, in words)
+UNITS = {
+    "wire_out": ((1000.0, "mm under [m]"), (100.0, "cm under [m]"), (1.0 / 0.3048, "ft under [m]")),
+    "shaft_angle": ((180.0 / np.pi, "deg under [rad]"), (0.5 / np.pi, "turns under [rad]")),
+    "speed_reference": ((1.0 / RPM, "rpm under [rad/s]"), (RPM, "rad/s under [rpm]")),
+}
 HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
 DELAYS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 2.8, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
 PAIR_RUNS = 2  # on these every pair of mistakes is tried: there are hundreds
@@ -260,8 +268,13 @@ def _companions(views: Sequence[RunView]) -> list[Mistake]:
         def undo(view: RunView, channel: str = channel) -> RunView:
             return replace(view, rates={n: v for n, v in view.rates.items() if n != channel})
 
-        ratios = [a.ratio for v in views for a in agreements(v) if a.channel == channel]
-        ratio = float(np.median(ratios)) if ratios else 1.0
-        words = f"{channel} contradicts motor_speed: it tells {ratio:.3g} times the speed"
-        found.append(Mistake("companion", channel, words, COMPANION, undo, ratio))
+        told = [(v.name, a) for v in views for a in agreements(v) if a.channel == channel]
+        worst = max((a.score for _, a in told), default=0.0)
+        odd = {name: a.ratio for name, a in told if a.score >= ODD * worst}
+        ratio = float(np.median(list(odd.values()))) if odd else 1.0
+        where = f" in {', '.join(odd)}" if 0 < len(odd) < len(told) else ""
+        unit = next((said for f, said in UNITS.get(channel, ()) if abs(ratio / f - 1.0) < EXACT), "")
+        words = f"{channel} contradicts motor_speed{where}: it tells {ratio:.3g} times the speed"
+        words += f" ({unit}?)" if unit else ""
+        found.append(Mistake("unit" if unit else "companion", channel, words, COMPANION, undo, ratio))
     return found

@@ -173,6 +173,7 @@ def run_gap(
 ) -> tuple[dict[str, Any], Collection[str]]:
     """The workflow from files to files; returns the content of gap.json, and which of its notes were warnings."""
     from winch_friction.cli.provenance import provenance_of
+    from winch_friction.commissioning.check import same_recordings
     from winch_friction.discrepancy.answer import STEPS, GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.friction.model import unstated
@@ -194,7 +195,7 @@ def run_gap(
     crane = load_model(MODEL).crane if assumed else crane
     conventions = bag_options_of(params_file) if params_file is not None else {}
     read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
-    warned = [each for run in read for each in run.warnings]
+    warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)
     refuse_copies(read)
     read = _simulated(read, fmu, fmu_map)

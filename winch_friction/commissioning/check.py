@@ -6,6 +6,7 @@ and the single mistakes.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 
@@ -34,7 +35,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.runs import apart
+from winch_friction.records.runs import MEASURED, apart
 
 # -- runs against each other
 FEWEST = 3  # runs of a motor group, for most of them to say what is usual
@@ -67,6 +68,50 @@ def lone_units(runs: Sequence[Run]) -> Iterator[Finding]:
                     f"{usual / BAR:.3g}: {words} there?"
                 )
                 yield Finding("error", "unit", said, channel, names, {"factor": factor, "usual": usual})
+
+
+# -- one recording that is given twice
+BIN = 1.0  # s; means over it hardly feel the digits and stamps that another export has rounded
+SAME = 2e-3  # of what a channel varies by, noise included, that means of two exports differ by; of two drives more
+FEWEST_BINS = 10  # in which both have a value: a piece of so many seconds can be told
+
+
+def same_recordings(runs: Sequence[Run]) -> list[str]:
+    """What is to be said of each two runs of which one is the other once more, or a piece of it, in another export: by
+    their clocks or from their beginnings on, speed and torque's channels are the same within the digits."""
+    means = [(run, _means(run, 0.0), _means(run, run.time[0])) for run in runs]
+    return [
+        f"{one.name} and {two.name} seem to be one recording, given twice: what one teaches the other cannot prove; "
+        "give each run once"
+        for (one, *by_one), (two, *by_two) in combinations(means, 2)
+        if any(_same(one, a, b) for a, b in zip(by_one, by_two, strict=True))
+    ]
+
+
+_Means = tuple[FloatArray, dict[str, FloatArray]]
+
+
+def _means(run: Run, origin: float) -> _Means:
+    """Whole bins of time from an origin, and the means of what is measured fast in each of them."""
+    bins = np.floor((run.time - origin) / BIN)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(bins)) + 1])
+    counts = np.diff(np.concatenate([starts, [len(run)]]))
+    inner = slice(1, -1)  # the others may be cut
+    names = [name for name in run.columns if name.rpartition(".")[2] in MEASURED]
+    return bins[starts][inner], {name: (np.add.reduceat(run[name], starts) / counts)[inner] for name in names}
+
+
+def _same(run: Run, one: _Means, two: _Means) -> bool:
+    """Whether the means of two runs, the first of this one, are the same wherever both have a value."""
+    _, a, b = np.intersect1d(one[0], two[0], return_indices=True)
+    if len(a) < FEWEST_BINS or one[1].keys() != two[1].keys():
+        return False
+    for name in one[1]:
+        off = one[1][name][a] - two[1][name][b]
+        good = np.isfinite(off)
+        if good.sum() < FEWEST_BINS or np.sqrt(np.mean(off[good] ** 2)) > SAME * np.nanstd(run[name]):
+            return False
+    return True
 
 
 # -- channels that nobody measured

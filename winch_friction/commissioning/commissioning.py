@@ -6,7 +6,7 @@ from typing import Any
 
 from winch_friction.commissioning.balance import Closure
 from winch_friction.commissioning.channels import SEVERITIES, Finding, first_contradiction
-from winch_friction.commissioning.check import Others, diagnosed
+from winch_friction.commissioning.check import Others, diagnosed, same_recordings
 from winch_friction.commissioning.diagnose import Diagnosis
 from winch_friction.commissioning.excitation import Taught, log_next, taught
 from winch_friction.commissioning.kinematics import CONTRADICTS, Agreement, agreements
@@ -119,6 +119,7 @@ def check(
         ),
     ]
     per_channel += [Finding("note", "gaps", said, "time") for said in holes]
+    per_channel += [Finding("warning", "copy", said, "time") for said in same_recordings(runs)]
     # a stable sort: the diagnosis stays first among what is equally grave
     findings = sorted([*findings, *per_channel], key=lambda finding: SEVERITIES.index(finding.severity))
     views = views_of([(run, crane) for run in runs if run.name in diagnosis.names])

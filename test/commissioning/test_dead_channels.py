@@ -41,6 +41,17 @@ def test_a_winch_that_really_rests_is_no_contradiction(run):
     assert "does not move long enough" in check([resting], CRANE).sentence  # nor a proof: nothing was compared
 
 
+def test_a_log_of_changes_alone_is_not_said_to_rest(run):
+    """Its values stand alone between rows without one: a balance has none of them at once."""
+    kept = np.random.default_rng(2).random((len(run), len(run.columns))) < 0.003
+    kept[0] = kept[-1] = True
+    columns = {n: np.where(kept[:, k], v, np.nan) for k, (n, v) in enumerate(run.columns.items()) if n != "time"}
+    result = check([replace(run, columns={"time": run.time, **columns})], CRANE)
+    assert "and those stand alone: log it in every row" in result.sentence
+    assert "does not move" not in result.sentence
+    assert "has no value in 1e+02 %" not in " ".join(each.sentence for each in result.findings)
+
+
 @pytest.mark.parametrize("load", [0.0, 1.0])
 def test_a_hook_load_of_zero_while_the_motors_hold_tonnes_is_a_dead_cell(run, load):
     found = first_contradiction(quick_check([with_constant(run, hook_load=load)], CRANE))

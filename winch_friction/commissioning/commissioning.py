@@ -17,7 +17,7 @@ from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.runs import apart, without_broken
+from winch_friction.records.runs import apart, scattered, without_broken
 
 SCHEMA = "winch_friction.check/1"
 
@@ -72,10 +72,9 @@ class CheckResult:
                 "torque balance open than ordinary errors do, which may be this drive's own friction and inertia"
             )
         if all(each.before != each.before for each in self.balance):
-            return (
-                f"plausible, not confirmed: nothing contradicts {runs} {whose}, but the winch does not move long "
-                "enough in them to compare torques; log hoisting and lowering"
-            )
+            lost = next((f"in {run.name} {said}" for run in self.runs if (said := scattered(run))), "")
+            still = "the winch does not move long enough in them to compare torques; log hoisting and lowering"
+            return f"plausible, not confirmed: nothing contradicts {runs} {whose}, but {lost or still}"
         wrong = next((each.sentence.partition("; ")[0] for each in self.findings if each.cause == "companion"), "")
         but = f", but {wrong}" if wrong else ""
         return f"plausible: {runs} {whose} close{'s' if count == 1 else ''} the torque balance{but}"

@@ -64,7 +64,7 @@ def channel_findings(run: Run) -> Iterator[Finding]:
         kind = each.channel.rpartition(".")[2]
         yield from _span_findings(run, each, kind)
         if each.missing > 0.0:
-            said = f"{run.name}: {each.channel} has no value in {100 * each.missing:.2g} % of the samples"
+            said = f"{run.name}: {each.channel} has no value in {100 * each.missing:.3g} % of the samples"
             yield Finding("note", "missing", said, each.channel, (run.name,), {"share": each.missing})
 
 

@@ -10,6 +10,7 @@ from winch_friction.importing.units import bare_unit, looks_like_unit
 
 _SEEN = 300  # rows looked at for the beginning of the values
 _RUN = 4  # rows of values in a row that make a beginning
+_ALIKE = 0.9  # of the rows of values, that end in the same column or beside it unless cells stay empty
 _HEAD = 30  # rows above the values among which a row of labelled units is looked for
 _ABOVE = 5  # rows above the values among which names and units are looked for
 
@@ -35,11 +36,15 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
         return None
     width = max(widths, key=lambda w: (widths[w], w))
     good = [_share_of_values(row, decimal, thousands) >= 0.4 and abs(_width(row) - width) <= 1 for row in seen]
+    # a logger that writes changes leaves the other cells empty
+    if sum(widths[w] for w in (width - 1, width, width + 1)) < _ALIKE * sum(widths.values()):
+        good = [_share_of_values(row, decimal, thousands, 1) >= 0.4 for row in seen]
     run = min(_RUN, sum(good))
     first = next((k for k in range(len(seen)) if all(good[k : k + run]) and len(good[k : k + run]) == run), None)
     if first is None:
         return None
-    above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, decimal, thousands)]
+    marks = decimal, thousands
+    above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, *marks, len(seen[first]))]
     units = next((k for k in reversed(above) if _is_unit_row(seen[k])), -1)
     if units < 0:  # a program's head: a property a row, each behind its label
         head = range(max(0, first - _HEAD), first)
@@ -68,22 +73,25 @@ def _width(row: Row) -> int:
     return len(cells)
 
 
-def _share_of_values(row: Row, decimal: str, thousands: str) -> float:
+def _share_of_values(row: Row, decimal: str, thousands: str, fewest: int = 2) -> float:
     cells = [cell for cell in row if not is_missing(cell)]
-    if len(cells) < 2:
+    if len(cells) < fewest:
         return 0.0
     values = sum(is_number(cell, decimal, thousands) or is_time(cell) for cell in cells)
     return values / len(cells)
 
 
-def _is_heading(row: Row, width: int, decimal: str, thousands: str) -> bool:
+def _is_heading(row: Row, width: int, decimal: str, thousands: str, whole: int) -> bool:
+    """A row of texts above values that end in column `width`, in rows of `whole` cells: names may stand above columns
+    that have no value for long."""
     cells = [cell for cell in row if not is_missing(cell)]
     texts = [
         cell
         for cell in cells
         if isinstance(cell, str) and not is_number(cell, decimal, thousands) and not is_time(cell)
     ]
-    return len(cells) >= max(2, width // 2) and len(texts) >= 0.7 * len(cells) and _width(row) <= width + 1
+    fits = _width(row) <= width + 1 or (len(cells) == len(row) == whole)
+    return len(cells) >= max(2, width // 2) and len(texts) >= 0.7 * len(cells) and fits
 
 
 def _is_labelled_unit_row(row: Row, width: int) -> bool:

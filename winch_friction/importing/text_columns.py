@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from winch_friction.importing.cells import as_column, plain_numbers
+from winch_friction.importing.cells import NO_VALUE, as_column, is_number, is_time, plain_numbers
 from winch_friction.importing.group_names import with_groups
 from winch_friction.importing.layout import Layout
 from winch_friction.importing.log import LogColumn, unique_names
@@ -16,32 +16,51 @@ from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import FloatArray
 
 _BLOCK = 4096  # rows cut at once: a few MB of cells
+FEW = 0.5  # of the columns: what has more cells is a row, whatever its first one says
 _TOGETHER = 4  # columns of other cells than plain numbers that are kept whole at a time
 
 
 class Body:
     """The rows of values below a layout's head; `numbers`: the line of each.
 
-    The names and units that a logger writes again whenever it starts a page are left out (`repeated`: their lines);
-    `short`: lines with fewer cells than columns.
+    The names and units that a logger writes again whenever it starts a page are left out (`repeated`: their lines), and
+    so are its words between the rows or below them (`remarks`); `short`: lines with fewer cells than columns.
     """
 
-    def __init__(self, rows: TextRows, layout: Layout) -> None:
-        self._rows, self._layout = rows, layout
+    def __init__(self, rows: TextRows, layout: Layout, marks: tuple[str, str]) -> None:
+        self._rows, self._layout, self._marks = rows, layout, marks
         self._heads = [rows.row(k) for k in (layout.names, layout.units) if k >= 0]
         names = rows.row(layout.names)
         self.width = max(layout.width, len([c for c in names if c.strip()]))
-        self.numbers, self.repeated, self.short = array("l"), array("l"), array("l")
+        self._valued = _is_value(next(iter(rows.row(layout.first)), ""), marks)  # the first cell of its rows
+        self.numbers, self.repeated, self.short, self.remarks = array("l"), array("l"), array("l"), array("l")
         for n, row in enumerate(rows):
-            if n >= layout.first:
-                number = rows.numbers[n]
-                (self.repeated if row in self._heads else self.numbers).append(number)
-                if row not in self._heads and len(row) < self.width - 1:
+            if n < layout.first:
+                continue
+            number = rows.numbers[n]
+            if row in self._heads:
+                self.repeated.append(number)
+            elif self._is_remark(row):
+                self.remarks.append(number)
+            else:
+                self.numbers.append(number)
+                if len(row) < self.width - 1:
                     self.short.append(number)
+
+    def _is_remark(self, row: list[str]) -> bool:
+        """Whether a row holds a few cells and begins with a word where the others have a time or a number."""
+        first = row[0].strip()
+        if not self._valued or not first or first[0].isdigit() or first.lower() in NO_VALUE:
+            return False
+        few = sum(bool(cell.strip()) for cell in row) <= FEW * self.width
+        return few and not _is_value(first, self._marks)
 
     def blocks(self) -> Iterator[list[list[str]]]:
         """The rows, all of one width, a block at a time."""
-        body = (row for row in islice(self._rows, self._layout.first, None) if row not in self._heads)
+        body = (
+            row for row in islice(self._rows, self._layout.first, None)
+            if row not in self._heads and not self._is_remark(row)
+        )  # fmt: skip
         while block := [padded(row, self.width) for row in islice(body, _BLOCK)]:
             yield block
 
@@ -52,11 +71,17 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
 
     Raises `InputError` for more cells than names.
     """
-    body = Body(rows, layout)
+    body = Body(rows, layout, marks)
     width = body.width
     if body.repeated:
         notes.append(
             f"the header stands {counted(len(body.repeated), 'time', 'times')} more (line {body.repeated[0]}): left out"
+        )
+    if body.remarks:
+        said = " | ".join(cell for cell in rows.row(rows.index_of_line(body.remarks[0])) if cell.strip())[:60]
+        notes.append(
+            f"{counted(len(body.remarks), 'line is', 'lines are')} no row of values (line {body.remarks[0]}: "
+            f"'{said}'): left out"
         )
     if body.short:
         shown = ", ".join(map(str, body.short[:3]))
@@ -82,6 +107,10 @@ def read_columns(rows: TextRows, layout: Layout, marks: tuple[str, str], delimit
         for k, cells in _cells(body, others[at : at + _TOGETHER]).items():
             found[k] = as_column(heads[k][0], cells, *marks, heads[k][1], heads[k][2])
     return [found[k] for k in range(width)], body.numbers
+
+
+def _is_value(cell: str, marks: tuple[str, str]) -> bool:
+    return is_number(cell, *marks) or is_time(cell)
 
 
 def _numbers(body: Body, marks: tuple[str, str]) -> dict[int, FloatArray]:

@@ -112,11 +112,11 @@ def scattered(run: Run) -> str:
     values come in a rhythm (`filled`), but cells lost at random. Nothing of a sound run."""
     for name in (each for each in run.columns if each.rpartition(".")[2] in OF_BALANCE):
         known = np.isfinite(run[name])
-        followed, of_all = float(np.sum(known[1:] & known[:-1])), float(np.sum(known))
-        if followed < SCATTERED * of_all:
-            share = float(np.mean(known))
+        if np.sum(known[1:] & known[:-1]) < SCATTERED * np.sum(known):
+            share = 100.0 * float(np.mean(known))
             return (
-                f"{name} has a value in {100.0 * share:.3g} % of the rows, and those stand alone: log it in every row"
+                f"{name} has a value in {share:.3g} % of the rows, and those stand alone: log it in every row, or hold "
+                "each value until the next one where a logger writes changes alone"
             )
     return ""
 

@@ -91,3 +91,14 @@ def test_a_logger_that_rested_for_an_hour_at_another_time_is_not(day, hour, aske
     begin = dt.datetime(2026, 3, day, hour, 59, 50, tzinfo=dt.UTC)
     given = np.concatenate([np.arange(0.0, 10.0, 0.5), np.arange(3610.0, 3620.0, 0.5)])
     assert bool(guess_time([local(begin, given, "UTC")], "").question) == asked
+
+
+def test_a_later_log_that_goes_back_by_an_hour_is_told_of_summer_time(crane_150t):
+    """Only the first log of a set was asked; of another "several recordings in one file?" was said."""
+    from winch_friction.importing.contradiction import contradictions
+
+    time = np.concatenate([np.arange(0.0, 10.0, 0.5), np.arange(-3590.0, -3580.0, 0.5)])
+    (said,) = contradictions({"b.csv": {"time": time}}, crane_150t)
+    assert "b.csv: time goes back by an hour after sample 20: the end of summer time? --set time.zone=" in said
+    (said,) = contradictions({"b.csv": {"time": time % 10.0}}, crane_150t)
+    assert "several recordings in one file?" in said

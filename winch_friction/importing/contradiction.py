@@ -6,6 +6,7 @@ import numpy as np
 
 from winch_friction.commissioning.check import quick_check
 from winch_friction.importing.balance import drive_torque, power_ratio
+from winch_friction.importing.summer_time import hour_back
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 
@@ -26,6 +27,11 @@ def _of_clock(name: str, columns: Mapping[str, FloatArray]) -> list[str]:
     if not len(steps) or steps.min() >= 0.0:
         return []
     back = int(np.argmin(steps))
+    if hour_back(time[np.isfinite(time)]):
+        return [
+            f"{name}: time goes back by an hour after sample {back + 1}: the end of summer time? --set time.zone=ZONE, "
+            "the log's (e.g. Europe/Oslo), takes it out; else cut the log there"
+        ]
     times = int(np.sum(steps < 0.0))
     return [
         f"{name}: time goes back {times} times, first after sample {back + 1} by {-float(steps[back]):.4g} s: several "

@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import FloatArray
 
 Place = Callable[[int], str]  # index of a row -> how a person finds it in the file
@@ -85,3 +85,41 @@ def own_name(name: str) -> str:
 def number_column(name: str, values: Any, unit: str = "", note: str = "") -> LogColumn:
     """A column of an array of numbers."""
     return LogColumn(name, np.asarray(values, dtype=float).ravel(), unit, note=note)
+
+
+# -- columns that say how good the one before them is, as historians and OPC servers write them
+_QUALITY = re.compile(r"(?:^|[^a-zäå])(?:quality|qualität|kvalitet)(?:$|[^a-zäå])", re.IGNORECASE)
+_GOOD = ("good", "gut", "god", "ok", "valid", "gültig", "gyldig")
+_NOT_GOOD = ("bad", "uncertain", "questionable", "invalid", "stale", "substituted", "schlecht", "unsicher", "ungültig",
+             "dårlig", "usikker", "ugyldig")  # fmt: skip
+_OPC_GOOD, _OPC_MOST = 192.0, 255.0  # of OPC's byte of quality: from 192 on good, from 64 uncertain, from 0 bad
+
+
+def without_bad_values(log: Log) -> Log:
+    """The log without the values of which the quality that stands behind them says anything but good."""
+    columns, notes = list(log.columns), list(log.notes)
+    for k in range(1, len(columns)):
+        value, quality = columns[k - 1 : k + 1]
+        bad = _bad_by(quality)
+        lost = np.zeros(0, bool) if bad is None else bad & np.isfinite(value.values)
+        if value.numeric and not _QUALITY.search(value.name) and lost.any():
+            columns[k - 1] = replace(value, values=np.where(lost, np.nan, value.values))
+            notes.append(
+                f"{counted(int(lost.sum()), 'value', 'values')} of '{value.name}' not good by '{quality.name}', first "
+                f"in {log.place(int(lost.argmax()))}: left out"
+            )
+    return replace(log, columns=tuple(columns), notes=tuple(notes))
+
+
+def _bad_by(quality: LogColumn) -> np.ndarray | None:
+    """Rows (rows,) that a column of qualities calls other than good; None where it is no such column."""
+    if not _QUALITY.search(quality.name):
+        return None
+    if quality.numeric:
+        known = quality.values[np.isfinite(quality.values)]
+        of_opc = len(known) and known.min() >= 0.0 and _OPC_GOOD <= known.max() <= _OPC_MOST
+        return np.asarray(quality.values < _OPC_GOOD) if of_opc else None
+    words = np.array([str(cell).strip().lower() for cell in quality.text])
+    if not np.isin(words, ("", *_GOOD, *_NOT_GOOD)).all() or not np.isin(words, _GOOD).any():
+        return None
+    return np.asarray(np.isin(words, _NOT_GOOD))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from winch_friction.importing.log import Log
+from winch_friction.importing.log import Log, without_bad_values
 from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import BAG_SUFFIXES, is_bag
 
@@ -25,7 +25,12 @@ _INSTEAD = {
 
 
 def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
-    """A log of any kind; raises `InputError` in one line for what is missing, empty or of no known kind."""
+    """A log of any kind, without the values that it calls bad itself; raises `InputError` in one line for what is
+    missing, empty or of no known kind."""
+    return without_bad_values(_read(path, settings))
+
+
+def _read(path: Path, settings: Mapping[str, Any] | None) -> Log:
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file")

@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.kinematics import ways
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.runs import read_run
 
@@ -62,3 +63,14 @@ def test_layers_counted_from_zero_without_a_zero_are_told_by_the_wire(layer, log
     if told:
         assert found[0].startswith(f"wire_layer is {logged}, whose radius")
         assert f"moves as on layer {layer}" in found[0]
+
+
+@pytest.mark.parametrize("spike", [32767.0, -32768.0])
+def test_a_broken_cell_of_the_speed_does_not_turn_the_drum(spike):
+    """In a lift of 100 s at 100 Hz it was 6 % of the way: the wire "moves as on layer 4" of a log that had 3."""
+    wire = 60.0 - np.cumsum(RUN["motor_speed"] * np.diff(RUN.time, prepend=RUN.time[0])) * 0.8 / CRANE.gear_ratio
+    broken = RUN["motor_speed"].copy()
+    broken[400] = spike
+    clean, spiked = ({**RUN.columns, "wire_out": wire, **own} for own in ({}, {"motor_speed": broken}))
+    expected = ways(replace(RUN, columns=clean), CRANE)["wire_out"]
+    assert ways(replace(RUN, columns=spiked), CRANE)["wire_out"] == pytest.approx(expected, rel=0.01)

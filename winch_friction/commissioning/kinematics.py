@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.commissioning.balance import Closure, closure, static_torque
-from winch_friction.commissioning.view import RunView
+from winch_friction.commissioning.view import RunView, usable
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
@@ -17,6 +17,7 @@ from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
 ORDINARY = {
     "shaft_angle": 0.03, "drum_speed": 0.03, "speed_reference": 0.12, "wire_out": 0.12, "heave_velocity": 0.15,
 }  # fmt: skip
+SPEED = "motor_speed"
 IN_METRES = ("wire_out", "heave_velocity")  # these tell the wire's speed
 FOLLOWS = 0.8  # correlation below which a channel does not tell the speed (heave with the compensation off)
 MOST = 150.0  # score of one channel in one run: one flat contradiction suffices
@@ -77,9 +78,9 @@ def ways(run: Run, crane: Crane) -> dict[str, float]:
 
     The rate of a channel of coarse steps drowns in them where a clock is a thousand times too slow; its sum does not.
     """
-    if "motor_speed" not in run:
+    if SPEED not in run:
         return {}
-    turned = np.cumsum(np.nan_to_num(run["motor_speed"]) * np.diff(run.time, prepend=run.time[0]))
+    turned = np.cumsum(np.nan_to_num(usable(SPEED, run[SPEED])) * np.diff(run.time, prepend=run.time[0]))
     lever = float(np.mean(crane.drum.layer_radii)) / crane.gear_ratio
     counted = {name: run[name] / per for name, per in (("shaft_angle", 1.0), ("wire_out", -lever)) if name in run}
     found = {name: _compared(_apart(turned), _apart(way)) for name, way in counted.items()}

@@ -235,6 +235,15 @@ def test_binary_garbage_is_refused(tmp_path, suffix, content):
     assert "\n" not in str(caught.value)
 
 
+def test_rows_that_share_a_tick_are_told_what_spreads_them(tmp_path):
+    """A clock of whole seconds under a log of 50 Hz: 4880 of 4980 rows were left out, and no more was said."""
+    head = "time [s],motor_speed [rad/s],main.pressure_a [Pa],main.pressure_b [Pa],main.displacement [m^3/rad]\n"
+    path = tmp_path / "ticks.csv"
+    path.write_text(head + "".join(f"{k // 50},{k},2e7,2e6,3e-5\n" for k in range(500)))
+    assert "490 repeated times left out, line 3" in read_run(path).warnings[0]
+    assert read_run(path).warnings[0].endswith("; winch-friction import spreads rows that share a tick")
+
+
 def test_repeated_times_gaps_and_short_runs_are_warned_of(tmp_path):
     rows = [f"{t},1,2" for t in (0, 0.02, 0.02, 0.04, 0.06, 0.08, 0.5, 0.52)]
     run = read_run(table(tmp_path, "\n".join(["time,motor_speed,motor_torque", *rows])))

@@ -146,8 +146,9 @@ def cell_findings(run: Run) -> Iterator[Finding]:
         if bad.size:
             k = int(bad[0])
             said = (
-                f"{run.name}: {column} = {values[k]:.3g} {column_unit(column) or ''} at {run.time[k]:.6g} s (sample "
-                f"{k + 1}) is no measurement; {bad.size} such of {len(values)}: empty the cell or mend the logger"
+                f"{run.name}: {column} = {values[k]:.3g} {column_unit(column) or ''} {run.time[k] - run.time[0]:.6g} s "
+                f"after its beginning (sample {k + 1}) is no measurement; {bad.size} such of {len(values)}: empty the "
+                "cell or mend the logger"
             )
             yield Finding(
                 "error", "cell", said, column, (run.name,), {"count": int(bad.size), "value": float(values[k])}

@@ -169,7 +169,8 @@ def _rows_of_new_time(name: str, time: FloatArray, place: Place, said: list[str]
     repeated = np.flatnonzero(~keep)
     if repeated.size:
         times = counted(repeated.size, "repeated time", "repeated times")
-        said.append(f"{name}: column 'time': {times} left out, {_places(repeated, place)}")
+        ticks = "; winch-friction import spreads rows that share a tick" if 2 * repeated.size > len(time) else ""
+        said.append(f"{name}: column 'time': {times} left out, {_places(repeated, place)}{ticks}")
     if keep.sum() < 2:
         raise InputError(f"{name}: column 'time': all rows have the same time")
     return np.flatnonzero(keep)[timeless:]

@@ -1,6 +1,7 @@
 """`winch-friction identify`: the shipped example end to end, and bad input that leaves good files alone."""
 
 import json
+import os
 import re
 import shutil
 
@@ -185,6 +186,15 @@ def test_a_test_may_be_a_bag(folder):
     assert "test_02.parquet" in read.hashes
 
 
+def test_the_crane_is_named_from_the_folder_as_every_other_file_is(folder, tmp_path):
+    """From another folder than its own, a practice with a crane file of one's own was refused."""
+    shutil.copy(config_directory() / "cranes" / "crane_150t.yaml", tmp_path / "mine.yaml")
+    text = (folder / "practice.yaml").read_text()
+    for named in (os.path.relpath(tmp_path / "mine.yaml", folder), str(tmp_path / "mine.yaml")):
+        (folder / "practice.yaml").write_text(text.replace("crane: crane_150t", f"crane: {named}"))
+        assert read_practice(folder).crane.name == "crane_150t"
+
+
 def test_a_folder_without_practice_file(tmp_path, capsys):
     assert run(["identify", "practice", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
     assert "'practice.yaml' is missing" in capsys.readouterr().err
@@ -214,11 +224,24 @@ def test_what_recommends_a_motor_model_is_said(tmp_path, capsys, displacements, 
     ]
     table, out = tmp_path / "table.csv", tmp_path / "seed.yaml"
     table.write_text("\n".join(["speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]", *rows]))
-    arguments = ["identify", "motor", str(table), "--out", str(out), "--overwrite", "--no-complex", "--use", "wilson"]
-    assert run(["--plain", *arguments]) == 0
-    assert f"recommended by {said}: wilson" in capsys.readouterr().out
-    assert run([*arguments, "--json"]) == 0
+    arguments = ["identify", "motor", str(table), "--out", str(out), "--overwrite", "--no-complex"]
+    assert run(["--plain", *arguments, "--use", "wilson"]) == 0
+    told = capsys.readouterr().out
+    assert f"wrote wilson to {out}" in told
+    assert "recommended" not in told  # of one there is nothing to choose
+    assert "nan" not in told  # the columns of Box's method were, without it
+    assert run(["--plain", *arguments, "--model", "wilson", "--model", "thoma", "--use", "thoma"]) == 0
+    assert f"recommended by {said}: wilson (--use wilson writes it)\nwrote thoma to {out}" in capsys.readouterr().out
+    assert run([*arguments, "--use", "wilson", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["recommended_by"] == said
+
+
+def test_the_best_motor_model_is_chosen_among_all_unless_some_are_named(tmp_path, capsys):
+    """It was MJ4, whatever the table said."""
+    arguments = ["identify", "motor", "a6vm170_generated", "--use", "best", "--no-complex", "--json"]
+    for chosen, count in (([], 13), (["--model", "wilson", "--model", "mj3"], 2)):
+        assert run([*arguments, *chosen, "--out", str(tmp_path / f"{count}.yaml")]) == 0
+        assert len(json.loads(capsys.readouterr().out)["scores"]) == count
 
 
 @pytest.mark.parametrize(

@@ -28,3 +28,16 @@ def test_what_the_tests_do_not_tell_spreads_as_the_prior_does(monkeypatch, crane
     for name in ("K1", "C5", "C6"):
         k = names.index(name)
         assert found.std[k] == pytest.approx(PRIOR.std[k], rel=0.2), name
+
+
+def test_a_prior_of_parameters_of_all_sizes_is_drawn_as_it_is(monkeypatch, crane_150t, spread):
+    """Variances of 1e16 beside 1e-31, in one covariance: the smaller ones spread by six times too much."""
+    std = 0.01 * np.array(PRIOR.values)
+    size = len(std)
+    alike = np.full((size, size), 0.9) + 0.1 * np.eye(size)
+    prior = PRIOR.with_covariance(alike * np.outer(std, std))
+    monkeypatch.setattr(module, "observations", lambda tests, crane: None)
+    monkeypatch.setattr(module, "joint_fit", lambda data, prior, spread: SimpleNamespace(model=prior))
+    found = bootstrap([[]], crane_150t, SimpleNamespace(prior=prior, model=prior), spread, resamples=1000)
+    assert found.std / std == pytest.approx(np.ones(size), rel=0.1)
+    assert np.corrcoef(found.estimates.T) == pytest.approx(alike, abs=0.1)

@@ -41,6 +41,12 @@ def test_a_speed_in_turns_per_second_ends_at_parameters_that_no_motor_has():
     assert remark.startswith("a6vm215_generated.csv: K1, K2 of 'mj4' end at the largest value that any motor has")
 
 
+def test_displacements_beyond_the_stated_largest_are_another_motors():
+    (remark,) = said(replace(TABLE, max_displacement=0.9 * TABLE.max_displacement))
+    assert "displacements up to 215 cm^3/rev, and the motor's largest is given as 193.5: the table of another" in remark
+    assert said(replace(TABLE, max_displacement=0.99 * TABLE.max_displacement)) == []
+
+
 def test_pressures_that_were_rounded_in_another_unit_stay_within_the_range():
     psi = TABLE.pressure / BAR * 14.5038
     rounded = replace(TABLE, pressure=np.where(psi > 3000.0, np.ceil(psi), np.floor(psi)) / 14.5038 * BAR)

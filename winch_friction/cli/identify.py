@@ -44,8 +44,12 @@ def _hash(path: Path) -> str:
 def motor(
     table: Annotated[Path, typer.Argument(help="Supplier's table: CSV with units in the headers.")],
     out: Annotated[Path, typer.Option(help="Model file to write.")],
-    model: Annotated[OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'.")] = None,
-    use: Annotated[str, typer.Option(help="Model that becomes the seed; 'best': the recommended one.")] = "mj4",
+    model: Annotated[
+        OptionalTexts, typer.Option(help="Model of paper 1; repeat for several, or 'all'; none: that of --use.")
+    ] = None,
+    use: Annotated[
+        str, typer.Option(help="Model that becomes the seed; 'best': the recommended one of --model, else of all.")
+    ] = "mj4",
     max_displacement: Annotated[
         float, typer.Option(min=0.0, max=376991.0, help="D_max in cm^3/rev; 0: the table's largest.")
     ] = 0.0,
@@ -95,7 +99,7 @@ def motor(
         _range(pressure, BAR, "pressure"),
         _range(displacement, CM3_PER_REV, "displacement") if displacement else usual.displacement,
     )
-    names = list(MOTOR_MODELS) if model and "all" in model else (model or [use if use != "best" else "mj4"])
+    names = list(MOTOR_MODELS) if "all" in (model or [use.replace("best", "all")]) else (model or [use])
     found = identify_motor(
         data,
         names,

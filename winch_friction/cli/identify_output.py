@@ -23,11 +23,17 @@ def show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
         return show_json({"scores": scores, "recommended": found.recommended,
                           "recommended_by": found.recommended_by, "seed": seed_json(fitted, out),
                           "condition": found.chosen.fitted.condition})  # fmt: skip
-    columns = ("model", "parameters", "RMS N·m", "held-out RMS", "BIC", "cost LS", "cost complex", "evaluations LS",
-               "evaluations complex")  # fmt: skip
-    show_table(f"{found.table.name}: {len(found.table)} rows", columns, rows)
+    columns = ["model", "parameters", "RMS N·m", "held-out RMS", "BIC", "cost LS", "cost complex", "evaluations LS",
+               "evaluations complex"]  # fmt: skip
+    told = [k for k, name in enumerate(columns) if found.by_complex or "complex" not in name]
+    told = [k for k in told if any(row[k] == row[k] for row in rows)]  # with one displacement none is held out
+    shown = [[row[k] for k in told] for row in rows]
+    show_table(f"{found.table.name}: {len(found.table)} rows", [columns[k] for k in told], shown)
     show_parameters(fitted, f"{found.chosen.name}, condition {found.chosen.fitted.condition:.3g}")
-    stdout.print(f"recommended by {found.recommended_by}: {found.recommended}; wrote {out}")
+    if len(rows) > 1:
+        other = "" if found.recommended == found.chosen.name else f" (--use {found.recommended} writes it)"
+        stdout.print(f"recommended by {found.recommended_by}: {found.recommended}{other}")
+    stdout.print(f"wrote {found.chosen.name} to {out}")
     return None
 
 

@@ -56,6 +56,9 @@ def bootstrap(
 def _drawn(prior: FrictionModel, generator: np.random.Generator) -> FrictionModel:
     if prior.covariance is None:
         return prior
-    values = generator.multivariate_normal(prior.values, prior.covariance, method="svd")
+    # in units of the deviations: variances of 1e16 beside 1e-31 leave nothing of the smaller ones
+    scale = np.where(prior.std > 0.0, prior.std, 1.0)
+    steps = generator.multivariate_normal(np.zeros(len(scale)), prior.covariance / np.outer(scale, scale), method="svd")
+    values = np.asarray(prior.values) + scale * steps
     bounds = np.array([prior.bounds_of(name) for name in prior.parameter_names])
     return prior.with_values(np.clip(values, bounds[:, 0], bounds[:, 1]).tolist())

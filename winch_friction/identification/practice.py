@@ -76,8 +76,8 @@ def read_practice(folder: Path) -> PracticeFolder:
         top.close()
     crane: Crane | None = None
     with problems:
-        local = folder / f"{named}.yaml"
-        crane = load_crane(local if local.is_file() else named)
+        beside = (folder / named, folder / f"{named}.yaml")  # as every file that it names
+        crane = load_crane(next((each for each in beside if each.is_file()), named))
     runs: dict[str, list[Run]] = {key: [] for key in names}
     for key, own in runs.items():
         for each in names[key]:

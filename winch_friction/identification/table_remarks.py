@@ -11,20 +11,31 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 SLIP = 0.05
 STANDS_OUT = 20.0  # times the usual error of the table
 SHOWN = 3
+BEYOND = 1.02  # of D_max: sizes are rounded, 107 cm^3/rev is 106.7
 
 
 def remarks_on(found: MotorIdentification) -> list[str]:
-    """Rows that stand out from the fit, and parameters that end at the largest value that a motor may have."""
+    """Rows that stand out from the fit, parameters at the largest value a motor may have, strokes beyond D_max."""
     fitted, table = found.chosen.fitted, found.table
     values = zip(fitted.model.parameters, fitted.model.values, strict=True)
     largest = [each.name for each, value in values if each.name in fitted.at_bound and value > max(each.lower, 0.0)]
-    said = []
+    said = _beyond(table)
     if largest:
         said.append(
             f"{table.name}: {', '.join(largest)} of '{found.chosen.name}' end at the largest value that any motor has: "
             "is the unit of the speed, the pressure or the displacement another than its header says?"
         )
     return said + _slips(found, table)
+
+
+def _beyond(table: SupplierTable) -> list[str]:
+    most = float(table.displacement.max())
+    if most <= BEYOND * table.max_displacement:
+        return []
+    return [
+        f"{table.name}: displacements up to {most / CM3_PER_REV:.4g} cm^3/rev, and the motor's largest is given as "
+        f"{table.max_displacement / CM3_PER_REV:.4g}: the table of another motor?"
+    ]
 
 
 def _slips(found: MotorIdentification, table: SupplierTable) -> list[str]:

@@ -222,7 +222,7 @@ def test_what_recommends_a_motor_model_is_said(tmp_path, capsys, displacements, 
         for speed in (500, 1200, 2400)
         for pressure in (60, 150, 340)
     ]
-    table, out = tmp_path / "table.csv", tmp_path / "seed.yaml"
+    table, out = tmp_path / "table.csv", tmp_path / f"{60 * 's'}[1]{60 * 's'}[red].yaml"  # neither broken nor markup
     table.write_text("\n".join(["speed [rpm],pressure [bar],displacement [cm^3/rev],efficiency [%]", *rows]))
     arguments = ["identify", "motor", str(table), "--out", str(out), "--overwrite", "--no-complex"]
     assert run(["--plain", *arguments, "--use", "wilson"]) == 0

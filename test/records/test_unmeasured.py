@@ -95,6 +95,21 @@ def test_the_friction_of_a_reversal_is_no_lost_telegram():
     )
 
 
+def test_a_winch_that_sticks_and_slips_is_no_lost_telegram():
+    """A load of 85 t that creeps down slips ten times a second: at 50 Hz nobody had measured the peaks, it was said."""
+    slip = np.round(-10.0 * np.maximum(np.cos(2.0 * np.pi * TIME[:39] / 0.1), 0.0) - 2.0, 1)
+    slipping = log(motor_speed=(slice(0, 39), slip))
+    assert np.ptp(slip) > 5.0
+    assert mended(slipping) == ({}, [])
+    near = log(motor_speed=([300, 302, 306], 900.0))  # lost ones beside each other are
+    assert mended(near)[0] == {"motor_speed": 3}
+    at_ends = log(motor_speed=([1, -2], 900.0))
+    assert mended(at_ends)[0] == {"motor_speed": 2}
+    among = log(main__pressure_a=([99, 101, 103], np.nan))
+    among.columns["main.pressure_a"][102] = 0.0
+    assert mended(among)[1] == []  # a value alone between cells without one has no neighbours
+
+
 def test_what_jumps_in_more_than_one_of_a_hundred_is_how_the_sensor_is():
     assert mended(log(main__pressure_a=(slice(10, None, 50), 0.0)))[0] == {}
 

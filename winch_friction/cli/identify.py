@@ -239,7 +239,7 @@ def practice(
 
     Example: winch-friction identify practice practice_150t --out practice/
     """
-    from winch_friction.cli.console import show_json, stdout
+    from winch_friction.cli.console import show_json
     from winch_friction.cli.identify_output import seed_json, show_parameters
     from winch_friction.cli.inputs import (
         progress,
@@ -277,8 +277,8 @@ def practice(
         return show_json({"summary": summary_lines(done), "seed": seed_json(done.seed, out / "seed.yaml")})
     show_parameters(done.seed, "seed (joint fit)")
     for line in summary_lines(done):
-        stdout.print(line)
-    stdout.print(f"wrote {out / 'report.html'}, {out / 'motor.yaml'}, {out / 'seed.yaml'}")
+        print(line)
+    print(f"wrote {out / 'report.html'}, {out / 'motor.yaml'}, {out / 'seed.yaml'}")
     return None
 
 

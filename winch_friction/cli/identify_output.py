@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from winch_friction.cli.console import show_json, show_table, stdout
+from winch_friction.cli.console import show_json, show_table
 from winch_friction.physics.channels import beside
 
 
@@ -32,8 +32,8 @@ def show_motor(found: Any, fitted: Any, out: Path, json: bool) -> None:
     show_parameters(fitted, f"{found.chosen.name}, condition {found.chosen.fitted.condition:.3g}")
     if len(rows) > 1:
         other = "" if found.recommended == found.chosen.name else f" (--use {found.recommended} writes it)"
-        stdout.print(f"recommended by {found.recommended_by}: {found.recommended}{other}")
-    stdout.print(f"wrote {found.chosen.name} to {out}")
+        print(f"recommended by {found.recommended_by}: {found.recommended}{other}")
+    print(f"wrote {found.chosen.name} to {out}")
     return None
 
 
@@ -83,8 +83,8 @@ def show_system(found: Any, model: Any, errors: Any, out: Path, json: bool) -> N
     show_table("uncertainty", ("parameter", "std, linearised", "std, bootstrap over tests"), rows)
     rows = [[e.test, e.worst(True), e.worst(False)] for e in errors]
     show_table("error, % of nominal torque", ("test", "above 250 rpm", "below 250 rpm"), rows)
-    stdout.print(f"act alike: {'; '.join(tied) or 'none'}")
-    stdout.print(f"not determined by these tests: {'; '.join(unseen) or 'nothing'}; wrote {out}")
+    print(f"act alike: {'; '.join(tied) or 'none'}")
+    print(f"not determined by these tests: {'; '.join(unseen) or 'nothing'}; wrote {out}")
     return None
 
 

@@ -186,6 +186,7 @@ STILL, FEWEST = 1.0, 20  # s and samples that a channel must repeat; slow logger
 LIVES = 0.5  # of the steps between samples, in which a channel changes that has noise, and so does not stand by chance
 LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse digit stands still for most of it
 JUMPS = 20.0  # usual steps between samples, from the median of three
+ALONE = 3.0  # times the steps beside it: a winch that sticks and slips within some samples rises to its peaks and falls
 LEAPS, QUICK = 3.0, 99.0  # times a step of this percentile: those of the hardest ramps, hangs themselves are rarer
 MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
 
@@ -281,15 +282,14 @@ def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> l
 
 
 def _jumping(values: FloatArray) -> np.ndarray:
-    """Single samples (samples,) far from both of their neighbours."""
-    if len(none := np.zeros(len(values), bool)) < FEWEST:
+    """Single samples (samples,) far from both of their neighbours, one of which is near its own other one."""
+    none, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    moved = steps[np.isfinite(steps) & (steps > 0.0)]  # a digit of a coarse transducer is no jump
+    if len(values) < FEWEST or not len(moved):
         return none
-    middle = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
-    off = np.abs(values[1:-1] - middle)
-    steps = np.abs(np.diff(values))
-    steps = steps[np.isfinite(steps) & (steps > 0.0)]  # a digit of a coarse transducer is no jump
-    if len(steps):
-        none[1:-1] = off > JUMPS * float(np.median(steps))
+    off = np.abs(values[1:-1] - np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0))
+    flank = np.nan_to_num(np.fmin(np.r_[0.0, steps[:-2]], np.r_[steps[2:], 0.0]))
+    none[1:-1] = (off > JUMPS * float(np.median(moved))) & (off > ALONE * flank)
     return none if none.mean() <= MOST else np.zeros(len(values), bool)
 
 

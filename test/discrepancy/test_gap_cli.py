@@ -153,6 +153,8 @@ def test_the_rises_of_a_curve_are_not_listed_and_other_parameters_are():
     assert _parameters({"law_kind": "literature", "parameters": {"free_play": size}}) == "free_play = 3 ± 0.12 bar"
     share = {"value": 0.0123, "std": 0.0004, "unit": "1"}
     assert _parameters({"law_kind": "literature", "parameters": {"e_p": share}}) == "e_p = 0.0123 ± 0.0004"
+    tried = {"value": 12.5664, "std": 5e-11, "unit": "rad/s"}
+    assert _parameters({"law_kind": "literature", "parameters": {"C4": tried}}) == "C4 = 120 rpm"
 
 
 def test_what_depends_on_no_signal_is_not_said_to_depend_on_anything():

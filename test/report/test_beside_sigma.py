@@ -38,8 +38,8 @@ def test_an_estimate_for_people_is_zero_there():
 
 
 def test_the_result_of_gap_prints_zero():
-    found = {"b_l": {"value": NOTHING, "std": SIGMA, "unit": "1"}}
-    assert gap_output._parameters({"parameters": found, "law_kind": "literature"}) == "b_l = 0 ± 5e-11"
+    found = {"e_g": {"value": NOTHING, "std": SIGMA, "unit": "1"}}
+    assert gap_output._parameters({"parameters": found, "law_kind": "literature"}) == "e_g = 0 ± 5e-11"
 
 
 def test_tables_of_parameters_print_zero(crane2_model, capsys):

@@ -2,10 +2,11 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.report.gap_words import next_steps, verdict_sentence
+from winch_friction.report.gap_words import amount_in_units, next_steps, shape_in_words, verdict_sentence
 
 LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
 
@@ -65,3 +66,19 @@ def test_what_a_running_node_refuses_is_not_to_be_loaded(name, mended):
     *_, said = next_steps(result("missing_effect", effects=[effect("signal_delay")], model=model))
     assert (f"Mend {name} at the source" in said) is mended
     assert ("winch-friction load model.yaml" in said) is not mended
+
+
+def test_shapes_are_said_in_the_units_that_people_read():
+    assert shape_in_words("T_vh = 50, C4_h = 12.5664") == "T_vh = 50 °C, C4_h = 120 rpm"
+    assert shape_in_words("T_gs = 2.1e+05 and n_gp = 0.5") == "T_gs = 210000 N·m and n_gp = 0.5"
+    assert shape_in_words("t_wd = 1.76412e+09, tau_wb = 69.5") == "t_wd = 2025-11-26, tau_wb = 69.5 s"
+    for plain in ("", "tau = 240 s", "all groups, both ports", "speed late, about 40 ms"):
+        assert shape_in_words(plain) == plain
+
+
+def test_a_shape_that_was_tried_and_not_fitted_has_no_deviation():
+    """Gears that lose more in one direction had "b_g = 0 ± 5e-11" in the terminal and on the page."""
+    value, std, unit = amount_in_units("b_g", -6.9e-20, 5e-11, "1")
+    assert (value, np.isnan(std), unit) == (0.0, True, "–")
+    assert amount_in_units("b_g", 0.5, 0.1, "1") == (0.5, 0.1, "–")
+    assert amount_in_units("e_g", 0.01, 1e-12, "1") == (0.01, 1e-12, "–")  # an amount is fitted, however surely

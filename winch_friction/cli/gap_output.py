@@ -50,16 +50,17 @@ def _write_addition(out: Path, result: Any, runs: list[Any]) -> None:
 def _parameters(effect: dict[str, Any]) -> str:
     """Values with deviations, in the units that people read them in; of a curve that the data drew only that it is one:
     its rises by themselves say little."""
-    from winch_friction.report.tables import estimate_for_people, number
+    from winch_friction.report.gap_words import amount_in_units
+    from winch_friction.report.tables import number
 
-    def amount(found: dict[str, Any]) -> str:
-        value, std, unit = estimate_for_people(found["value"], found["std"], found["unit"])
+    def amount(name: str, found: dict[str, Any]) -> str:
+        value, std, unit = amount_in_units(name, found["value"], found["std"], found["unit"])
         shown = value if isinstance(value, str) else number(value, 3)
         sure = f" ± {number(std, 2)} {unit}" if std > 0.0 else "" if isinstance(value, str) else f" {unit}"
         return f"{shown}{sure}".removesuffix(" –")
 
     of_curve = {k for k in effect["parameters"] if effect["law_kind"] == "free" and k.startswith("free_")}
-    said = [f"{k} = {amount(found)}" for k, found in effect["parameters"].items() if k not in of_curve]
+    said = [f"{k} = {amount(k, found)}" for k, found in effect["parameters"].items() if k not in of_curve]
     return ", ".join([*said, *(["a curve (in the page and in model.yaml)"] if of_curve else [])])
 
 

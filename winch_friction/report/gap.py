@@ -18,10 +18,16 @@ from winch_friction.report.base import Section, TextSection, write_report
 from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.equations import latex_html, term_html
 from winch_friction.report.gap_plots import heat_plot, run_plots, speed_plot
-from winch_friction.report.gap_words import facts, next_steps, shown_unit, verdict_sentence
+from winch_friction.report.gap_words import (
+    amount_in_units,
+    facts,
+    next_steps,
+    shape_in_words,
+    shown_unit,
+    verdict_sentence,
+)
 from winch_friction.report.plots import plot_html
 from winch_friction.report.tables import (
-    estimate_for_people,
     for_people,
     number,
     paragraph,
@@ -80,7 +86,7 @@ def _effect(effect: Effect, result: GapResult) -> str:
     if not drawn:
         drawn, curve = _by_run(effect, result)
     rows = [
-        (name, *estimate_for_people(e.value, e.std, e.unit))
+        (name, *amount_in_units(name, e.value, e.std, e.unit))
         for name, e in effect.parameters.items()
         if name not in drawn
     ]
@@ -103,7 +109,7 @@ def _effect(effect: Effect, result: GapResult) -> str:
     )
     return (
         f"<h3>{escape(text.title)} <code>{escape(effect.name)}</code></h3>{rivals}"
-        + (paragraph(f"Found as: {effect.variant}.") if effect.variant and not told else "")
+        + (paragraph(f"Found as: {shape_in_words(effect.variant)}.") if effect.variant and not told else "")
         + (table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4) if rows else "")
         + curve
         + paragraph(evidence)
@@ -246,8 +252,12 @@ def _in_rpm(where: str) -> str:
 
 def _considered(result: GapResult) -> str:
     kept = {effect.name for effect in result.effects}
-    first = [(c.name, c.variant, 100 * c.gain, c.p_value) for c in result.considered if c.stage == 0][:8]
-    rows = [(c.stage + 1, c.name, c.variant, c.verdict) for c in result.considered if c.name not in kept]
+    first = [(c.name, shape_in_words(c.variant), 100 * c.gain, c.p_value) for c in result.considered if c.stage == 0][
+        :8
+    ]
+    rows = [
+        (c.stage + 1, c.name, shape_in_words(c.variant), c.verdict) for c in result.considered if c.name not in kept
+    ]
     blind = [(u.name, u.needs, u.because) for u in result.untestable]
     html = ""
     if first:

@@ -1,5 +1,6 @@
 """The discrepancy result in words: the verdict, its size, how sure it is, and what to do next."""
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,8 +9,8 @@ from winch_friction.discrepancy.run_states import EACH_RUN, SOME_RUNS
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.errors import counted
-from winch_friction.physics.friction import FrictionModel
-from winch_friction.report.tables import number
+from winch_friction.physics.friction import FrictionModel, Parameter, registered_terms
+from winch_friction.report.tables import estimate_for_people, number
 
 if TYPE_CHECKING:
     from winch_friction.report.gap import GapResult
@@ -18,6 +19,37 @@ if TYPE_CHECKING:
 # on the three legs of the demo, whose controller and simulated 150 t crane they belong to
 HEAVE_PER_TORQUE = (0.019, 0.037)
 FAST = 0.9  # quantile of speed from which blocks count as top speed
+HELD = 1e-9  # of its typical size: with no more deviation a shape stands where it was tried, and nothing was fitted
+_VALUE = re.compile(r"(\w+) = ([-+.\de]+)(?=,|$| and )")  # of a shape, without a unit: SI
+
+
+def shape_in_words(variant: str) -> str:
+    """A shape's values, `C4 = 12.57`, in the units that people read them in, `C4 = 120 rpm`."""
+    return _VALUE.sub(_with_unit, variant)
+
+
+def _with_unit(found: re.Match[str]) -> str:
+    declared = _declared(found[1])
+    if declared is None or declared.unit in ("1", ""):
+        return found[0]
+    value, _, unit = estimate_for_people(float(found[2]), 0.0, declared.unit)
+    shown = value.partition(" ")[0] if isinstance(value, str) else f"{number(value)} {unit}"  # a date, to the day
+    return f"{found[1]} = {shown}"
+
+
+def amount_in_units(name: str, value: float, std: float, unit: str) -> tuple[Any, float, str]:
+    """A parameter's value, deviation and unit as people read them; the deviation is NaN of a shape that was tried and
+    not fitted."""
+    declared = _declared(name)
+    tried = declared is not None and declared.shape and std <= HELD * abs(declared.typical)
+    shown, deviation, said = estimate_for_people(value, std, unit)
+    return shown, np.nan if tried else deviation, said
+
+
+def _declared(name: str) -> Parameter | None:
+    """The parameter of this name, which stands for the same in all terms."""
+    every = (each for term in registered_terms().values() for each in term.parameters)
+    return next((each for each in every if each.name == name), None)
 
 
 def verdict_sentence(result: "GapResult") -> str:

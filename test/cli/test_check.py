@@ -1,6 +1,7 @@
 """`winch-friction check`, and the verbs that ask it first: nothing is written from data that contradict the crane."""
 
 import json
+import shutil
 from dataclasses import replace
 
 import pytest
@@ -91,7 +92,24 @@ def test_two_runs_of_one_name_are_refused(tmp_path, capsys):
         (tmp_path / folder / "log.parquet").write_bytes(TEST.read_bytes())
     paths = [str(tmp_path / folder / "log.parquet") for folder in ("monday", "tuesday")]
     assert run(["check", *paths, "--crane", "crane_150t"]) == 2
-    assert "log.parquet: two runs have this name" in capsys.readouterr().err
+    assert f"log.parquet: two runs have this name ({', '.join(paths)})" in capsys.readouterr().err
+
+
+IDENTIFY = ["identify", "system", "--motor", "a6vm215", "--out", "winch.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("verb", "between"),
+    [(["gap", "--model", "a6vm215_crane2"], []), (IDENTIFY, []), (IDENTIFY, ["--held-out"])],
+    ids=["gap", "fitted", "held out"],
+)
+def test_of_copies_in_two_folders_the_folders_are_told(tmp_path, capsys, monkeypatch, verb, between):
+    """It was "test_02.parquet and test_02.parquet hold the same samples"."""
+    (tmp_path / "monday").mkdir()
+    monkeypatch.chdir(tmp_path)
+    one, two = str(TEST), str(shutil.copy(TEST, tmp_path / "monday"))
+    assert run([*verb, one, *between, two, "--crane", "crane_150t"]) == 2
+    assert f"{TEST.name}: two runs have this name ({one}, {two})" in capsys.readouterr().err
 
 
 def test_a_cell_of_1e30_is_named_with_its_place(tmp_path, capsys):

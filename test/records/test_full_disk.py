@@ -13,6 +13,7 @@ from winch_friction.records import atomic
 from winch_friction.records.atomic import atomic_path, write_text
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.runs import _turning, write_run
+from winch_friction.report import check as report
 
 FULL = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 SAID = "cannot be written (No space left on device); make room there, or give another place"
@@ -72,6 +73,25 @@ def test_the_command_says_it_in_one_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(atomic.os, "fsync", full)
     assert command(["init", "map", "--out", "map.yaml"]) == 2
     assert capsys.readouterr().err == f"winch-friction: map.yaml: {SAID}\n"
+
+
+def test_files_that_belong_together_name_the_one_that_did_not_fit(tmp_path, monkeypatch, capsys):
+    """check.json stayed without its page, and the next call took the folder for a whole earlier result."""
+    log = tmp_path / "run.csv"
+    write_run(small(), log)
+    arguments = ["check", str(log), "--crane", "crane_150t", "--out", str(tmp_path / "check"), "--json"]
+    with monkeypatch.context() as patched:
+
+        def page(path, *_):
+            patched.setattr(atomic.os, "fsync", full)  # from here on
+            write_text(path, "x")
+
+        patched.setattr(report, "write_check_report", page)
+        assert command(arguments) == 2
+    assert capsys.readouterr().err == f"winch-friction: {tmp_path / 'check' / 'check.html'}: {SAID}\n"
+    assert list((tmp_path / "check").iterdir()) == []
+    command(arguments)
+    assert sorted(each.name for each in (tmp_path / "check").iterdir()) == ["check.html", "check.json"]
 
 
 def test_a_tab_in_a_file_of_keys_is_answered_with_what_to_use(tmp_path):

@@ -52,7 +52,7 @@ def command(
     refuse_unwritable(out and out / "check.html")
     refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
     read, winch, seed = read_inputs(paths, crane, model)
-    refuse_same_names(read)
+    refuse_same_names(read, paths)
     near = [*paths, *([Path(crane)] if crane else [])]
     result = check(read, winch, seed, partial(cranes_near, near))
     content = result.content()
@@ -66,11 +66,12 @@ def command(
 
 
 def _write(result: Any, content: dict[str, Any], out: Path, provenance: dict[str, Any]) -> None:
-    from winch_friction.records.atomic import write_text
+    from winch_friction.records.atomic import together, write_text
     from winch_friction.report.check import write_check_report
 
-    write_text(out / "check.json", json.dumps(content, indent=2, allow_nan=False, default=str) + "\n")
-    write_check_report(out / "check.html", result, provenance)
+    with together(out, "check.json") as place:
+        write_text(place / "check.json", json.dumps(content, indent=2, allow_nan=False, default=str) + "\n")
+        write_check_report(place / "check.html", result, provenance)
 
 
 def _show(result: Any, runs: list[Any], out: Path | None) -> None:

@@ -180,6 +180,7 @@ def run_gap(
     from winch_friction.physics.friction.term import load_file
     from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import load_model
+    from winch_friction.records.runs import refuse_same_names
 
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
@@ -197,6 +198,7 @@ def run_gap(
     read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
     warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)
+    refuse_same_names(read, paths)
     refuse_copies(read)
     read = _simulated(read, fmu, fmu_map)
     try:

@@ -219,7 +219,8 @@ def _read_tests(
     for own, paths in zip(read, (runs, held_out), strict=True):
         with problems:
             own += read_all(paths, crane, complete=crane is not None, **options)
-            refuse_same_names(own)
+    with problems:
+        refuse_same_names([*read[0], *read[1]], [*runs, *held_out])
     return read[0], read[1]
 
 
@@ -253,6 +254,7 @@ def practice(
     from winch_friction.identification.practice import read_practice, run_practice
     from winch_friction.identification.supplier_table import FitRange
     from winch_friction.identification.table_remarks import remarks_on
+    from winch_friction.records.atomic import together
     from winch_friction.records.model_file import save_model
     from winch_friction.report.practice import summary_lines, write_practice_report
 
@@ -270,9 +272,10 @@ def practice(
     )
     show_warnings(filter(None, [FitRange.usual(folder.table).left_out(folder.table), *remarks_on(done.motor)]))
     files = sorted(each for each in _example(example).iterdir() if each.is_file())
-    write_practice_report(done, out / "report.html", provenance_of(files, folder.crane.name, seed=seed) | forced)
-    save_model(done.motor_seed, out / "motor.yaml")
-    save_model(replace(done.seed, provenance={**done.seed.provenance, **forced}), out / "seed.yaml")
+    with together(out, "report.html") as place:
+        write_practice_report(done, place / "report.html", provenance_of(files, folder.crane.name, seed=seed) | forced)
+        save_model(done.motor_seed, place / "motor.yaml")
+        save_model(replace(done.seed, provenance={**done.seed.provenance, **forced}), place / "seed.yaml")
     if json:
         return show_json({"summary": summary_lines(done), "seed": seed_json(done.seed, out / "seed.yaml")})
     show_parameters(done.seed, "seed (joint fit)")

@@ -66,6 +66,11 @@ def together(folder: Path, mark: str) -> Iterator[Path]:
         yield temporary
         for each in sorted(temporary.iterdir(), key=lambda path: (path.name != mark, path.name)):
             os.replace(each, own.parent / each.name)
+    except OSError as error:  # nobody knows the hidden folder
+        named = Path(str(error.filename or ""))
+        if named.parent != temporary:
+            raise
+        raise OSError(error.errno, error.strerror, str(own.parent / named.name)) from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 

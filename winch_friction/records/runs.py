@@ -7,7 +7,7 @@ telegram is one sample of 0 or of full scale. They are made missing, and said.
 """
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -55,23 +55,25 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     raise InputError(f"{path}: not a kind of run file that is known; use {KINDS} (winch-friction import reads others)")
 
 
-def read_runs(paths: Iterable[Path | str], crane: Crane | None = None, **options: Any) -> list[Run]:
+def read_runs(paths: Sequence[Path | str], crane: Crane | None = None, **options: Any) -> list[Run]:
     """Several runs; two of the same name raise `InputError`, since the name is a run's identity."""
     runs, problems = [], Problems()
     for path in paths:
         with problems:
             runs.append(read_run(path, crane, **options))
     problems.say()
-    refuse_same_names(runs)
+    refuse_same_names(runs, paths)
     return runs
 
 
-def refuse_same_names(runs: Sequence[Run]) -> None:
-    """Raise `InputError` where two runs have the same name."""
+def refuse_same_names(runs: Sequence[Run], paths: Sequence[Path | str] = ()) -> None:
+    """Raise `InputError` where two runs have the same name; of the `paths` those are told that end so."""
     names = [run.name for run in runs]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"{name}: two runs have this name; a run's identity is its file name, so rename one")
+            of = ", ".join(str(path) for path in paths if Path(path).name == name)
+            said = f"{name}: two runs have this name{of and f' ({of})'}"
+            raise InputError(f"{said}; a run's identity is its file name, so rename one")
 
 
 def write_run(run: Run, path: Path | str, **bag_options: Any) -> Path:
@@ -151,9 +153,8 @@ LONGEST_HOLE = 30.0  # s without a sample, after which a record is another run: 
 
 
 def apart(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
-    """The records, those with long holes as a run for each part between them, and what is said of these: after minutes
-    of silence wire, load and oil are others, and what the winch did meanwhile nobody knows. So with what is said of
-    columns that are written in every n-th row only."""
+    """The records, those with long holes as a run for each part, and what is said of these and of slower columns: after
+    minutes of silence wire, load and oil are others, and what the winch did meanwhile nobody knows."""
     found, notes = list[Run](), list[str]()
     for run in runs:
         steps = np.diff(run.time)

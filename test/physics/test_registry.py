@@ -10,9 +10,13 @@ from winch_friction.physics.friction.symbols import p
 from winch_friction.physics.friction.term import load_file
 
 
-def test_unknown_name_lists_the_known_ones():
-    with pytest.raises(InputError, match="'friktion' is not known; known terms are .*coulomb"):
-        term_named("friktion")
+def test_an_unknown_name_says_what_to_do():
+    """The line held all of a hundred names, and what to do behind them."""
+    with pytest.raises(InputError) as said:
+        term_named("fairlead_grease")
+    assert "one of your own needs its file (--terms-file;" in str(said.value)
+    assert "winch-friction list terms" in str(said.value)
+    assert len(str(said.value)) < 200
 
 
 def test_a_slip_in_a_name_is_answered_by_what_was_meant_alone():

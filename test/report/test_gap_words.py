@@ -4,8 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from own_term_files import TERM, forgotten, own_terms
 
+from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.term import load_file
 from winch_friction.report.gap_words import amount_in_units, next_steps, shape_in_words, verdict_sentence
 
 LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
@@ -13,7 +16,7 @@ LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; 
 
 def result(verdict, **more):
     base = {"effects": [], "depends": (SimpleNamespace(signal="wire_out"),), "refused": "why", "proposals": (),
-            "next_experiment": None, "adequacy": (), "model": SimpleNamespace(corrections=())}  # fmt: skip
+            "next_experiment": None, "adequacy": (), "model": SimpleNamespace(corrections=(), terms=())}  # fmt: skip
     return SimpleNamespace(verdict=verdict, **(base | more))
 
 
@@ -62,7 +65,7 @@ def test_what_is_lacking_is_asked_for_in_words(what, sentence, step):
 @pytest.mark.parametrize(("name", "mended"), [("pressure_clock", True), ("signal_delay", True), ("tare_load", False)])
 def test_what_a_running_node_refuses_is_not_to_be_loaded(name, mended):
     """The page said of a drifting clock that the compensator takes over without a bump; the compensator refuses it."""
-    model = SimpleNamespace(corrections=(Correction(name, 1e-3),))
+    model = SimpleNamespace(corrections=(Correction(name, 1e-3),), terms=())
     *_, said = next_steps(result("missing_effect", effects=[effect("signal_delay")], model=model))
     assert (f"Mend {name} at the source" in said) is mended
     assert ("winch-friction load model.yaml" in said) is not mended
@@ -82,3 +85,19 @@ def test_a_shape_that_was_tried_and_not_fitted_has_no_deviation():
     assert (value, np.isnan(std), unit) == (0.0, True, "–")
     assert amount_in_units("b_g", 0.5, 0.1, "1") == (0.5, 0.1, "–")
     assert amount_in_units("e_g", 0.01, 1e-12, "1") == (0.01, 1e-12, "–")  # an amount is fitted, however surely
+
+
+def test_a_model_with_terms_of_ones_own_is_loaded_with_their_file(tmp_path):
+    """The command on the page was refused: the term was not known."""
+    with forgotten(TERM):
+        (own,) = load_file(own_terms(tmp_path))
+        model = SimpleNamespace(corrections=(), terms=(term_named("coulomb"), own))
+        *_, said = next_steps(result("missing_effect", effects=[effect("coulomb")], model=model))
+    assert "`winch-friction replay BAG --model model.yaml --terms-file own_drag.py`" in said
+    assert "`winch-friction load model.yaml --terms-file own_drag.py`" in said
+
+
+def test_names_that_no_scenario_tells_apart_are_said_to_be_so():
+    """The terminal said it, the page did not."""
+    first, *_ = next_steps(result("ambiguous", effects=[effect("gear_asymmetry", "layer_radius")]))
+    assert first == "No scenario at hand tells these names apart: measure what only one of them changes."

@@ -10,6 +10,7 @@ from winch_friction.physics.channels import RPM
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel, Parameter, registered_terms
+from winch_friction.physics.friction.term import file_of
 from winch_friction.report.tables import estimate_for_people, number
 
 if TYPE_CHECKING:
@@ -165,6 +166,8 @@ def next_steps(result: "GapResult") -> list[str]:
             f"Separate {' from '.join(plan['separates'])}: run `winch-friction simulate {plan['scenario']}`, or its "
             f"likeness on the crane; it parts them by {plan['expected_z']:.1f} sigma."
         )
+    elif result.verdict == "ambiguous":
+        steps.append("No scenario at hand tells these names apart: measure what only one of them changes.")
     steps += [f"{e.name}: {effect_text(e.name).look}" for e in result.effects]
     if past := [e.name for e in result.effects if e.law_name in (SOME_RUNS, EACH_RUN)]:
         steps.append(
@@ -177,9 +180,10 @@ def next_steps(result: "GapResult") -> list[str]:
             "that is among its corrections."
         )
     elif result.effects:
+        own = _terms_file(result.model)
         steps.append(
-            "Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml`), then let the running "
-            "compensator load it (`winch-friction load model.yaml`); it takes over without a bump."
+            f"Replay a bag with model.yaml (`winch-friction replay BAG --model model.yaml{own}`), then let the running "
+            f"compensator load it (`winch-friction load model.yaml{own}`); it takes over without a bump."
         )
     if result.verdict == "insufficient":
         lacking = [each for each in result.adequacy if not each.met]
@@ -192,6 +196,11 @@ def next_steps(result: "GapResult") -> list[str]:
     if result.verdict == "nothing_missing":
         steps.append("Nothing needs to be done: keep the model.")
     return steps
+
+
+def _terms_file(model: FrictionModel) -> str:
+    """The option that a model with terms of a user's own file needs."""
+    return "".join(sorted({f" --terms-file {file.name}" for term in model.terms if (file := file_of(term))}))
 
 
 def _not_live(model: FrictionModel) -> str:

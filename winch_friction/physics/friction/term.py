@@ -182,15 +182,19 @@ def registered_terms() -> dict[str, Term]:
 
 
 def term_named(name: str) -> Term:
-    """The term of that name; an unknown one raises `InputError` with the names there are."""
+    """The term of that name; an unknown one raises `InputError` with what to do, and those that are nearly it."""
     _load_shipped()
     if name not in _TERMS:
-        near = meant(name, _TERMS) or f" known terms are {', '.join(sorted(_TERMS))};"
         raise InputError(
-            f"term '{name}' is not known;{near} "
-            "one of your own needs its file (--terms-file; gap: --effects; nodes: terms_file)"
+            f"term '{name}' is not known;{meant(name, _TERMS)} one of your own needs its file (--terms-file; gap: "
+            "--effects; nodes: terms_file); winch-friction list terms names the others"
         )
     return _TERMS[name]
+
+
+def file_of(term: Term) -> Path | None:
+    """The user's file that the term came from; None of the package's own."""
+    return next((path for path, (_, added) in _FILES.items() if term in added), None)
 
 
 def load_file(path: Path | str) -> list[Term]:

@@ -1,5 +1,7 @@
 """A wire that is counted on the drum: the speed was turned by it, and swapped ports were said to be the cause."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from importing.logs import GERMAN, example, rows_of, write_text
@@ -59,6 +61,23 @@ def test_a_speed_that_counts_lowering_is_turned_by_the_wire(proposed):
     status, said = proposed(rows_of(example("test_02"), words))
     assert status == 0, said.err
     assert "motor_speed <- Windendrehzahl [1/min] (-1 * 1/min)" in said.out
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_what_tells_the_speed_again_is_turned_with_it(proposed, sign):
+    """Of a log that counts paying out the speed alone was turned: a replay fed forward against the motion."""
+    base = example("test_02")
+    angle = np.concatenate([[0.0], np.cumsum(base["motor_speed"][1:] * np.diff(base.time))])
+    more = {"speed_reference": np.roll(base["motor_speed"], -4), "shaft_angle": angle}
+    one = sign * GERMAN["motor_speed"][1]
+    words = {"motor_speed": ("Windendrehzahl [1/min]", one, 1), "speed_reference": ("Solldrehzahl [1/min]", one, 1),
+             "shaft_angle": ("Motorwinkel [rad]", sign, 3)}  # fmt: skip
+    status, said = proposed(rows_of(replace(base, columns={**base.columns, **more}), GERMAN | words))
+    assert status == 0, said.err
+    turned = "-1 * " if sign < 0 else ""
+    assert f"speed_reference <- Solldrehzahl [1/min] ({turned}1/min)" in said.out
+    assert f"shaft_angle <- Motorwinkel [rad] ({turned}rad)" in said.out
+    assert said.out.count("it runs against the motor's speed") == (2 if sign < 0 else 0)
 
 
 def test_a_row_without_a_time_hides_no_friction(crane_150t):

@@ -25,11 +25,8 @@ def rope_over_motor(columns: Mapping[str, FloatArray], crane: Crane) -> Ratio | 
     if "motor_speed" not in columns or "time" not in columns:
         return None
     hoisted = columns["motor_speed"] * crane.drum.layer_radii[-1] / crane.gear_ratio  # m/s, rope coming in
-    time = columns["time"] - columns["time"][0]
     if "wire_out" in columns and np.isfinite(columns["wire_out"]).sum() > _FEWEST:
-        steps = np.where(np.isfinite(hoisted), hoisted, 0.0)[1:] * np.maximum(np.diff(np.nan_to_num(time)), 0.0)
-        coming_in = np.concatenate([[0.0], np.cumsum(steps)])
-        found = _slope(coming_in, -columns["wire_out"])
+        found = _slope(_summed(columns["time"], hoisted), -columns["wire_out"])
         if found is not None:
             return Ratio(found, "wire_out")
     if "heave_velocity" in columns:
@@ -37,6 +34,21 @@ def rope_over_motor(columns: Mapping[str, FloatArray], crane: Crane) -> Ratio | 
         if found is not None:
             return Ratio(found, "heave_velocity")
     return None
+
+
+def along_speed(columns: Mapping[str, FloatArray], name: str) -> float | None:
+    """What another channel of the shaft, a command or an angle, counts per motor speed; None where they do not move
+    together."""
+    if not {"motor_speed", "time", name} <= set(columns):
+        return None
+    speed = columns["motor_speed"]
+    return _slope(_summed(columns["time"], speed) if name == "shaft_angle" else speed, columns[name])
+
+
+def _summed(time: FloatArray, speed: FloatArray) -> FloatArray:
+    time = time - time[0]
+    steps = np.where(np.isfinite(speed), speed, 0.0)[1:] * np.maximum(np.diff(np.nan_to_num(time)), 0.0)
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float | None:

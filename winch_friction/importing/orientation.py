@@ -7,7 +7,7 @@ import numpy as np
 from winch_friction.importing.balance import closure, drive_torque, groups_of, opposes_motion, power_ratio, told
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import in_si
-from winch_friction.importing.kinematics import rope_over_motor
+from winch_friction.importing.kinematics import along_speed, rope_over_motor
 from winch_friction.importing.mapping import Entry
 from winch_friction.importing.names import name_concepts
 from winch_friction.importing.units import header_readings, usual_units
@@ -29,6 +29,8 @@ def settle_orientation(draft: Draft, said: frozenset[str] = frozenset()) -> None
     _settle_ports(draft, draft.crane)
     if "motor_speed" in draft.log_map.columns and "motor_speed" not in said:
         _settle_speed(draft, draft.crane)
+    for name in [n for n in ("speed_reference", "shaft_angle") if n in draft.log_map.columns and n not in said]:
+        _settle_second_speed(draft, name)
     if "mechanical_power" in draft.log_map.columns and "mechanical_power" not in said:
         _settle_power(draft, draft.crane)
 
@@ -80,6 +82,14 @@ def _settle_speed(draft: Draft, crane: Crane) -> None:
     elif len(groups) <= 1:
         draft.change("motor_speed", sign=-1, because="sign turned: friction would drive the motion otherwise")
     # with several groups swapped ports would do the same: left to the contradictions, as a question
+
+
+def _settle_second_speed(draft: Draft, name: str) -> None:
+    """What tells the motor's speed again counts as it does: of a log that counts paying out positive all are turned."""
+    signs = [g for done in draft.converted() if (g := along_speed(done.columns, name)) is not None]
+    if signs and float(np.median(signs)) < 0.0:
+        sign = -1 * draft.log_map.columns[name].sign
+        draft.change(name, sign=sign, because="sign turned: it runs against the motor's speed")
 
 
 def _friction_denies(draft: Draft, crane: Crane, ratio: float) -> bool:

@@ -56,4 +56,4 @@ def test_the_commented_file_names_every_setting() -> None:
     text = (NODES / "crane.yaml").read_text()
     for kind in (NodeOptions, CompensatorConfig, CompensatorNodeOptions, EstimatorConfig, EstimatorNodeOptions):
         for each in fields(kind):
-            assert f"{each.name}:" in text, each.name
+            assert f"{each.name}:" in text, f"explain {each.name} of {kind.__name__} in config/nodes/crane.yaml"

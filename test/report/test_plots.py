@@ -62,7 +62,7 @@ def test_a_law_in_latex_becomes_mathml():
 def test_every_effect_of_the_catalogue_is_described():
     described = effect_texts()
     missing = {each.name for each in all_candidates()} - set(described)
-    assert not missing
+    assert not missing, "say what the reader is told of them in winch_friction/physics/effects.yaml"
     for text in described.values():
         assert text.title
         assert text.look

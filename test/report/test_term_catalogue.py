@@ -6,6 +6,7 @@ from pathlib import Path
 
 import sympy as sp
 
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.physics.friction import registered_terms
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -17,6 +18,17 @@ def test_the_committed_catalogue_is_current():
     said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
     committed = (ROOT / "docs/terms.md").read_text()
     assert committed.strip() == said.strip(), "run: winch-friction terms --markdown > docs/terms.md"
+
+
+def test_every_cause_and_every_law_stands_in_the_documents():
+    """Nothing asked for the rows: a cause with two laws could be added, found and named, and stood in no table."""
+    known = all_candidates()
+    told = (ROOT / "docs/discrepancy.md").read_text()
+    causes = sorted({each.name for each in known if f"`{each.name}`" not in told})
+    assert not causes, "a row each in docs/discrepancy.md, The catalogue"
+    told = (ROOT / "docs/laws.md").read_text()
+    laws = {each.term.name for each in known if each.law_name and each.term is not None and each.term.name != each.name}
+    assert not sorted(name for name in laws if f"`{name}`" not in told), "in the row of their cause in docs/laws.md"
 
 
 def test_no_equation_is_written_in_another_way_by_another_sympy():

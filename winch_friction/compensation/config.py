@@ -68,7 +68,7 @@ class CompensatorConfig:
         doc="age beyond which an input counts as lost; later than 0.5 s friction is better not compensated",
     )  # fmt: skip
     max_ages: Mapping[str, float] = option(
-        {"hook_load": 2.0, "oil_temperature": 30.0, "wire_layer": 30.0, "wire_out": 2.0},
+        SLOW_INPUTS,
         lower=0.001, upper=3600.0, unit="s",
         doc="the same by input where it differs; above 0.5 s for load, oil and wire alone",
     )  # fmt: skip

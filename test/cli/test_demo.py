@@ -9,7 +9,7 @@ import yaml
 from winch_friction.cli.demo import processes
 from winch_friction.cli.demo.learned import learned_parameters
 from winch_friction.cli.demo.legs import voyage_legs
-from winch_friction.cli.demo.measures import measure, near_reversal, of_leg, overall_share
+from winch_friction.cli.demo.measures import measure, near_reversal, of_leg
 from winch_friction.cli.demo.plan import efficiency_model, make_plan
 from winch_friction.cli.demo.recording import Recording
 from winch_friction.cli.demo.tuning import efficiency_compensator, search_efficiency
@@ -139,7 +139,6 @@ def test_errors_are_those_of_the_model_behind_the_feedforward(tmp_path: Path) ->
     learned, tuned = rows[3 * legs], rows[legs]
     assert learned.friction_error_share[:3] == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
     assert tuned.friction_error_share[1] == pytest.approx(0.1)
-    assert overall_share(rows[legs : 2 * legs])[1] == pytest.approx(0.1)
     assert np.isnan(learned.friction_error[3])  # the sea did not go there: no figure, not a zero
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.report.base import TextSection, render, write_report
-from winch_friction.report.figures import figure_html, new_figure, save_figure
+from winch_friction.report.figures import new_figure, save_figure
 from winch_friction.report.tables import (
     estimate_for_people,
     for_people,
@@ -28,7 +28,6 @@ def page():
     table = table_html(["speed", "error"], [["0–50 rpm", 1.25], ["<script>", float("nan")]], caption="Errors")
     sections = [
         TextSection("Result", paragraph("5 < 6 & done") + table),
-        TextSection("Picture", figure_html(picture(), "A line")),
     ]
     return render("Winch <150 t>", sections)
 
@@ -56,20 +55,6 @@ def test_a_table_can_be_folded_to_the_width_of_a_phone():
     assert "Files" not in inside
     assert "oil_<wbr>temperature" in inside
     assert "f612bf17f8a2f212<wbr>6c7b7e7edc4f615e" in inside
-
-
-def test_pictures_follow_the_colours_of_the_page():
-    text = figure_html(picture(), 'a "line"')
-    assert "currentColor" in text
-    assert "time, s" in text
-    assert 'aria-label="a &quot;line&quot;"' in text
-
-
-def test_a_picture_of_very_many_points_becomes_a_png():
-    figure, axes = new_figure()
-    rng = np.random.default_rng(1)
-    axes.scatter(rng.normal(size=20_000), rng.normal(size=20_000), s=2)
-    assert "data:image/png;base64," in figure_html(figure)
 
 
 def test_files_are_written(tmp_path):

@@ -1,6 +1,6 @@
 """Which column of a log is which channel: by name, unit and size together, each column for one channel at most."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -275,8 +275,3 @@ def in_si(column: LogColumn, unit: str, channel: str, crane: Crane | None) -> np
 @lru_cache(maxsize=4096)
 def _concepts(name: str) -> list[Concepts]:
     return name_concepts(name) if name else []
-
-
-def by_column(found: Mapping[str, Match]) -> dict[str, Match]:
-    """The matches by the name of their column in the log."""
-    return {match.column.name: match for match in found.values()}

@@ -1,11 +1,7 @@
-"""Still pictures with one look, as inline SVG or PNG, readable on light and on dark paper."""
+"""Still pictures with one look, written as files, readable on light and on dark paper."""
 
-import base64
-import io
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +10,6 @@ from winch_friction.records.atomic import atomic_path
 # readable on white and on near-black, told apart by people who do not see red and green
 COLOURS = ("#2f7fc1", "#d9782d", "#3c9a6b", "#b5528f", "#8c7ad1", "#a98a1f", "#5f9ea8", "#c25b56")
 _INK = "#1a1b1e"
-_SVG_LIMIT = 700_000  # characters; larger pictures travel as PNG
 
 
 @contextmanager
@@ -50,35 +45,9 @@ def legend_above(axes: Any, columns: int = 1) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
 
 
-def figure_html(figure: Any, caption: str = "", description: str = "") -> str:
-    """An inline picture: SVG in the colours of the page, PNG when the SVG would be too large."""
-    svg = _svg(figure, description or caption)
-    picture = svg if len(svg) < _SVG_LIMIT else _png(figure, description or caption)
-    text = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
-    return f"<figure>{picture}{text}</figure>"
-
-
 def save_figure(figure: Any, path: Path | str, dpi: int = 130) -> Path:
     """Write a picture file atomically, in the format of its suffix, on white."""
     path = Path(path)
     with look(), atomic_path(path) as temporary:
         figure.savefig(temporary, dpi=dpi, facecolor="white", format=path.suffix.lstrip(".") or "png")
     return path
-
-
-def _svg(figure: Any, description: str) -> str:
-    stream = io.StringIO()
-    with look():
-        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
-    text = stream.getvalue()
-    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
-    text = text.replace(_INK, "currentColor")
-    return text.replace("<svg ", f'<svg role="img" aria-label="{escape(description, quote=True)}" ', 1)
-
-
-def _png(figure: Any, description: str) -> str:
-    stream = io.BytesIO()
-    with look():
-        figure.savefig(stream, format="png", dpi=130, facecolor="white")
-    data = base64.b64encode(stream.getvalue()).decode()
-    return f'<img alt="{escape(description, quote=True)}" src="data:image/png;base64,{data}">'

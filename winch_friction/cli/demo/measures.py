@@ -74,12 +74,6 @@ def of_feedforward(rows: Sequence[PhaseFigures], name: str) -> list[PhaseFigures
     return [row for row in rows if row.phase.feedforward.name == name]
 
 
-def overall_share(rows: Sequence[PhaseFigures]) -> tuple[float, ...]:
-    """Friction error share by speed bin over several legs: root mean square over those that visited it."""
-    table = np.array([row.friction_error_share for row in rows])
-    return tuple(rms(column[np.isfinite(column)]) for column in table.T)
-
-
 def _figures(phase: Phase, part: Recording) -> PhaseFigures:
     truth = part.truth[part.truth[:, 0] >= part.truth[0, 0] + SETTLING]
     time, error, speed, friction = truth[:, 0], truth[:, 1], truth[:, 2], truth[:, 3]

@@ -1,9 +1,11 @@
 """`winch-friction init` for a winch that is not hydraulic: crane, bare model and map by flags, and what is refused."""
 
+import numpy as np
 import pytest
 import yaml
 
 from winch_friction.cli.main import run
+from winch_friction.importing.expectations import fits
 from winch_friction.importing.mapping import load_map
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -80,3 +82,22 @@ def test_an_unknown_drive_and_what_the_simulator_cannot_do_are_said(capsys):
     for what in ("plant", "scenario"):
         assert run(["init", what, "--crane", "winch_5t.yaml"]) == 2
         assert f"a {what} is for the simulator, whose cranes are hydraulic" in capsys.readouterr().err
+
+
+def test_an_electric_winch_holds_its_rated_load(capsys):
+    """The bound of the feedforward, 0.3 of what the drive gives, was taken for it: 2 t of 5 was "beyond what it holds",
+    and a log's loads of 4 t had no size that such a crane can have."""
+    assert init("electric") == 0
+    assert run(["init", "model", "--crane", "winch_5t.yaml"]) == 0
+    capsys.readouterr()
+    show = ["show", "seed_winch_5t.yaml", "--crane", "winch_5t.yaml"]
+    assert run(show) == 0
+    assert "on winch_5t, 1.8 t:" in capsys.readouterr().out  # a third of the rated load, as its help says
+    assert run([*show, "--load", "5"]) == 0
+    assert capsys.readouterr().err == ""
+    assert run([*show, "--load", "6"]) == 0
+    assert (
+        "--load 6: beyond what crane 'winch_5t' holds by its file (0 to 5 t: its rated load)" in capsys.readouterr().err
+    )
+    assert fits("hook_load", np.full(9, 4e3), load_crane("winch_5t.yaml"))
+    assert not fits("hook_load", np.full(9, 4e6), load_crane("winch_5t.yaml"))

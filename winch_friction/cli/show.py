@@ -110,9 +110,10 @@ def say_beyond(option: str, loads: Sequence[float], crane: Any) -> None:
     beyond = [f"{each:g}" for each in loads if each > most]
     if beyond:
         held = f"{most:.0f}" if most >= 10.0 else f"{most:.2g}"
+        drive = "its rated load" if crane.rated_load else "its torque limit"
         show_warnings([
-            f"{option} {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {held} t, all "
-            "motors at 450 bar or the torque limit); what the models say there is extrapolated"
+            f"{option} {','.join(beyond)}: beyond what crane '{crane.name}' holds by its file (0 to {held} t: "
+            f"{'all motors at 450 bar' if crane.drive.hydraulic else drive}); what the models say there is extrapolated"
         ])  # fmt: skip
 
 
@@ -124,7 +125,8 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
     model = load_model(name)
     machine = curve_crane(model, crane, name)
     if load is None:
-        load = usual_loads(machine)[1] / 1e3 if machine.drive.hydraulic else 0.0  # a drive may lift nothing
+        lifts = machine.drive.hydraulic or machine.rated_load  # a drive may lift nothing
+        load = usual_loads(machine)[1] / 1e3 if lifts else 0.0
     curve = model_curve(model, machine, load=1e3 * load)
     say_beyond("--load", [load], machine)
     rpm = curve.speed / RPM

@@ -44,8 +44,7 @@ def usual_size(channel: str, crane: Crane | None) -> tuple[float, float]:
         return 1.0, float(len(crane.drum.layer_radii))
     if channel == "hook_load" and crane.drive.hydraulic:
         return 100.0, 1.2 * largest_load(crane)
-    if channel == "hook_load" and np.isfinite(crane.absolute_torque_limit):
-        most = crane.absolute_torque_limit * crane.gear_ratio / (crane.drum.layer_radii[0] * GRAVITY)
+    if channel == "hook_load" and np.isfinite(most := most_held(crane)):
         return _LIGHTEST * most, 1.2 * most
     return table.get(channel, (0.0, top))
 
@@ -58,9 +57,12 @@ def largest_load(crane: Crane) -> float:
 
 
 def most_held(crane: Crane) -> float:
-    """The load in kg that the crane's file allows: by its motors where it is hydraulic, else by its torque limit."""
+    """The load in kg that the crane's file allows: by its motors where it is hydraulic, else the rated one. Without one
+    by the torque limit, which bounds the feedforward and may be far less than the drive gives."""
     if crane.drive.hydraulic and crane.groups:
         return largest_load(crane)
+    if crane.rated_load:
+        return float(crane.rated_load)
     return float(crane.absolute_torque_limit) * crane.gear_ratio / (crane.drum.layer_radii[0] * GRAVITY)
 
 

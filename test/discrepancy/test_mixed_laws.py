@@ -14,8 +14,9 @@ from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_c
 from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
-from winch_friction.discrepancy.expansion import _agreed_modes, as_rigid, meet, swings
+from winch_friction.discrepancy.expansion import as_rigid, meet, swings
 from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.wires import agreed_modes
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.search import is_long_delay
@@ -192,6 +193,7 @@ def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0, noise=False, length
         groups=[None] * groups,
         wire_mode=mode,
         load=np.full(3, 5e4),
+        swinging=5e4,
         dt=dt,
         swing_left=left,
         swing_variance=variance,
@@ -200,7 +202,7 @@ def prepared(mode, left=(), groups=1, dt=0.05, variance=1.0, noise=False, length
 
 
 def damped(runs):
-    return [each.damping for each in _agreed_modes(runs)]
+    return [each.damping for each in agreed_modes(runs)]
 
 
 RUNG, BLURRED = (40.0,) * 11, (0.7,) * 11  # of every damping; the second swings, but reversals hide half of it
@@ -238,7 +240,7 @@ def test_what_swings_in_all_of_heave_compensation_outweighs_runs_that_hardly_mov
 def test_a_run_that_cannot_tell_has_a_wire_that_follows_its_length_unless_the_others_deny_it():
     untold = [prepared(Mode(8.0, 0.0), BLURRED)] * 2
     for told, expected in (([True] * 5, True), ([None] * 5, True), ([False] * 4 + [True], False)):
-        modes = _agreed_modes([*(prepared(Mode(8.0, 0.06, each), BLURRED) for each in told), *untold])
+        modes = agreed_modes([*(prepared(Mode(8.0, 0.06, each), BLURRED) for each in told), *untold])
         assert [each.follows for each in modes] == [*told, expected, expected]
         assert [each.damping for each in modes] == pytest.approx([0.06] * 7)
 
@@ -343,7 +345,7 @@ def ringing(off, ratio=0.05, left=SHARP, length=200.0, variance=1.0):
 def test_runs_that_ring_tell_more_than_the_many_whose_sensors_seem_to(rings, expected):
     """Six seas below the mode, whose motion sensor's filter looks like a wire damped by 0.23 and 6 % softer."""
     seas = [ringing(0.94, 0.23, LIKE_A_FILTER, length) for length in (100.0, 150.0, 200.0, 250.0, 300.0, 350.0)]
-    modes = _agreed_modes([*seas, *rings])
+    modes = agreed_modes([*seas, *rings])
     found = np.array([mode.damping for mode in modes])
     # of two whose frequencies are alike one damper or one ratio is no different; it differs for the others
     assert found == pytest.approx(expected, rel=0.5 if expected == 0.05 else 0.05)
@@ -359,7 +361,7 @@ def test_heave_compensation_that_denies_a_swing_is_outvoted_by_more_runs_that_ri
     """Where a swing is told by runs that agree only, both of two such seas would take it away."""
     hoists = [ringing(1.0, length=length) for length in (150.0, 200.0, 300.0)]
     seas = [prepared(Mode(3.0, 0.0), RUNG, groups=2, length=200.0) for _ in range(2)]
-    assert [mode.damping > 0.0 for mode in _agreed_modes([*hoists, *seas])] == [True] * 5
+    assert [mode.damping > 0.0 for mode in agreed_modes([*hoists, *seas])] == [True] * 5
 
 
 @pytest.mark.parametrize(("variance", "rings"), [(42.0, True), (12.0, False)])
@@ -367,7 +369,7 @@ def test_what_a_motion_sensors_noise_rings_by_denies_no_load_that_swings_plainly
     """On a workboat one of 12 runs swung by 6.5 bar; another's noise rang by 1 more: all were rigid, an alarm."""
     hoist = ringing(1.0, left=PLAIN, variance=variance)
     calm = [prepared(Mode(3.0, 0.0), (3.0,) * 11, length=200.0), prepared(Mode(3.0, 0.0), (0.98,) * 11, length=200.0)]
-    modes = _agreed_modes([hoist, *calm])
+    modes = agreed_modes([hoist, *calm])
     assert [mode.damping > 0.0 for mode in modes] == [rings] * 3
     assert [mode.unheard for mode in modes] == [False, rings, False]  # in the noisy one nothing is heard of the wire
 
@@ -377,7 +379,7 @@ def test_what_all_runs_leave_tells_whether_those_that_ring_have_one_damper_or_on
     """Two of one frequency ring by 0.05; five seas at a third of it leave least by 0.15, or by 0.05 as well."""
     of_damper = (0.9, 0.8, 0.7, 0.6, 0.4, 0.15, 0.1, 0.2, *[0.5] * 3)  # of a ratio of 0.14
     seas = [ringing(1.0, 0.3 if damper else 0.28, of_damper if damper else SHARP, length=1800.0) for _ in range(5)]
-    modes = _agreed_modes([*seas, ringing(1.0), ringing(1.0)])
+    modes = agreed_modes([*seas, ringing(1.0), ringing(1.0)])
     assert [mode.damping for mode in modes] == pytest.approx([0.15 if damper else 0.05] * 5 + [0.05] * 2, rel=0.05)
 
 
@@ -386,7 +388,7 @@ def test_a_noisy_motion_sensor_denies_no_swing_that_the_other_runs_tell(noise, e
     """Held loads, whose measured motion is noise at the wire's mode: it would ring there, and nothing does."""
     hoists = [prepared(Mode(5.0 + k, 0.06, False)) for k in range(4)]
     held = [prepared(Mode(7.0, 0.0), RUNG, groups=2, noise=noise) for _ in range(3)]
-    modes = _agreed_modes([*hoists, *held])
+    modes = agreed_modes([*hoists, *held])
     assert [mode.damping for mode in modes] == pytest.approx([expected] * 7)
     assert [mode.unheard for mode in modes] == [False] * 4 + [noise] * 3
 
@@ -394,6 +396,6 @@ def test_a_noisy_motion_sensor_denies_no_swing_that_the_other_runs_tell(noise, e
 def test_a_log_that_does_not_say_how_long_its_wire_is_has_no_share_of_one_damper():
     """Runs that agree on a damper give a ratio by frequency, which that log has none of."""
     hoists = [prepared(Mode(5.0 + k, 0.3 / (5.0 + k), False)) for k in range(4)]
-    modes = _agreed_modes([*hoists, prepared(Mode(0.0, 0.0), RUNG, noise=True)])
+    modes = agreed_modes([*hoists, prepared(Mode(0.0, 0.0), RUNG, noise=True)])
     assert [mode.damping > 0.0 for mode in modes] == [True] * 4 + [False]
     assert not modes[-1].unheard

@@ -4,13 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.preparation.suspended_load import (
-    SuspendedLoad,
-    agreed_damping,
-    denies,
-    pooled_damping,
-    shared_damping,
-)
+from winch_friction.discrepancy.preparation.damping import agreed_damping, denies, pooled_damping, shared_damping
+from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
     Mode,
@@ -351,3 +346,15 @@ def test_runs_that_ring_down_to_nothing_say_more_than_seas_that_any_damping_foll
     left = [left_by_ringing(0.05, 0.005)] * 3 + [(0.6, 0.3, 0.16, 0.12, 0.1, 0.09, 0.08, 0.08, 0.08, 0.08, 0.09)] * 5
     found = pooled_damping(modes, left, [1.0] * 3 + [30.0] * 5)
     assert found(3.0, 1e4) == pytest.approx(0.05, rel=0.12)
+
+
+def test_one_load_that_swings_plainly_outweighs_many_runs_that_hold_noise_alone():
+    """A null of a 12 t winch kept 1.6 bar: one hoist of twelve runs swung, by ten times what the others held."""
+    rung, noise = (5.9, 1.7, 0.45, 0.17, 0.11, 0.18, 0.31, 0.46, 0.61, 0.74, 0.83), (*[1.0] * 9, 0.9, 0.85)
+    modes, left = [(7.2, 0.069, 8e3)] + [(8.0, 0.0, 5e3)] * 8, [rung] + [noise] * 8
+    found = pooled_damping(modes, left, [7.0] + [0.25] * 8)
+    assert found is not None
+    assert found(7.2, 8e3) == pytest.approx(0.07, rel=0.15)
+    assert pooled_damping(modes, left, [7.0] * 9) is None  # they swing as much, and by no mode
+    filtered = (5.9, 1.7, 0.9, 0.6, 0.5, 0.45, 0.42, 0.4, 0.4, 0.4, 0.4)
+    assert pooled_damping(modes, [filtered] + [noise] * 8, [7.0] + [0.25] * 8) is None

@@ -1,5 +1,6 @@
 """Whether a wire gives is decided by all runs, also where the model is fitted to some of them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +11,7 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
+from winch_friction.discrepancy.preparation.suspended_load import STILL, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
@@ -51,3 +53,36 @@ def test_what_swings_at_first_alone_is_left_out_on_a_wire_that_is_taken_for_rigi
     gap = np.random.default_rng(1).standard_normal(len(time)) * np.where(time < 10.0, louder, 1.0)
     kept = _rung_out(SimpleNamespace(time=time), mode, gap, np.ones(len(time), bool))
     assert time[kept][0] == pytest.approx(left_out, abs=0.1)
+
+
+def heavy_wire(columns, share):
+    """A run whose load swings as if two thirds of its wire's mass, `share` of what hangs, lay still: nothing is changed
+    but what the load cell and the crane file say, in kg/m and N."""
+    mass, length = float(np.median(columns["hook_load"])), float(np.median(columns["wire_out"]))
+    return {"wire_mass": share * mass / length, "softer": 1.0 - STILL * share}
+
+
+@pytest.mark.parametrize("share", [0.0, 0.6])
+def test_of_a_heavy_wire_a_third_swings_with_the_load(crane_150t, crane2_model, share):
+    """Nulls of a 250 t crane at 2000 m kept 2 to 4 bar: a load with all its wire's mass swings a fifth too slowly."""
+    columns = dict(make_dataset(77, "elastic_still", ())[6])
+    stated = heavy_wire(columns, share)
+    own = replace(
+        crane_150t, wire_mass=stated["wire_mass"], wire_stiffness=crane_150t.wire_stiffness * stated["softer"]
+    )
+    (as_it_is,) = meet([Run("r", columns)], crane_150t, crane2_model).prepared
+    (found,) = meet([Run("r", columns)], own, crane2_model).prepared
+    assert found.wire_mode.frequency == pytest.approx(as_it_is.wire_mode.frequency, rel=0.005)
+
+
+def test_a_wire_that_the_load_cell_does_not_feel_swings_with_nothing(crane_150t, crane2_model):
+    """A simulated load hangs on a wire without mass whatever the crane file says."""
+    columns = dict(make_dataset(77, "elastic_still", ())[6])
+    own = replace(crane_150t, wire_mass=heavy_wire(columns, 0.5)["wire_mass"])
+    found, as_it_is = (meet([Run("r", columns)], each, crane2_model).prepared[0] for each in (own, crane_150t))
+    assert found.wire_mode == as_it_is.wire_mode
+
+
+@pytest.mark.parametrize(("wire", "swings"), [(0.0, 1.0), (0.3, 0.8), (0.89, 1.0 - 0.89 * STILL), (1.5, 1.0)])
+def test_a_wire_heavier_than_what_hangs_is_not_weighed_by_the_cell(wire, swings):
+    assert swinging_mass(100e3, wire * 100e3) == pytest.approx(swings * 100e3)

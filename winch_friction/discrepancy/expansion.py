@@ -1,7 +1,7 @@
 """Runs as a model sees them, around a point, the seed or the best explanation so far; and what no run tells alone: does
 the wire give, and what hangs where nobody weighed it?"""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +11,9 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
-from winch_friction.discrepancy.preparation import suspended_load as wire
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
-from winch_friction.discrepancy.preparation.wire_mode import FOLLOWED, MOST_DAMPED, TOLD, Mode
+from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.wires import agreed_modes, swinging_along
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import corrected
@@ -83,11 +83,16 @@ def meet(
     loads = estimated_loads(right, own_crane, model)
     old = {run.name: run for run in known.prepared} if known is not None else {}
     prepared = [prepare(run, own_crane, model, loads.get(run.name, NAN), before=old.get(run.name)) for run in right]
+
+    def with_wire(k: int, wire: float) -> PreparedRun:
+        return prepare(right[k], own_crane, model, loads.get(right[k].name, NAN), before=prepared[k], wire=wire)
+
+    first = swinging_along(prepared, own_crane, with_wire)
     agreed = tuple(
         before
         if before.wire_mode == mode
         else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes, before=before)
-        for run, before, mode in zip(right, prepared, _agreed_modes(prepared), strict=True)
+        for run, before, mode in zip(right, first, agreed_modes(first), strict=True)
     )
     names = [run.name for run in runs] if fitted is None else fitted
     return Given(right, own_crane, model, loads, with_corrections(runs, crane, model, loads, agreed, names))
@@ -171,88 +176,6 @@ def _moved(one: Correction) -> tuple[float, Correction]:
     lower, upper = one.bounds
     step = step if one.value + step <= upper else -min(step, one.value - lower)
     return step, replace(one, value=one.value + step)
-
-
-def _agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
-    """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
-
-    All share what damps it: what two tell that ring as this wire makes their loads do; else what most that can tell
-    agree on closely, unless most of heave compensation denies it, where friction at reversals blurs a swing but does
-    not take it away (a load too light to show one has no vote); else what swings in all of them together. If none of
-    these tells, heave compensation decides, which excites the mode throughout, and where a sparse log leaves its runs
-    at odds the kicks of the others have a say.
-    """
-    compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
-    able = [run for run in prepared if _slow(run, TOLD)]
-    modes, variances = [(*run.wire_mode[:2], _mass(run)) for run in able], [run.swing_variance for run in able]
-    left = [_said(run) for run in able]
-    ringing = wire.ringing_damping(modes, left, [_length(run) for run in able], variances)
-    ratio = ringing[0] if ringing else wire.shared_damping(modes, left)
-    told = [run for run in compensating if _slow(run, TOLD)]
-    if ratio is not None and not ringing and 2 * sum(_denied(run, ratio) for run in told) > len(told):
-        ratio = None
-    if ratio is None:
-        ratio = wire.pooled_damping(modes, left, variances)
-    swinging = [(*run.wire_mode[:2], _mass(run)) for run in compensating if run.wire_mode.damping > 0.0]
-    if ratio is None and 2 * len(swinging) > max(3, len(compensating)):
-        every = [(*run.wire_mode[:2], _mass(run)) for run in prepared if run.wire_mode.damping > 0.0]
-        ratio = wire.agreed_damping(swinging) or wire.agreed_damping(every)
-        ratio = None if ratio is not None and _outvoted(able, ratio) else ratio
-    if ratio is None:
-        return [Mode(run.wire_mode.frequency, 0.0) for run in prepared]
-    said = [run.wire_mode.follows for run in prepared if run.wire_mode.follows is not None]
-    follows = 2 * sum(said) >= len(said)  # as a spring's stiffness does, unless the runs that tell deny it
-    return [
-        Mode(
-            at, ratio(at, _mass(run)) if _slow(run) else 0.0,
-            run.wire_mode.follows if run.wire_mode.damping > 0.0 else follows, _rings(run, ratio, bool(ringing)),
-        )
-        for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode.frequency) for run in prepared)
-    ]  # fmt: skip
-
-
-def _length(run: PreparedRun) -> float:
-    """Of the wire, m; nan where nobody logged it."""
-    return float(np.median(run.channels.get("wire_out", [NAN])))
-
-
-def _in_tune(run: PreparedRun, stiffness: float) -> float:
-    """The frequency of a run's mode, rad/s, unless it is off what the wire's stiffness times its length, N, gives."""
-    given, own = float(np.sqrt(stiffness / max(_mass(run) * _length(run), 1e-9))), run.wire_mode.frequency
-    return given if own > 0.0 and abs(np.log(own / given)) > wire.IN_TUNE else own
-
-
-def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
-    """Whether as many runs speak against a load that swings so damped as ring like one on a rope: a mode that is damped
-    more than any rope takes the noise of a motion sensor out of heave compensation, and tears the other runs apart."""
-    ringing = sum(0.0 < run.wire_mode.damping < MOST_DAMPED for run in able)
-    return sum(_denied(run, ratio) for run in able) >= max(ringing, 1)
-
-
-def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:
-    """Whether a run speaks against a load that swings so damped."""
-    return run.wire_mode.damping <= 0.0 and wire.denies(_said(run), ratio(run.wire_mode.frequency, _mass(run)))
-
-
-def _rings(run: PreparedRun, ratio: Callable[[float, float], float], plain: bool) -> bool:
-    """Whether a computed wire would make noise ring that no motor feels; any, where others ring `plain`."""
-    tells = (run.swing_noise or plain) and run.wire_mode.damping <= 0.0 and _slow(run)
-    return tells and wire.denies(run.swing_left, ratio(run.wire_mode.frequency, _mass(run)))
-
-
-def _said(run: PreparedRun) -> tuple[float, ...]:
-    """What a run says that a swing of each damping ratio would leave; where its sensors' noise rings by one, that is
-    nothing against it."""
-    return tuple(min(each, 1.0) for each in run.swing_left) if run.swing_noise else run.swing_left
-
-
-def _slow(run: PreparedRun, turn: float = FOLLOWED) -> bool:
-    """Whether the wire's mode turns by less than so much, rad, in a sample."""
-    return 0.0 < run.wire_mode.frequency * run.dt < turn
-
-
-def _mass(run: PreparedRun) -> float:
-    return float(np.median(run.load))
 
 
 def expand_around(

@@ -17,7 +17,7 @@ from winch_friction.discrepancy.preparation.balance import (
 )
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see
-from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
+from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
@@ -70,6 +70,7 @@ class PreparedRun:
     point: tuple[Any, ...]
     gap: FloatArray
     wire_mode: Mode  # of the load on its wire
+    swinging: float  # kg on the wire, while its mode is sought
     swing_left: tuple[float, ...]  # share of what may swing that a swing of each damping ratio would leave
     swing_noise: bool  # whether what swings in the load's acceleration is in the sensors alone
     swing_variance: float  # of what may swing, in the gap's unit squared; 0 where the mode was given
@@ -139,22 +140,22 @@ def prepare(
     spikes: np.ndarray | None = None,
     seen: Seen | None = None,
     before: PreparedRun | None = None,
+    wire: float = 0.0,
 ) -> PreparedRun:
     """Everything the workflow derives from one run; `load` kg where the run has no `hook_load`.
 
     With what is `accounted` for already, on the run's uniform grid, the pressures that friction is reckoned with come
     close to the true ones. `turning` takes direction and travel from the angle and marks the samples just after
-    reversals instead of the moving ones. `mode` is frequency rad/s and damping of the load on its wire where it is
-    known already; otherwise it is looked for. `spikes` marks samples to leave out, looked for unless given. What was
-    `seen` of this very run before does not depend on the model and need not be found again; of a run as another model
-    saw it `before`, what is the same is held once.
+    reversals instead of the moving ones. `mode` is that of the load on its wire if known; otherwise it is looked for,
+    with `wire` kg of its own hanging there. `spikes` marks samples to leave out, looked for unless given. What was
+    `seen` of this run does not depend on the model; of one as another saw it `before`, what is the same is held once.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     seen = before.seen if before is not None else seen
     seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
-    swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode)
+    swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode, wire)
     mode = swing.mode
     used = (
         motion.used
@@ -171,8 +172,8 @@ def prepare(
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
         drum_torque=hanging.drum_torque,
         groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
-        swing_left=swing.left, swing_variance=swing.variance / balance.unit_torque**2,
-        swing_noise=swing.noise,
+        swinging=swinging_mass(float(np.median(hanging.mass)), wire), swing_left=swing.left,
+        swing_variance=swing.variance / balance.unit_torque**2, swing_noise=swing.noise,
         load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
@@ -185,11 +186,13 @@ def prepare(
     return prepared if before is None else prepared.sharing(before)
 
 
-def _on_wire(balancing: Balancing, load: SuspendedLoad, mode: Mode | None) -> tuple[Swing, SuspendedLoad, Balance]:
+def _on_wire(
+    balancing: Balancing, load: SuspendedLoad, mode: Mode | None, wire: float
+) -> tuple[Swing, SuspendedLoad, Balance]:
     """The wire's mode, looked for unless given, what others would leave, the load behind it and the balance with it."""
     if mode is None:
         rigid = balancing.of(load)
-        swing = _wire_mode(balancing, load, rigid)
+        swing = _wire_mode(balancing, load, rigid, wire)
         if swing.mode.damping <= 0.0:
             return swing, load, rigid
     else:
@@ -198,13 +201,14 @@ def _on_wire(balancing: Balancing, load: SuspendedLoad, mode: Mode | None) -> tu
     return swing, hanging, balancing.of(hanging)
 
 
-def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> Swing:
+def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance, wire: float) -> Swing:
     """Frequency and damping of the load's swinging, where the wire's stiffness is known, and what other dampings would
     leave."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0:
         return Swing(load.acceleration, Mode(0.0, 0.0))
-    stiffnesses = wire_stiffnesses(balancing.crane.wire_stiffness, columns.get("wire_out"))
+    stiffness = balancing.crane.wire_stiffness * mass / swinging_mass(mass, wire)  # a lighter load swings faster
+    stiffnesses = wire_stiffnesses(stiffness, columns.get("wire_out"))
     slowest = Mode(float(np.sqrt(min(stiffnesses) / mass)), USUAL_DAMPING)
     counts = np.flatnonzero(motion.used & _settled(balancing.grid, slowest))
     if len(counts) < FEWEST_MOVING:

@@ -1,10 +1,13 @@
 """What hangs, and on which radius: the columns of a tare and of a radius, and the corrections that they become."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gap_rig import names_of, runs_with
 
+from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.geometry import (
     ONE_DEPTH,
@@ -13,7 +16,10 @@ from winch_friction.discrepancy.candidates.geometry import (
     radius_columns,
     tare_columns,
 )
+from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import GRAVITY
+from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model
 
 LEVER, GEAR = np.array([0.9, 1.0, 1.1]), 250.0
 HEAVE = np.array([0.0, 0.5, -0.5])  # m/s^2
@@ -75,3 +81,19 @@ def test_every_layer_may_have_an_error_of_its_own_where_there_are_three():
     assert {each.layers: each.value for each in written} == pytest.approx({(1,): 0.008, (2,): 0.018, (4,): 0.033})
     del found["e_R2"]  # on which no run that taught has been
     assert {each.layers for each in law.corrects(found, Shape(""), sides)} == {(1,), (4,)}
+
+
+def test_a_load_that_gathers_over_the_days_is_a_tare():
+    """Mud on the block by the dates of the runs: `unexplained`, with the oil's temperature first."""
+    runs = runs_with(33, "quiet")
+    starts = [float(each.time[0]) for each in runs]
+    share = [(start - min(starts)) / (max(starts) - min(starts)) for start in starts]
+    muddy = [
+        replace(run, columns={**run.columns, "hook_load": run.columns["hook_load"] - 2500.0 * own})
+        for run, own in zip(runs, share, strict=True)
+    ]
+    options = GapOptions(plan=False, proposals=False)
+    found = find_gap(muddy, load_crane("crane_150t"), load_model("a6vm215_crane2"), options)
+    assert names_of(found) == [{"tare_load"}]
+    assert found.effects[0].law_name == "gathers over the days"
+    assert found.effects[0].parameters["m_d"].value == pytest.approx(2500.0, rel=0.05)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import ALL, ParameterEstimate, Shape, Sides
+from winch_friction.discrepancy.candidates.creep import creeping_columns
 from winch_friction.discrepancy.candidates.feedback import (
     _swivel,
     bends_over,
@@ -18,11 +19,10 @@ from winch_friction.discrepancy.candidates.feedback import (
     warm_parabola_columns,
 )
 from winch_friction.discrepancy.candidates.signals import (
-    _offset,
     bent_columns,
     bowed_warm_columns,
-    creeping_columns,
     curved_columns,
+    offset_law,
     scale_columns,
     signal_candidates,
     warm_columns,
@@ -146,7 +146,7 @@ def test_a_feedback_that_drifts_reads_the_oil():
 
 def test_a_zero_that_bends_with_the_warmth_has_its_square_and_asks_for_cold_and_warm_oil():
     warm = SimpleNamespace(**vars(run()) | {"channels": {"oil_temperature": np.array([40.0, 50.0, 20.0])}})
-    columns = bowed_warm_columns(_offset, warm, {"groups": ALL})
+    columns = bowed_warm_columns(offset_law, warm, {"groups": ALL})
     np.testing.assert_allclose(columns, MOTORS * SWASH * np.array([[1.0, 0.0, 0.0], [1, 10, 100], [1, -20, 400]]))
     (own,) = [each for each in all_candidates() if each.law_name == "thermal zero that bends"]
     logs = [

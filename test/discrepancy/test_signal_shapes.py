@@ -21,13 +21,13 @@ from winch_friction.discrepancy.candidates.candidate import (
     groups_of,
     own_group_shapes,
 )
+from winch_friction.discrepancy.candidates.creep import creeping_candidates, creeping_columns, gathering_columns
 from winch_friction.discrepancy.candidates.signals import (
     DELAYS,
     PRESSURES,
     SPEED,
     bent_columns,
     bowed_warm_columns,
-    creeping_columns,
     delay_columns,
     scale_columns,
     signal_candidates,
@@ -63,7 +63,7 @@ def run(groups=BOTH, start=0.0, dt=0.02, **channels):
 
 @pytest.mark.parametrize(("which", "motors"), [(ALL, 11), (BALANCING, 3), (OTHER, 8)])
 def test_a_zero_error_is_one_of_the_motors_whose_transducers_it_speaks_of(which, motors):
-    column = group_columns(module._offset, run(), {"groups": which})
+    column = group_columns(module.offset_law, run(), {"groups": which})
     assert column == pytest.approx(motors * 2e-5)
 
 
@@ -78,7 +78,7 @@ def test_the_driving_group_of_hoisting_and_that_of_heave_compensation_may_be_off
 ):
     hoist = run((group(11, True),))
     for one, motors in ((hoist, hoisting), (run(), compensating)):
-        assert group_columns(module._offset, one, {"groups": which}) == pytest.approx(motors * 2e-5)
+        assert group_columns(module.offset_law, one, {"groups": which}) == pytest.approx(motors * 2e-5)
     assert [each.label for each in own_group_shapes([hoist, run()])] == [
         "the main group alone",
         "the active group alone",
@@ -113,9 +113,9 @@ def test_a_gain_of_port_a_takes_the_pressure_of_port_a_alone():
 def test_a_zero_that_shifts_with_the_oil_is_none_at_the_temperature_that_it_is_stated_at():
     cold, usual = (run(oil_temperature=THERMAL_REFERENCE + k) for k in (-10.0, 0.0))
     values = {"groups": ALL}
-    constant, warm, bow = bowed_warm_columns(module._offset, cold, values)[0]
+    constant, warm, bow = bowed_warm_columns(module.offset_law, cold, values)[0]
     assert (warm / constant, bow / constant) == pytest.approx((-10.0, 100.0))
-    assert bowed_warm_columns(module._offset, usual, values)[0, 1:] == pytest.approx(0.0)
+    assert bowed_warm_columns(module.offset_law, usual, values)[0, 1:] == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize(("start", "grown"), [(-50.0, 0.0), (100.0, 0.5), (900.0, 1.0)])
@@ -125,16 +125,27 @@ def test_a_zero_that_creeps_begins_with_the_first_run_and_settles(start, grown):
     assert crept / constant == pytest.approx(grown, abs=1e-9)
 
 
+@pytest.mark.parametrize(("start", "share"), [(-50.0, 0.0), (100.0, 0.5), (900.0, 1.0)])
+def test_a_load_that_gathers_has_its_weight_its_inertia_and_its_friction(start, share):
+    one = np.ones(len(TIME))
+    own = SimpleNamespace(**vars(run(start=start)), load=5e4 * one, radius=1.1 * one, gear_ratio=250.0,
+                          load_acceleration=0.2 * one, load_friction=500.0 * one)  # fmt: skip
+    constant, gathered = gathering_columns(own, {"from": 0.0, "to": 202.0})[50]
+    assert constant == pytest.approx(1.1 / 250.0 * (9.81 + 0.2) + 500.0 / 5e4)
+    assert gathered == pytest.approx(share * constant)
+
+
 def blind(law_name, *runs):
-    (candidate,) = [each for each in signal_candidates() if each.law_name == law_name]
+    (candidate,) = [each for each in (*signal_candidates(), *creeping_candidates()) if each.law_name == law_name]
     return candidate.blind(runs) is not None
 
 
 @pytest.mark.parametrize(("hours", "untold"), [(0.5, True), (30.0, False)])
 def test_a_creep_is_looked_for_over_days_and_runs_enough(hours, untold):
     runs = [run(start=3600.0 * hours * k / 5.0) for k in range(6)]
-    assert blind("creeping zero", *runs) is untold
-    assert blind("creeping zero", *runs[:5])
+    for law in ("creeping zero", "gathers over the days"):
+        assert blind(law, *runs) is untold
+        assert blind(law, *runs[:5])
 
 
 @pytest.mark.parametrize(("degrees", "untold"), [(10.0, True), (20.0, False)])

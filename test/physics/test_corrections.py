@@ -252,6 +252,18 @@ def test_a_zero_creeps_within_its_time_and_stays(truth, crane_150t, crane2_model
     assert corrector.uncorrected == ()
 
 
+def test_a_load_gathers_within_its_time_and_stays(truth, crane_150t, crane2_model):
+    gathering = Correction("tare_creep", 800.0, during=((100.0, 200.0),))
+    model = replace(crane2_model, corrections=(gathering,))
+    corrector, sample = SampleCorrector(crane_150t, model), next(iter(truth.samples()))
+    for time, more in ((50.0, 0.0), (150.0, 400.0), (9e9, 800.0)):
+        assert corrector(replace(sample, time=time)).hook_load == pytest.approx(sample.hook_load + more)
+        shifted = replace(truth, columns={**truth.columns, "time": truth.time - truth.time[0] + time})
+        right, _ = corrected(shifted, crane_150t, model)
+        grown = 800.0 * np.clip((shifted.columns["time"] - 100.0) / 100.0, 0.0, 1.0)
+        np.testing.assert_allclose(right.columns["hook_load"], truth.columns["hook_load"] + grown)
+
+
 @pytest.mark.parametrize("during", [(), ((0.0, 1.0), (2.0, 3.0)), ((0.0, float("inf")),)])
 def test_a_creeping_zero_needs_one_window_that_ends(during):
     with pytest.raises(InputError, match="pressure_creep' needs during: one window"):

@@ -27,6 +27,7 @@ from winch_friction.discrepancy.candidates.candidate import (
     label_of,
     own_group_shapes,
 )
+from winch_friction.discrepancy.candidates.creep import creeping_candidates
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
@@ -110,6 +111,7 @@ def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
         *DETECTED,
         *shipped_friction(),
         *signal_candidates(),
+        *creeping_candidates(),
         *feedback_candidates(),
         *gas_candidates(),
         *geometry_candidates(),

@@ -180,7 +180,7 @@ def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 def _mass(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     length = columns["wire_out"] if "wire_out" in c.declared.reads else 1.0
-    return columns | {"hook_load": columns["hook_load"] + c.value * length}
+    return columns | {"hook_load": columns["hook_load"] + c.error(columns["time"], None) * length}
 
 
 def _warmth(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
@@ -284,7 +284,7 @@ def _correct(sample: Sample, c: Correction) -> bool:
     if c.declared.action is Action.MASS:
         length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
         if length == length:
-            sample.hook_load += c.value * length
+            sample.hook_load += float(c.error(sample.time, None)) * length
         return length == length or sample.hook_load != sample.hook_load
     error = float(c.error(sample.time, sample.oil_temperature))
     if error != error:

@@ -94,7 +94,7 @@ def _put_mass(correction: Correction, scenario: Scenario, plant: np.void) -> Non
         plant["wire_mass"] += correction.value
         plant["mass"] += correction.value * scenario.wire_out
     else:
-        plant["mass"] += correction.value
+        plant["mass"] += correction.error(scenario.start_time, None)
 
 
 def _put_geometry(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np.void) -> None:

@@ -28,7 +28,6 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
-from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter
@@ -40,10 +39,8 @@ NEXT = 1.25  # times a delay, beyond which the next one on the grid says it bett
 DELAY, ZERO = "signal_delay", "pressure_offset"
 ZEROS = (ZERO, "torque_offset", "tare_load")  # of what tells a torque or a load; they act one way
 OIL = ("oil_temperature",)
-SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which a zero creeps no further
 # K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line
 WARMTH_TO_BEND = 15.0
-SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
@@ -57,7 +54,6 @@ p_TT = Parameter(
     "p_TT", "Pa/K^2", 5e-3 * BAR, lower=-0.2 * BAR, upper=0.2 * BAR, doc="bow of the transducers' zero over the warmth"
 )
 p_0 = Parameter("p_0", "Pa", 1.5 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="zero error of the transducers")
-p_d = Parameter("p_d", "Pa", 3.0 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="how far the zero creeps over the runs")
 c_p = Parameter(
     "c_p", "1/Pa", 0.01 / (200 * BAR), lower=-0.1 / (200 * BAR), upper=0.1 / (200 * BAR),
     doc="gain error of the transducers per pressure",
@@ -86,35 +82,7 @@ def _one_warmth(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     return "runs of colder and warmer oil", f"a zero that bends with the warmth shows over {WARMTH_TO_BEND:g} K"
 
 
-def creeping_columns(run: PreparedRun, values: Values) -> FloatArray:
-    """Zero error of the transducers at first, and what comes in proportion to the time, N m, shape (samples, 2)."""
-    constant = group_columns(_offset, run, values)
-    grown = np.clip((run.start + run.time - values["from"]) / (values["to"] - values["from"]), 0.0, 1.0)
-    return np.column_stack([constant, constant * grown[:, None]])
-
-
-def _creeping_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
-    """Which transducers creep, from the first run on, to the end or until they have settled before."""
-    begin, end = min(run.start for run in runs), max(run.start + float(run.time[-1]) for run in runs)
-    return [
-        Shape(
-            f"{each.label}, within {share:.0%} of the time",
-            {**each.values, "from": begin, "to": begin + share * (end - begin)},
-            carried=each.carried,
-        )
-        for each in group_shapes(runs)
-        for share in SETTLED
-    ]
-
-
-def _one_date(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    starts = [run.start for run in runs]
-    if len(runs) >= LIMITS.fewest_levels and max(starts) - min(starts) > SHORTEST_CREEP:
-        return None
-    return "runs of several days", "what creeps shows between runs that lie apart"
-
-
-def _offset(g: GroupSignals) -> FloatArray:
+def offset_law(g: GroupSignals) -> FloatArray:
     return g.count * g.displacement
 
 
@@ -213,14 +181,6 @@ def to(*found_as: tuple[str, Parameter]) -> Corrects:
     return corrects
 
 
-def _to_creep(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
-    groups, during = groups_of(shape, sides), ((shape.values["from"], shape.values["to"]),)
-    return [
-        correction("pressure_offset", found[p_0.name], groups=groups),
-        correction("pressure_creep", found[p_d.name], groups=groups, during=during),
-    ]
-
-
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
     """A speed that comes late, or pressures that do, which is a speed that comes early."""
     kind, factor = ("clock", 1.0 / CLOCKED) if shape.values.get("by_time") else ("delay", 1.0)
@@ -233,18 +193,16 @@ def signal_candidates() -> list[Candidate]:
     """Offset, gain and delay; the feedback of the displacement stands in a file of its own."""
     offset = r"\sum_g n_g D_g\,"
     return [
-        in_groups(ZERO, offset + "p_0", (p_0,), partial(group_columns, _offset), group_shapes,
+        in_groups(ZERO, offset + "p_0", (p_0,), partial(group_columns, offset_law), group_shapes,
                   to(("pressure_offset", p_0))),
-        in_groups(ZERO, offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, _offset),
+        in_groups(ZERO, offset + r"(p_0 + p_T(\vartheta-40))", (p_0, p_T), partial(warm_columns, offset_law),
                   group_shapes, to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T)),
                   law_name="thermal zero shift", needs=OIL),
         # a bridge is compensated at two temperatures: what is left between and beyond them is a bow
         in_groups(ZERO, offset + r"(p_0 + p_T(\vartheta-40) + p_{TT}(\vartheta-40)^2)", (p_0, p_T, p_TT),
-                  partial(bowed_warm_columns, _offset), group_shapes,
+                  partial(bowed_warm_columns, offset_law), group_shapes,
                   to(("pressure_offset", p_0), ("pressure_thermal_zero", p_T), ("pressure_thermal_bow", p_TT)),
                   law_name="thermal zero that bends", needs=OIL, blind=_one_warmth),
-        in_groups(ZERO, offset + r"(p_0 + p_d\,t/t_{end})", (p_0, p_d), creeping_columns,
-                  _creeping_shapes, _to_creep, law_name="creeping zero", blind=_one_date),
         in_groups("pressure_scale", r"e_p" + offset + r"\Delta p_g", (e_p,), scale_columns, _scale_shapes,
                   to(("pressure_scale", e_p))),
         in_groups("pressure_scale", offset + r"\Delta p_g(e_p + e_T(\vartheta-40))", (e_p, e_T), warm_scale_columns,

@@ -149,10 +149,10 @@ _DECLARED = (
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),
         "geometry", Action.RADIUS, by_layer=True,
     ),
-    DeclaredCorrection(
-        "tare_load", Parameter("tare_load", "kg", 2000.0, -2e4, 2e4, doc="mass that hook_load does not contain"),
-        "load", Action.MASS, ("hook_load",),
-    ),
+    *(DeclaredCorrection(
+        name, Parameter(name, "kg", 2000.0, -2e4, 2e4, doc=f"mass that hook_load does not contain{grown}"),
+        "load", Action.MASS, ("hook_load",), grows=bool(grown),
+    ) for name, grown in (("tare_load", ""), ("tare_creep", ", that has come within the given time, and stays"))),
     DeclaredCorrection(
         "wire_weight",
         Parameter("wire_weight", "kg/m", 12.0, 0.0, 200.0, doc="weight of the wire paid out, not in hook_load"),

@@ -104,6 +104,19 @@ def test_typical_sizes_are_those_of_the_machine():
     assert replace(line, own_size=True).scale(line.linear[0], small) == line.linear[0].typical
 
 
+@pytest.mark.parametrize(
+    ("rpm", "more"), [(2000.0, 1.0), (900.0, 1.0), (400.0, 25.0 / 6.0), (120.0, (209.44 / 20.0) ** 2 / 6.0)]
+)
+def test_what_is_stated_at_a_speed_that_a_motor_never_reaches_may_be_more_there(rpm, more):
+    """Churning of a motor of 2800 cm3/rev and 130 rpm was a line "of an implausible size, 30 times what is typical"."""
+    laws = {(each.name, each.law_name): each for each in all_candidates()}
+    usual, own = (machine_sizes([machine(1, 2800 * CM3_PER_REV, 6.2, 0.5, rpm=each)]) for each in (2100.0, rpm))
+    for name in ("line_pressure_drop", "port_turbulence"):
+        law = laws[name, ""]
+        first = law.linear[0]
+        assert law.scale(first, own) == pytest.approx(more * law.scale(first, usual), rel=0.01)
+
+
 @pytest.mark.parametrize(("rpm", "octaves"), [(2000.0, 0.0), (500.0, 0.0), (300.0, 2.0), (70.0, 4.0)])
 def test_laws_of_the_speed_follow_a_motor_of_large_stroke(rpm, octaves):
     """Of 8000 cm3/rev and 70 rpm none of their speeds was within half of its own: no Stribeck curve but the base's."""

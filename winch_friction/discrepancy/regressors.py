@@ -45,7 +45,7 @@ TOLERANCES = (
     # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar, or a coarser one's
     *((name, STEP / 3.0, -STEP, STEP) for name in ("zero", "passive zero")),
 )
-LINE, CHURNING = "line_pressure_drop", "churning"
+LINE, PORT, CHURNING = "line_pressure_drop", "port_turbulence", "churning"
 CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
 WITHIN = 6.0  # times a typical share of the drum's torque are plausible of it anywhere: up to there none is larger
 SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
@@ -54,10 +54,10 @@ SLOWEST_TOP = 20.0  # rad/s; a winch that runs no faster shows no churning
 def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     """How an amplitude of each unit grows with the machine, relative to the winch for which typical sizes are stated: a
     motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
-    winch lifts at one pressure, a resistance (also one that is stated at a fixed flow, under `LINE`) with the square of
-    its flow, what is stated at a fixed speed, under `CHURNING`, as much at a slow machine's own top speed, and a share
-    of the drum's torque that each motor loses, under `OF_DRUM`, with what it carries beyond `WITHIN` times. Of a drive
-    without pressures its torques with the largest that it gave, where that is more than one of those motors has.
+    winch lifts at one pressure, a resistance (also one stated at a fixed flow, under `LINE`) with the square of its
+    flow. What is stated at a fixed speed is as much at a slow machine's top speed, under `CHURNING`; of `LINE`, `PORT`
+    and a share of the drum's torque that each motor loses (`OF_DRUM`) counts what is beyond `WITHIN` times. Of a drive
+    without pressures torques go with the largest that it gave, if that is more than one motor has.
     """
     run = runs[0]
     swept = dict(run.constants).get("max_displacement", 0.0)
@@ -69,11 +69,11 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
         return {**dict.fromkeys(("N*m", "N*m*s/rad"), one), **dict.fromkeys(OF_WINCH, max(one / REFERENCE_MOTORS, 1.0))}
     one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
     lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
-    torques = dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one)
-    top = max(float(np.quantile(np.abs(each.speed), TOP)) for each in runs)
-    churned = one * max(REFERENCE_SPEED / max(top, SLOWEST_TOP), 1.0) ** CHURNS
+    torques = {**dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one), **dict.fromkeys(OF_WINCH, whole)}
+    top = max(SLOWEST_TOP, *(float(np.quantile(np.abs(each.speed), TOP)) for each in runs))
+    slow, far = max(REFERENCE_SPEED / top, 1.0), max((REFERENCE_SPEED / top) ** 2 / WITHIN, 1.0)
     carried = max(REFERENCE_GEAR * REFERENCE_MOTORS / (WITHIN * run.gear_ratio * motors), 1.0)
-    stated_at = {LINE: whole**-2, CHURNING: churned, **dict.fromkeys(OF_WINCH, whole), OF_DRUM: carried}
+    stated_at = {LINE: far / whole**2, PORT: far * one, CHURNING: one * slow**CHURNS, OF_DRUM: carried}
     return {**torques, **stated_at, "kg": lift, "kg/m": lift, "kg*m^2": run.inertia / REFERENCE_INERTIA}
 
 

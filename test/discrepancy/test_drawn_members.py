@@ -107,6 +107,18 @@ def test_by_much_more_than_the_square_of_its_flow_no_line_loses():
     assert not friction.line({"n_le": 2.6}, runs)
 
 
+@pytest.mark.parametrize("way", [-1.0, -0.5, 0.5, 1.0])
+def test_motors_of_one_displacement_churn_as_a_line_loses(way):
+    """Churning by 0.4 of its mean more one way was a line's alone: churning was tried in one sense of rotation only."""
+    laws = {each.law_name: each for each in module.literature()}
+    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02)]
+    line, churning = (
+        {shape.values[b] for shape in laws[law].shapes(runs)}
+        for law, b in (("line_pressure_power", "b_l"), ("churning_one_way", "b_cw"))
+    )
+    assert way in line & churning
+
+
 @pytest.mark.parametrize(("name", "values"), [
     ("low_displacement_each_way", (3.0, 1.0, 1.0, 2.0)), ("viscosity_each_way", (0.03, 0.01, 40.0)),
     ("brake_each_way", (3.0, 1.0)),

@@ -121,7 +121,7 @@ def test_motors_of_one_displacement_churn_as_a_line_loses(way):
 
 @pytest.mark.parametrize(("name", "values"), [
     ("low_displacement_each_way", (3.0, 1.0, 1.0, 2.0)), ("viscosity_each_way", (0.03, 0.01, 40.0)),
-    ("brake_each_way", (3.0, 1.0)),
+    ("brake_each_way", (3.0, 1.0)), ("high_pressure_each_way", (3.0, 1.0, 2.0)),
 ])  # fmt: skip
 def test_a_loss_of_another_amount_each_way_is_three_times_as_much_hoisting(name, values):
     term = term_named(name)

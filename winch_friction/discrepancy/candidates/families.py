@@ -30,7 +30,7 @@ DECAYS = (3.0, 8.0, 20.0)  # rad/s
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
 POWERS, FLOWS, EACH_WAY = (0.5, 1.5, 2.0, 3.0), (1.0, 1.75, 2.0), (-1.0, -0.5, 0.0, 0.5, 1.0)
-ONE_WAY = tuple(b for b in EACH_WAY if b)  # of a line, a port and churning alike: at one displacement they are one
+ONE_WAY, PORT = tuple(b for b in EACH_WAY if b), ("n_po", "m_po")  # as a line: the three are one at one displacement
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
 OIL, HUNG = ("oil_temperature",), ("hook_load", "wire_out")
 RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose zero means nothing
@@ -58,11 +58,11 @@ def literature() -> list[Candidate]:
         _of("low_displacement_loss", "low_displacement_power", {"a_lp": (0.0, 0.5, 1.0), "b_lp": (1.0, 2.0, 3.0)}),
         _of("low_displacement_loss", "low_displacement_each_way", {"a_lu": (0.5, 1.0), "b_lu": (1.0, 2.0, 3.0)}),
         _of("port_turbulence", "port_power", {"n_pp": (1.5, 2.0, 3.0), "m_pp": (1.0, 2.0, 3.0, 4.0)}),
-        _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": ONE_WAY},
-            continuous=("n_po", "m_po")),
+        _of("port_turbulence", "port_one_way", {"n_po": (2.0,), "m_po": (1.0, 3.0), "b_po": ONE_WAY}, continuous=PORT),
         _of("churning", "churning_viscous", {"n_cv": (1.3, 1.75, 2.3, 3.0)}, needs=OIL),
         _of("churning", "churning_one_way", {"n_cw": (1.5, 2.0, 3.0), "b_cw": ONE_WAY}, continuous=("n_cw",)),
-        _of("high_pressure_mixed", "high_pressure_power", {"n_hp": (1.5, 3.0, 4.0)}),
+        *(_of("high_pressure_mixed", law, {n: (1.5, 3.0, 4.0)})
+          for law, n in (("high_pressure_power", "n_hp"), ("high_pressure_each_way", "n_hu"))),
         # at lower speeds and in proportion to the pressure it is a Stribeck curve
         _of("high_pressure_mixed", "high_pressure_film", {"n_hf": (1.5, 2.0, 3.0), "w_hf": (20.0, 60.0, 180.0)}),
         # that does not fade within the speeds of a motor is the convex curve's: it took up what two runs differ by

@@ -110,6 +110,9 @@ n_cw = Parameter("n_cw", "1", 2.0, lower=1.0, upper=3.5, shape=True, doc="expone
 b_cw = Parameter("b_cw", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: hoisting alone, -1: lowering alone")
 K_hp = Parameter("K_hp", "N*m", 4.0, upper=200.0, doc="loss at 200 bar")
 n_hp = Parameter("n_hp", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
+K_hu = Parameter("K_hu", "N*m", 4.0, upper=200.0, doc="loss at 200 bar hoisting")
+K_hd = Parameter("K_hd", "N*m", 4.0, upper=200.0, doc="the same lowering")
+n_hu = Parameter("n_hu", "1", 3.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 K_hf = Parameter("K_hf", "N*m", 10.0, upper=500.0, doc="mixed loss at 200 bar and standstill")
 n_hf = Parameter("n_hf", "1", 2.0, lower=1.2, upper=6.0, shape=True, doc="exponent of the pressure")
 w_hf = Parameter("w_hf", "rad/s", 60.0, lower=0.1, upper=500.0, shape=True, doc="speed over which a film builds up")
@@ -181,6 +184,10 @@ high_pressure_power = _motor(
     (K_hp, n_hp),
     "paper 1 eq 10, C_m, with the exponent left open",
 )
+high_pressure_each_way = _motor(
+    "high_pressure_each_way", (K_hu.symbol * (1 + s) / 2 + K_hd.symbol * (1 - s) / 2) * _p**n_hu.symbol,
+    (K_hu, K_hd, n_hu), "paper 1 eq 10, C_m, of motors that pump one way and drive the other (ISO 4409)",
+)  # fmt: skip
 high_pressure_film = _motor(
     "high_pressure_film", K_hf.symbol * _p**n_hf.symbol * sp.exp(-w / w_hf.symbol), (K_hf, n_hf, w_hf),
     "paper 1 eq 10, C_m, which fades as a film builds up with the speed (Stribeck 1902)",

@@ -1,9 +1,7 @@
 """Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well). And what of
 them nobody measured: the silence between records that were merged into one file, and samples of a channel that stands
-still while the others live, or jumps; for `gap` and `check` alike.
-
-A transmitter that hangs repeats its last value, and leaps when it wakes where what it measures moved on; a lost
-telegram is one sample of 0 or of full scale. They are made missing, and said.
+still while the others live, or jumps; for `gap` and `check` alike. A transmitter that hangs repeats its last value, and
+leaps when it wakes; a lost telegram is one sample of 0 or of full scale. They are made missing, and said.
 """
 
 import itertools

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.preparation.damping import agreed_damping, denies, pooled_damping, shared_damping
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
@@ -13,6 +12,7 @@ from winch_friction.discrepancy.preparation.wire_mode import (
     swinging_load,
     wire_stiffnesses,
 )
+from winch_friction.discrepancy.preparation.wires import agreed_damping, denies, pooled_damping, shared_damping
 
 DT, MASS, LEVER = 0.02, 55e3, 1.136 / 250
 TIME = np.arange(0.0, 120.0, DT)

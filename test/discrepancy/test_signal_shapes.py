@@ -140,11 +140,11 @@ def blind(law_name, *runs):
     return candidate.blind(runs) is not None
 
 
-@pytest.mark.parametrize(("hours", "untold"), [(0.5, True), (30.0, False)])
-def test_a_creep_is_looked_for_over_days_and_runs_enough(hours, untold):
+@pytest.mark.parametrize(("hours", "creeps", "gathers"), [(0.5, False, False), (12.0, True, False), (30.0, True, True)])
+def test_a_creep_is_looked_for_over_days_and_runs_enough(hours, creeps, gathers):
     runs = [run(start=3600.0 * hours * k / 5.0) for k in range(6)]
-    for law in ("creeping zero", "gathers over the days"):
-        assert blind(law, *runs) is untold
+    for law, told in (("creeping zero", creeps), ("gathers over the days", gathers)):
+        assert blind(law, *runs) is not told
         assert blind(law, *runs[:5])
 
 

@@ -83,7 +83,7 @@ def test_a_brake_says_what_it_took_of_every_run():
                                                   ("since a date", True), ("", True)])  # fmt: skip
 def test_a_file_that_says_nothing_of_the_next_run_is_not_to_be_loaded(law, of_the_next):
     effect = Effect("brake_drag", (), "", "x^2", {}, 1e-9, 0.9, 1.0, law_name=law)
-    found = {"effects": [effect], "verdict": "missing_effect", "model": SimpleNamespace(corrections=())}
+    found = {"effects": [effect], "verdict": "missing_effect", "model": SimpleNamespace(corrections=(), terms=())}
     said = " ".join(next_steps(SimpleNamespace(next_experiment=None, adequacy=(), **found)))
     assert ("winch-friction load model.yaml" in said) is of_the_next
     assert ("nothing of the next one" in said) is not of_the_next

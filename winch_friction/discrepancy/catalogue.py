@@ -111,10 +111,10 @@ def all_candidates(effects_file: Path | None = None) -> list[Candidate]:
         *DETECTED,
         *shipped_friction(),
         *signal_candidates(),
-        *creeping_candidates(),
         *feedback_candidates(),
         *gas_candidates(),
         *geometry_candidates(),
+        *creeping_candidates(),
     ]
     if effects_file is not None:
         found += [replace(friction_candidate(term), own_size=True) for term in load_file(Path(effects_file))]

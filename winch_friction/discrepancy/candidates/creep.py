@@ -28,7 +28,9 @@ from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 
 SETTLED = (0.3, 0.6, 1.0)  # of the time between the first run and the last, after which nothing comes any more
-SHORTEST_CREEP = 3600.0  # s between the first run and the last: electronics warm up within that, and creep over days
+# s between the first run and the last: electronics warm up within an hour, and creep over days; mud and growth gather
+# over days, and what seven runs of an afternoon have in their order is anything
+SHORTEST_CREEP, SHORTEST_GATHERING = 3600.0, 86400.0
 
 p_d = Parameter("p_d", "Pa", 3.0 * BAR, lower=-50 * BAR, upper=50 * BAR, doc="how far the zero creeps over the runs")
 m_d = Parameter("m_d", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that comes over the runs, which no cell tells")
@@ -65,9 +67,9 @@ def _creeping_shapes(of: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
     ]
 
 
-def _one_date(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
+def _one_date(runs: Sequence[PreparedRun], shortest: float = SHORTEST_CREEP) -> tuple[str, str] | None:
     starts = [run.start for run in runs]
-    if len(runs) >= LIMITS.fewest_levels and max(starts) - min(starts) > SHORTEST_CREEP:
+    if len(runs) >= LIMITS.fewest_levels and max(starts) - min(starts) > shortest:
         return None
     return "runs of several days", "what creeps shows between runs that lie apart"
 
@@ -93,5 +95,6 @@ def creeping_candidates() -> list[Candidate]:
         # mud and growth gather on a block, and a cell's zero moves over the months (OIML R 60, zero return)
         Candidate("tare_load", r"(m_h+m_d\,t/t_{end})\,(g+\ddot x)\,R/i", (m_h, m_d), gathering_columns,
                   partial(_creeping_shapes, single_shape), kind="load", needs=("hook_load",),
-                  law_name="gathers over the days", blind=_one_date, corrects=_to_gather),
+                  law_name="gathers over the days", blind=partial(_one_date, shortest=SHORTEST_GATHERING),
+                  corrects=_to_gather),
     ]  # fmt: skip

@@ -208,13 +208,13 @@ def swinging_along(
     prepares a run so, by its place and its wire's mass in kg.
     """
     weights = crane.wire_mass * np.array([np.nan_to_num(_length(run)) for run in prepared])
-    share = STILL * weights / np.array([run.swinging for run in prepared])
-    heavy = np.flatnonzero((share > HEAVY) & np.isfinite(crane.wire_stiffness))
-    along = {int(k): again(int(k), float(weights[k])) for k in heavy}
-    less = [np.log(_least(own) / _least(prepared[k])) for k, own in along.items()]
+    along = STILL * weights > HEAVY * np.array([run.swinging for run in prepared])
+    heavy = np.flatnonzero(along & np.isfinite(crane.wire_stiffness))
+    tried = {int(k): again(int(k), float(weights[k])) for k in heavy}
+    less = [np.log(_least(own) / _least(prepared[k])) for k, own in tried.items()]
     if not less or np.mean(less) > -PLAINLY:
         return list(prepared)
-    return [along.get(k) or again(k, float(weights[k])) for k in range(len(prepared))]
+    return [tried.get(k) or again(k, float(weights[k])) for k in range(len(prepared))]
 
 
 def _least(run: PreparedRun) -> float:

@@ -142,13 +142,13 @@ def feedback_candidates() -> list[Candidate]:
         in_groups("swivel_offset", swivel + r"(D_0 + 4 D_b\,x(1-x) + D_T(\vartheta-40))", (D_0, D_b, D_T),
                   warm_bowed_columns, group_shapes, _to_bow, law_name="bows and shifts with the oil", needs=OIL,
                   blind=_few_strokes),
-        # a calibration at two strokes that was wrong at both, and what lies between them
+        # a calibration wrong at both its strokes: with a gain in it, which others have alone, it is a curve beside them
         in_groups("swivel_offset", swivel + r"(D_0 + e_D D_g + 4 D_b\,x(1-x))", (D_0, e_D, D_b), parabola_columns,
-                  group_shapes, _to_bow, law_name="a parabola over the stroke",
+                  group_shapes, _to_bow, law_name="a parabola over the stroke", free=True,
                   blind=partial(_few_strokes, fewest=FEWEST_OF_AN_S)),
         in_groups("swivel_offset", swivel + r"(D_0 + e_D D_g + 4 D_b\,x(1-x) + D_T(\vartheta-40))",
                   (D_0, e_D, D_b, D_T), warm_parabola_columns, group_shapes, _to_bow,
-                  law_name="a parabola that shifts with the oil", needs=OIL,
+                  law_name="a parabola that shifts with the oil", needs=OIL, free=True,
                   blind=partial(_few_strokes, fewest=FEWEST_OF_AN_S)),
     ]  # fmt: skip
     return [replace(each, of_stroke=True) for each in found]

@@ -81,7 +81,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "standing", lambda *_: trial(first))
     monkeypatch.setattr(workflow, "_once_more", lambda study, given, trial, search: (study, trial))
     monkeypatch.setattr(workflow, "propose", lambda *_: laws)
-    monkeypatch.setattr(workflow, "by_runs", lambda *_: seen.append(True) or named)
+    monkeypatch.setattr(workflow.again, "by_runs", lambda *_: seen.append(True) or named)
     monkeypatch.setattr(workflow, "replace", lambda result, **more: SimpleNamespace(**{**vars(result), **more}))
     monkeypatch.setattr(
         workflow, "assemble",
@@ -158,6 +158,44 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
     after = again.by_groups(STUDY, before)
     assert (after is other) is taken
     assert asked == [("one",)] * two
+
+
+@pytest.mark.parametrize(
+    ("other", "too_large", "taken"),
+    [
+        (trial(MISSING, FLOOR, FLOOR), True, True),
+        (trial(MISSING, FLOOR, FLOOR), False, False),  # what was found has a size that it may have
+        (trial(MISSING, 1.9 * FLOOR, FLOOR), True, False),
+        (trial(MISSING, FLOOR, 2.5 * FLOOR), True, False),
+        (trial(UNEXPLAINED, FLOOR, FLOOR), True, False),
+    ],
+)
+def test_what_one_law_does_by_an_implausible_size_another_may_do_by_its_own(monkeypatch, other, too_large, taken):
+    """The law that was too large is not asked again, its cause by another law is."""
+    asked = []
+
+    def search(study, given):
+        asked.append([(each.name, each.law_name) for each in study.options.candidates])
+        return other.search
+
+    def named(cause, law):
+        return SimpleNamespace(name=cause, law_name=law)
+
+    every = [named("pressure_scale", "thermal span shift"), named("pressure_scale", ""), named("swivel_offset", "")]
+    monkeypatch.setattr(again, "candidates_for", lambda *_: every)
+    monkeypatch.setattr(again, "run_states", lambda *_: [named("tare_load", "in some runs")])
+    monkeypatch.setattr(again, "search_runs", search)
+    monkeypatch.setattr(again, "standing", lambda *_: other)
+    before = trial(UNEXPLAINED)
+    before.search.given = SimpleNamespace(prepared=(), model=None)
+    final = SimpleNamespace(slots=[SimpleNamespace(name="pressure_scale", law="thermal span shift")])
+    first = SimpleNamespace(
+        selection=SimpleNamespace(final=final), cross=SimpleNamespace(at_bound=lambda *_: too_large)
+    )
+    after = again.without_implausible(STUDY, before, first)
+    assert (after is other) is taken
+    assert (after is before) is not taken
+    assert asked == [[("pressure_scale", ""), ("swivel_offset", ""), ("tare_load", "in some runs")]] * too_large
 
 
 @pytest.mark.parametrize(("kind", "laws", "left", "may"), [

@@ -153,9 +153,10 @@ def test_names_get_no_other_runs_where_they_are_not_right_in_all(monkeypatch, fu
 def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, asked):
     calls = []
     before = trial(kind, FAR)
-    monkeypatch.setattr(workflow, "by_beyond", lambda study, own, _: calls.append("beyond") or (study, own))
+    monkeypatch.setattr(workflow.again, "by_beyond", lambda study, own, _: calls.append("beyond") or (study, own))
     for name in ("by_groups", "by_surfaces"):
-        monkeypatch.setattr(workflow, name, lambda study, own: own)
+        monkeypatch.setattr(workflow.again, name, lambda study, own: own)
+    monkeypatch.setattr(workflow.again, "without_implausible", lambda study, own, _: own)
     monkeypatch.setattr(workflow, "swings", lambda _: False)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda _: False)
     search = SimpleNamespace(verdict=SimpleNamespace(kind=searched))

@@ -82,7 +82,8 @@ def answers(monkeypatch):
         monkeypatch.setattr(module, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)
     monkeypatch.setattr(workflow, "_with_other_runs", lambda study, trial: (study, trial))
     for step in ("by_surfaces", "by_groups"):
-        monkeypatch.setattr(workflow, step, lambda study, trial: trial)
+        monkeypatch.setattr(again, step, lambda study, trial: trial)
+    monkeypatch.setattr(again, "without_implausible", lambda study, trial, _: trial)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: True)
     monkeypatch.setattr(again, "as_rigid", lambda given: RIGID)
     return own

@@ -6,9 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy import adequacy
+from winch_friction.discrepancy import adequacy, again
 from winch_friction.discrepancy.adequacy import lock_holdout, refuse
-from winch_friction.discrepancy.again import by_beyond, by_groups, by_other_runs, by_runs, by_surfaces, without_swing
 from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     MISSING,
@@ -98,7 +97,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if trial.search.verdict.kind == UNEXPLAINED and options.proposals:
         proposals = propose(trial, study.split.train, partial(tried, study), study.rng)
         if not options.candidates and all(each.after > LIMITS.at_the_floor * each.noise_floor for each in proposals):
-            trial = by_runs(study, trial)
+            trial = again.by_runs(study, trial)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result, notes = assemble(study, trial), [*notes, *not_borne_out(search, trial.search)]
     if result.verdict == UNEXPLAINED:
@@ -123,15 +122,15 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
     if trial.search.verdict.kind != NOTHING and not study.options.candidates:
         study, trial = _with_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
-            study, trial = by_beyond(study, trial, search)
+            study, trial = again.by_beyond(study, trial, search)
         if trial.search.verdict.kind == UNEXPLAINED:
-            trial = by_groups(study, trial)
+            trial = again.by_groups(study, again.without_implausible(study, trial, search))
         if trial.search.verdict.kind != NOTHING:
             study.options.told("drawing surfaces")
-            trial = by_surfaces(study, trial) if _surfaces_may_say_more(trial.search) else trial
+            trial = again.by_surfaces(study, trial) if _surfaces_may_say_more(trial.search) else trial
     if trial.search.verdict.kind == UNEXPLAINED and swings(given):
         study.options.told("searching without a swing of the load")
-        trial = without_swing(study, given, trial)
+        trial = again.without_swing(study, given, trial)
     return study, trial
 
 
@@ -141,7 +140,7 @@ def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
     if not at_the_floor(trial.holdout):
         return study, trial
     showing = [name for name, left in trial.train.most_left_first.items() if left > LIMITS.far_off_the_floor]
-    return by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
+    return again.by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
 
 
 def _surfaces_may_say_more(search: Search) -> bool:

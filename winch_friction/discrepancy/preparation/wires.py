@@ -37,7 +37,7 @@ STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
 # of it left 0.9 and more by any rope's damping, those whose load plainly swings 0.03 to 0.7
 CLEARLY_BEST = 0.8
 MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
-HEAVY = 0.1  # of the mass that swings, by which the wire's own changes it: half of it in frequency, what tuning finds
+HEAVY, ASKED = 0.1, 3  # of the mass that swings, the wire's own: half of it in frequency; runs that swing most by such
 # of the mean logarithm of what swings is left, over the runs whose wire is heavy: by less neither mass says more
 PLAINLY = 0.1
 
@@ -208,9 +208,9 @@ def swinging_along(
     prepares a run so, by its place and its wire's mass in kg.
     """
     weights = crane.wire_mass * np.array([np.nan_to_num(_length(run)) for run in prepared])
-    along = STILL * weights > HEAVY * np.array([run.swinging for run in prepared])
-    heavy = np.flatnonzero(along & np.isfinite(crane.wire_stiffness))
-    tried = {int(k): again(int(k), float(weights[k])) for k in heavy}
+    along = (STILL * weights > HEAVY * np.array([run.swinging for run in prepared])) & np.isfinite(crane.wire_stiffness)
+    heavy = sorted(map(int, np.flatnonzero(along)), key=lambda k: -prepared[k].swing_variance)[:ASKED]
+    tried = {k: again(k, float(weights[k])) for k in heavy}
     less = [np.log(_least(own) / _least(prepared[k])) for k, own in tried.items()]
     if not less or np.mean(less) > -PLAINLY:
         return list(prepared)

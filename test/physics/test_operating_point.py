@@ -1,4 +1,7 @@
-"""The operating point knows which port's pressure is the higher: what is lost with one port's is that port's."""
+"""The operating point knows which port's pressure is the higher: what is lost with one port's is that port's; and when
+a motion turns."""
+
+import math
 
 import numpy as np
 import pytest
@@ -7,6 +10,7 @@ from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import operating_point, run_operating_points, sample_operating_point
+from winch_friction.physics.winch.operating_point import PredictedSpeed, time_to_reversal
 
 K_A, K_B = 1e-6, 3e-6
 A, B = np.array([120e5, 25e5, 70e5]), np.array([25e5, 90e5, 70e5])  # A higher, B higher, equal
@@ -114,3 +118,11 @@ def test_a_layer_that_nobody_says_is_the_outer_one_for_a_term_as_for_the_load(cr
     assert torques() == pytest.approx(torques(wire_layer=6.0))
     assert torques()[0] > 100.0
     assert torques(wire_layer=1.0) == pytest.approx((0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("speed", "acceleration", "seconds"),
+    [(10.0, -20.0, 0.5), (-10.0, 20.0, 0.5), (10.0, 20.0, math.inf), (-10.0, -20.0, math.inf), (10.0, 0.0, math.inf)],
+)
+def test_a_motion_turns_when_what_slows_it_has_brought_it_to_rest(speed, acceleration, seconds):
+    assert time_to_reversal(PredictedSpeed(speed, acceleration)) == seconds

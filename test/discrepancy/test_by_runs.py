@@ -133,16 +133,17 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     assert catalogue.another_in_each_run({"run_0"}, runs, model) == []  # five are too few
 
 
-@pytest.mark.parametrize(
-    ("other", "two", "taken"),
-    [
-        (trial(MISSING, FLOOR, FLOOR), True, True),
-        (trial(MISSING, FLOOR, FLOOR), False, False),  # heave compensation drives by the group of hoisting
-        (trial(MISSING, 1.9 * FLOOR, FLOOR), True, False),
-        (trial(MISSING, FLOOR, 2.5 * FLOOR), True, False),
-        (trial(UNEXPLAINED, FLOOR, FLOOR), True, False),
-    ],
-)
+# what a further search ends in, whether there is something to ask it for, and whether that is taken
+FURTHER = [
+    (trial(MISSING, FLOOR, FLOOR), True, True),
+    (trial(MISSING, FLOOR, FLOOR), False, False),
+    (trial(MISSING, 1.9 * FLOOR, FLOOR), True, False),  # the locked runs keep something
+    (trial(MISSING, FLOOR, 2.5 * FLOOR), True, False),  # the runs to learn from do
+    (trial(UNEXPLAINED, FLOOR, FLOOR), True, False),
+]
+
+
+@pytest.mark.parametrize(("other", "two", "taken"), FURTHER)
 def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypatch, other, two, taken):
     asked = []
 
@@ -160,16 +161,7 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
     assert asked == [("one",)] * two
 
 
-@pytest.mark.parametrize(
-    ("other", "too_large", "taken"),
-    [
-        (trial(MISSING, FLOOR, FLOOR), True, True),
-        (trial(MISSING, FLOOR, FLOOR), False, False),  # what was found has a size that it may have
-        (trial(MISSING, 1.9 * FLOOR, FLOOR), True, False),
-        (trial(MISSING, FLOOR, 2.5 * FLOOR), True, False),
-        (trial(UNEXPLAINED, FLOOR, FLOOR), True, False),
-    ],
-)
+@pytest.mark.parametrize(("other", "too_large", "taken"), FURTHER)
 def test_what_one_law_does_by_an_implausible_size_another_may_do_by_its_own(monkeypatch, other, too_large, taken):
     """The law that was too large is not asked again, its cause by another law is."""
     asked = []
@@ -181,9 +173,9 @@ def test_what_one_law_does_by_an_implausible_size_another_may_do_by_its_own(monk
     def named(cause, law):
         return SimpleNamespace(name=cause, law_name=law)
 
-    every = [named("pressure_scale", "thermal span shift"), named("pressure_scale", ""), named("swivel_offset", "")]
-    monkeypatch.setattr(again, "candidates_for", lambda *_: every)
-    monkeypatch.setattr(again, "run_states", lambda *_: [named("tare_load", "in some runs")])
+    every = [named("pressure_scale", "thermal span shift"), named("pressure_scale", ""), named("swivel_offset", ""),
+             named("tare_load", "in some runs")]  # fmt: skip
+    monkeypatch.setattr(again, "at_hand", lambda *_: every)
     monkeypatch.setattr(again, "search_runs", search)
     monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(UNEXPLAINED)

@@ -99,7 +99,8 @@ def motor(
         _range(pressure, BAR, "pressure"),
         _range(displacement, CM3_PER_REV, "displacement") if displacement else usual.displacement,
     )
-    names = list(MOTOR_MODELS) if "all" in (model or [use.replace("best", "all")]) else (model or [use])
+    wanted = model or ["all" if use == "best" else use]
+    names = list(MOTOR_MODELS) if "all" in wanted else wanted
     found = identify_motor(
         data,
         names,

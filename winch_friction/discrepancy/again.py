@@ -9,7 +9,7 @@ from functools import partial
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
-from winch_friction.discrepancy.catalogue import another_in_each_run, candidates_for, of_one_group, run_states
+from winch_friction.discrepancy.catalogue import another_in_each_run, at_hand, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, share_left, worse_runs
 from winch_friction.discrepancy.run_states import EACH_RUN
@@ -57,8 +57,7 @@ def without_implausible(study: Study, trial: Trial, search: Search) -> Trial:
     beyond = {(slot.name, slot.law) for slot in final.slots if search.cross.at_bound(final, slot)}
     if not beyond:
         return trial
-    every = [*candidates_for(given.prepared, given.model, study.options.effects_file),
-             *run_states(given.prepared, given.model)]  # fmt: skip
+    every = at_hand(given.prepared, given.model, study.options.effects_file)
     kept = tuple(each for each in every if (each.name, each.law_name) not in beyond)
     other = search_runs(replace(study, options=replace(study.options, candidates=kept)), given)
     return _closing(study, other, trial) if other.selection.found else trial

@@ -175,6 +175,11 @@ SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay",
 FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
 
 
+def at_hand(runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None) -> list[Candidate]:
+    """All that a search of these runs begins with: every candidate, and what they show in two levels."""
+    return [*candidates_for(runs, model, effects_file), *run_states(runs, model)]
+
+
 def run_states(runs: Sequence[PreparedRun], model: FrictionModel) -> list[Candidate]:
     """Candidates for what these runs show in two levels and nothing that was logged tells apart."""
     if len(runs) < LIMITS.fewest_levels:

@@ -3,6 +3,7 @@ the wire give, and what hangs where nobody weighed it?"""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -82,16 +83,14 @@ def meet(
     right, own_crane = _corrected(runs, crane, model)
     loads = estimated_loads(right, own_crane, model)
     old = {run.name: run for run in known.prepared} if known is not None else {}
-    prepared = [prepare(run, own_crane, model, loads.get(run.name, NAN), before=old.get(run.name)) for run in right]
 
-    def with_wire(k: int, wire: float) -> PreparedRun:
-        return prepare(right[k], own_crane, model, loads.get(right[k].name, NAN), before=prepared[k], wire=wire)
+    def seen(run: Run, before: PreparedRun | None, **known: Any) -> PreparedRun:
+        return prepare(run, own_crane, model, loads.get(run.name, NAN), before=before, **known)
 
-    first = swinging_along(prepared, own_crane, with_wire)
+    prepared = [seen(run, old.get(run.name)) for run in right]
+    first = swinging_along(prepared, own_crane, lambda k, wire: seen(right[k], prepared[k], wire=wire))
     agreed = tuple(
-        before
-        if before.wire_mode == mode
-        else prepare(run, own_crane, model, loads.get(run.name, NAN), mode=mode, spikes=before.spikes, before=before)
+        before if before.wire_mode == mode else seen(run, before, mode=mode, spikes=before.spikes)
         for run, before, mode in zip(right, first, agreed_modes(first), strict=True)
     )
     names = [run.name for run in runs] if fitted is None else fitted

@@ -17,7 +17,7 @@ from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, C
 from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
 from winch_friction.discrepancy.candidates.signals import DELAY
-from winch_friction.discrepancy.catalogue import candidates_for, run_states, testable
+from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.detectors.delay import without_delay
@@ -182,9 +182,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
     ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    known = study.options.candidates or [
-        *candidates_for(prepared, model, study.options.effects_file), *run_states(prepared, model)
-    ]  # fmt: skip
+    known = study.options.candidates or at_hand(prepared, model, study.options.effects_file)
     if also is not None:
         known = [*known, *also(prepared, model)]
     usable, blind = testable(known, prepared, model)

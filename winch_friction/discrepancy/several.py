@@ -75,12 +75,11 @@ def by_reversals(study: Study, full: Trial, shown: ReversalFinding, trial_of: Ca
     search = full.search
     alone, own = trial_of(replace(search, reversal=None)), shown.slot.origin[0]
     model = read_back(alone.repaired.model)
-    given = meet(study.split.runs, study.crane, model, (), search.given)
     bare = replace(model, corrections=())  # the runs are without them, and what they would change is not asked again
+    given = replace(meet(study.split.runs, study.crane, model, (), search.given), model=bare)
     seen = Expansion(given.prepared, layout_of(base_of(bare, bare), (), given.prepared, bare), bare)
     base = seen.cross(study.split.train).explain(())
-    given, rng = replace(given, model=bare), study.rng
-    shows = after_reversals(given, seen, base, [own], study.split.train, rng, lambda each: each)
+    shows = after_reversals(given, seen, base, [own], study.split.train, study.rng, lambda each: each)
     return full if shows is not None else alone
 
 

@@ -252,12 +252,10 @@ def _in_rpm(where: str) -> str:
 
 def _considered(result: GapResult) -> str:
     kept = {effect.name for effect in result.effects}
-    first = [(c.name, shape_in_words(c.variant), 100 * c.gain, c.p_value) for c in result.considered if c.stage == 0][
-        :8
-    ]
-    rows = [
-        (c.stage + 1, c.name, shape_in_words(c.variant), c.verdict) for c in result.considered if c.name not in kept
-    ]
+    alone = [c for c in result.considered if c.stage == 0][:8]
+    rejected = [c for c in result.considered if c.name not in kept]
+    first = [(c.name, shape_in_words(c.variant), 100 * c.gain, c.p_value) for c in alone]
+    rows = [(c.stage + 1, c.name, shape_in_words(c.variant), c.verdict) for c in rejected]
     blind = [(u.name, u.needs, u.because) for u in result.untestable]
     html = ""
     if first:

@@ -116,7 +116,7 @@ def _to_bow(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]:
     corrections = [
         correction("displacement_offset", found[D_0.name], groups=groups),
         correction("displacement_scale", scale, groups=groups),
-        correction("displacement_curvature", found[D_b.name], curvature, groups=groups),
+        correction("displacement_curvature", bow, curvature, groups=groups),
     ]
     if D_s.name in found:
         corrections.append(correction("displacement_s_shape", found[D_s.name], groups=groups, beyond=largest))

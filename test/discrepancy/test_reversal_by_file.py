@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gap_rig import runs_with
 
+from winch_friction.discrepancy import standing
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.expansion import Split, meet
@@ -51,3 +52,23 @@ def test_bristles_stand_beside_names_where_their_file_leaves_something_of_bristl
     assert asked == [None]
     assert (stands is full) is kept
     assert stands.search.reversal is (reversal if kept else None)
+
+
+@pytest.mark.parametrize(
+    ("slots", "reversal", "asked"),
+    [(("a name",), "bristles", True), ((), "bristles", False), (("a name",), None, False)],
+)
+def test_what_stands_is_asked_of_its_file_where_names_and_a_reversal_are_in_it(monkeypatch, slots, reversal, asked):
+    selection = SimpleNamespace(final=SimpleNamespace(slots=slots), untold="")
+    search = SimpleNamespace(
+        selection=selection, explanation=SimpleNamespace(slots=slots), reversal=reversal, ripple=None, flow=()
+    )
+    full, held = SimpleNamespace(search=search), object()
+    monkeypatch.setattr(standing, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing, "nameless", lambda own: own)
+    monkeypatch.setattr(standing, "tried", lambda *_: full)
+    monkeypatch.setattr(standing, "_sets", lambda own, _: [own])
+    monkeypatch.setattr(standing, "_stands", lambda *_: (full, ""))
+    monkeypatch.setattr(standing, "by_reversals", lambda study, own, shown, _: held if shown == "bristles" else own)
+    study = SimpleNamespace(rng=None, split=None)
+    assert standing._borne_out(study, search) is (held if asked else full)

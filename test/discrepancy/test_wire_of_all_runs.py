@@ -13,6 +13,7 @@ from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
 from winch_friction.discrepancy.preparation.suspended_load import STILL, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.wires import ASKED, swinging_along
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import Run
@@ -86,3 +87,27 @@ def test_a_wire_that_the_load_cell_does_not_feel_swings_with_nothing(crane_150t,
 @pytest.mark.parametrize(("wire", "swings"), [(0.0, 1.0), (0.3, 0.8), (0.89, 1.0 - 0.89 * STILL), (1.5, 1.0)])
 def test_a_wire_heavier_than_what_hangs_is_not_weighed_by_the_cell(wire, swings):
     assert swinging_mass(100e3, wire * 100e3) == pytest.approx(swings * 100e3)
+
+
+@pytest.mark.parametrize("less", [True, False])
+def test_the_runs_that_swing_most_say_whether_a_heavy_wire_swings_along(less):
+    """Each costs a preparation: of six three are asked, and the others follow only where these say so."""
+    crane = SimpleNamespace(wire_mass=10.0, wire_stiffness=1e8)
+
+    def swinging(left, variance):
+        return SimpleNamespace(swinging=1e4, channels={"wire_out": np.array([500.0])}, swing_left=(left,),
+                               swing_noise=False, swing_variance=variance)  # fmt: skip
+
+    before = [swinging(0.8, variance) for variance in (1.0, 6.0, 2.0, 5.0, 3.0, 4.0)]
+    asked = []
+
+    def again(k, wire):
+        asked.append(k)
+        assert wire == 5000.0
+        return swinging(0.2 if less else 0.8, before[k].swing_variance)
+
+    after = swinging_along(before, crane, again)
+    assert len(asked[:ASKED]) == 3
+    assert asked[:ASKED] == [1, 3, 5]
+    assert sorted(asked) == ([0, 1, 2, 3, 4, 5] if less else [1, 3, 5])
+    assert [own.swing_left for own in after] == [(0.2 if less else 0.8,)] * 6

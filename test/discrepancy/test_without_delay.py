@@ -1,4 +1,5 @@
-"""A suspected delay as what the runs are without it: at five values, with a swing on the wire that is told once."""
+"""A suspected delay as what the runs are without it: at five values, with a swing on the wire that is told once, and
+as a filter that makes all or half of it."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
-from winch_friction.discrepancy.candidates.signals import PRESSURES, SPEED
+from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED, tau
 from winch_friction.discrepancy.detectors import delay
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.physics.friction import FrictionModel
 
 SIZE, MODE = 0.1, (3.0, 0.05, None)
 TIME = np.linspace(0.0, 150.0, 101)  # a clock that drifts is late by SIZE in the middle
@@ -26,48 +28,94 @@ def prepared(gap, mode=None):
     return SimpleNamespace(name="run", start=0.0, time=TIME, gap=gap, wire_mode=mode)
 
 
+class Asked:
+    """What was told anew, and in turn with which wires: the corrections, by name, of every model that was asked."""
+
+    def __init__(self, monkeypatch):
+        self.told, self.in_turn = [], []
+        monkeypatch.setattr(delay, "meet", self.meet)
+        monkeypatch.setattr(delay, "met_in_turn", self.met_in_turn)
+
+    def gap_without(self, model):
+        late = sum(each.value * (100.0 if each.name.endswith("_clock") else 1.0) for each in model.corrections)
+        return np.full(len(TIME), 2.0 - late)
+
+    def meet(self, runs, crane, model, _):
+        self.told.append({each.name: each.value for each in model.corrections})
+        return SimpleNamespace(prepared=(prepared(self.gap_without(model), MODE),))
+
+    def met_in_turn(self, given, model, modes):
+        assert modes == {"run": MODE}
+        self.in_turn.append({each.name: each.value for each in model.corrections})
+        yield prepared(self.gap_without(model))
+
+    def shapes_of(self, size=SIZE, late=SPEED):
+        given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=(prepared(np.full(len(TIME), 2.0)),))
+        shape = Shape("late", {"ahead": max(size, 0.0), "behind": max(-size, 0.0), "late": late})
+        suspect = Slot(delay.DELAY, "late", (0,), origin=(None, shape))
+        own = Candidate(
+            delay.DELAY, columns=lambda run, values: values["ahead"] * run.gap[:, None], shapes=lambda _: []
+        )
+        (found,) = delay.without_delay(given, [own], suspect, None, SimpleNamespace(slots=()))
+        return found, given.prepared[0]
+
+
 def test_the_five_values_share_the_swing_that_is_told_without_the_first_estimate(monkeypatch):
-    asked, clocks = [], []
-
-    def gap_without(model):
-        (late,) = model.corrections
-        return np.full(len(TIME), 2.0 - late.value * (100.0 if late.name == "signal_clock" else 1.0))
-
-    def meet(runs, crane, model, _):
-        asked.append(("told", model.corrections[0].value))
-        return SimpleNamespace(prepared=(prepared(gap_without(model), MODE),))
-
-    def in_turn(given, model, modes):
-        asked.append((modes["run"], model.corrections[0].value))
-        clocks.append(model.corrections[0].name == "signal_clock")
-        yield prepared(gap_without(model))
-
-    monkeypatch.setattr(delay, "meet", meet)
-    monkeypatch.setattr(delay, "met_in_turn", in_turn)
-    given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=(prepared(np.full(len(TIME), 2.0)),))
-    shape = Shape("late", {"ahead": SIZE, "behind": 0.0, "late": SPEED})
-    suspect = Slot(delay.DELAY, "late", (0,), origin=(None, shape))
-    own = Candidate(delay.DELAY, columns=lambda run, values: values["ahead"] * run.gap[:, None], shapes=lambda _: [])
-    (found,) = delay.without_delay(given, [own], suspect, None, SimpleNamespace(slots=()))
-    assert asked[0] == ("told", pytest.approx(SIZE))
-    assert [mode for mode, _ in asked[1:]] == [MODE] * 7
-    assert clocks == [False] * 4 + [True] * 3
-    assert sorted(value / SIZE for _, value in asked[:5]) == pytest.approx(sorted(delay.AROUND))
+    asked = Asked(monkeypatch)
+    found, run = asked.shapes_of()
+    assert asked.told[0] == {"signal_delay": pytest.approx(SIZE)}
+    delays = [each["signal_delay"] for each in asked.in_turn[:4]]
+    assert sorted(value / SIZE for value in (*delays, SIZE)) == pytest.approx(sorted(delay.AROUND))
     # of a clock that is late by as much in the middle of a run
-    assert [75.0 * value / SIZE for _, value in asked[5:]] == pytest.approx(delay.GROWING)
+    assert [75.0 * each["signal_clock"] / SIZE for each in asked.in_turn[4:7]] == pytest.approx(delay.COARSELY)
     for each in found.shapes([]):  # what a delay of one second would leave
-        np.testing.assert_allclose(found.columns(given.prepared[0], each.values), 1.0)
-    assert len(found.shapes([])) == 8
+        np.testing.assert_allclose(found.columns(run, each.values), 1.0)
+    assert len(found.shapes([])) == 8 + 6
     # shapes of other sizes are the first derivative's
-    small = found.columns(given.prepared[0], {"ahead": 0.01, "behind": 0.0, "late": SPEED})
+    small = found.columns(run, {"ahead": 0.01, "behind": 0.0, "late": SPEED})
     np.testing.assert_allclose(small, 0.01 * 2.0)
+
+
+def test_a_filter_may_make_all_or_half_of_what_is_late(monkeypatch):
+    asked = Asked(monkeypatch)
+    found, run = asked.shapes_of()
+    # a wire is told anew under each: what a delay leaves of a filter sounds like one
+    assert asked.told[1:] == [
+        {"signal_filter": pytest.approx(SIZE)},
+        {"signal_delay": pytest.approx(SIZE / 2), "signal_filter": pytest.approx(SIZE / 2)},
+    ]
+    sums = [sum(each.values()) / SIZE for each in asked.in_turn[7:]]
+    assert sums == pytest.approx([0.8, 1.25, 0.8, 1.25])
+    shapes = found.shapes([])
+    assert [each.label for each in shapes[8:]] == [
+        f"speed late by {size} ms by a filter{more}" for more in ("", " and a delay") for size in (80, 100, 125)
+    ]
+    assert len({each.label for each in shapes}) == len(shapes)
+    for each in shapes:
+        np.testing.assert_allclose(found.columns(run, each.values), 1.0)
+
+
+@pytest.mark.parametrize(("size", "late", "filtered"), [(-SIZE, PRESSURES, True), (-SIZE, SPEED, False)])
+def test_a_filter_makes_nothing_early(monkeypatch, size, late, filtered):
+    found, _ = Asked(monkeypatch).shapes_of(size, late)
+    assert any("filtered" in each.values for each in found.shapes([])) == filtered
 
 
 @pytest.mark.parametrize(("late", "sign"), [(SPEED, 1.0), (PRESSURES, -1.0)])
 def test_what_is_suspected_of_a_clock_that_drifts_is_its_delay_in_the_middle(late, sign):
-    shape = delay._shape(sign * 0.3, late, by_time=True)
+    shape = delay._shape(sign * 0.3, late, by_time=1.0)
     suspect = Slot(delay.DELAY, shape.label, (0,), origin=(None, shape))
     assert delay._size(suspect, None, SimpleNamespace(slots=()), half=60.0) == pytest.approx(sign * 0.3 * 0.6)
-    one = delay._delay(sign * 0.3, late, by_time=True)
+    (one,) = delay._without(shape, FrictionModel("m", (), ())).corrections
     assert (one.name, one.value) == ("signal_clock" if late == SPEED else "pressure_clock", pytest.approx(0.003))
     assert "late by 300 ms after 100 s" in shape.label
+
+
+@pytest.mark.parametrize(("value", "long"), [(0.039, True), (-0.04, True), (0.03, False)])
+def test_a_small_delay_as_long_as_one_may_be_is_taken_out_of_the_runs(value, long):
+    slot = Slot(delay.DELAY, "small", (0,), origin=(None, Shape("small", SMALL_DELAY)))
+    problem = SimpleNamespace(columns=lambda slots: [0], layout=SimpleNamespace(scales=[tau.typical]))
+    fitted = SimpleNamespace(slots=(slot,), beta=np.array([value / tau.typical]))
+    assert delay.suspected([slot], SimpleNamespace(problem=problem), fitted) == (slot if long else None)
+    # what is only near to what was found has no size of its own
+    assert delay.suspected([slot], SimpleNamespace(problem=problem), SimpleNamespace(slots=())) is None

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
+from scipy.signal import lsim
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.corrections import (
@@ -73,7 +74,7 @@ def spoiled(run, correction):
     time = run.time - run.time[0]
     for channel in correction.declared.channels:
         names = [name for name in (channel, f"active.{channel}") if name in columns]
-        if action is Action.DELAY:
+        if correction.declared.late:
             names = [name for name in columns if name.rpartition(".")[2] == channel]
         for name in names:
             true = columns[name]
@@ -96,6 +97,8 @@ def spoiled(run, correction):
                 columns[name] = true + e * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
             elif action is Action.DELAY:
                 columns[name] = np.interp(time - e * (time if correction.declared.by_time else 1.0), time, true)
+            elif action is Action.FILTER:  # settled on the first value
+                columns[name] = true[0] + lsim(([1.0], [e, 1.0]), true - true[0], 0.02 * np.arange(len(time)))[1]
             elif action is Action.MASS:
                 columns[name] = true - e * (columns["wire_out"] if correction.declared.reads else 1.0)
             elif action is Action.WARMTH:
@@ -138,8 +141,8 @@ def test_every_correction_gives_the_truth_back(name, sign, truth, crane_150t, cr
         assert changed, "the error must show in the log, or this test proves nothing"
         assert crane is crane_150t
     keep = np.isin(truth.time, run.time)
-    # a delay does not know what came before the log began, and loses what it shifts at one end
-    inner = slice(60, -60) if correction.declared.action is Action.DELAY else slice(None)
+    # a delay and a filter do not know what came before the log began, and a delay loses what it shifts at one end
+    inner = slice(60, -60) if correction.declared.late else slice(None)
     for column in truth.columns:
         np.testing.assert_allclose(run[column][inner], truth[column][keep][inner], rtol=1e-3, atol=1e-2)
     assert run.metadata["corrections"] == (name,)
@@ -276,7 +279,7 @@ def test_without_corrections_nothing_is_touched(truth, crane_150t, crane2_model)
     assert SampleCorrector(crane_150t, crane2_model)(sample) is sample
 
 
-@pytest.mark.parametrize("name", [n for n, d in DECLARED.items() if d.channels and d.action is not Action.DELAY])
+@pytest.mark.parametrize("name", [n for n, d in DECLARED.items() if d.channels and not d.late])
 def test_a_missing_channel_is_one_line_by_name(name, truth, crane_150t, crane2_model):
     own = DECLARED[name]
     for channel in (*own.channels, *own.reads):

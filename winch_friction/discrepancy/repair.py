@@ -27,7 +27,7 @@ from winch_friction.discrepancy.regressors import base_of, build_problem, key_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Term, term_named
-from winch_friction.physics.friction.correction import Action, Correction
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import unique_parameters
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import Crane
@@ -247,7 +247,7 @@ def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple
     """Change of parameters and corrections, the parameters' covariance and the corrections' deviations."""
     # a delay that is in the model is all that the signals are out of step by: the tolerance beside it would keep a part
     # of it, and the file does not carry tolerances
-    delayed = any(each.declared.action is Action.DELAY and not each.during for each in now.model.corrections)
+    delayed = any(each.declared.late and not each.during for each in now.model.corrections)
     base = base_of(prior, now.model, loose, held=("timing",) if delayed else ())
     cross = CrossFit(build_problem(now.prepared, layout_of(base, (), now.prepared, prior)))
     fitted = cross.explain(())

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.detectors.delay import without_delay
+from winch_friction.discrepancy.detectors.delay import suspected, without_delay
 from winch_friction.discrepancy.detectors.lost_flow import FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
@@ -143,12 +143,6 @@ class Study:
     rng: np.random.Generator
 
 
-def is_long_delay(slot: Slot) -> bool:
-    """Whether a shape is a delay that is no small one, which its first derivative says."""
-    values = slot.origin[1].values
-    return slot.name == DELAY and not slot.law and 0.0 in (values["ahead"], values["behind"])
-
-
 @dataclass(frozen=True)
 class Search:
     """What the training runs gave."""
@@ -195,7 +189,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
         if not selection.final.slots and (most := most_of_it(cross, selection.base)):
             shapes = (most,)
-        late = next((each for each in shapes if is_long_delay(each)), None)
+        late = suspected(shapes, cross, selection.final)
         if late is not None:
             candidates = without_delay(given, candidates, late, cross, selection.final)
         del cross  # the largest thing there is, and not needed beside the next one

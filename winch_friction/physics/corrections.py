@@ -1,8 +1,8 @@
 """Corrections taken out: of whole runs, of live samples, of the crane (declared in `physics.friction.correction`).
 
-What happens to a channel on its way into the log is a delay, then a gain, which may grow, then an offset; they are
-taken out in the opposite order. Loads, calculated gas pressures and the commanded speed follow, from signals that are
-right by then.
+What happens to a channel on its way into the log is a delay, then a gain, which may grow, then an offset, then a
+filter; they are taken out in the opposite order. Loads, calculated gas pressures and the commanded speed follow, from
+signals that are right by then.
 """
 
 import math
@@ -38,8 +38,8 @@ __all__ = [
 
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
-    Action.OFFSET, Action.BEND, Action.S_SHAPE, Action.CURVATURE, Action.SCALE, Action.DELAY, Action.MASS, Action.HEAT,
-    Action.WARMTH, Action.SLIP, Action.AIR,
+    Action.FILTER, Action.OFFSET, Action.BEND, Action.S_SHAPE, Action.CURVATURE, Action.SCALE, Action.DELAY,
+    Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP, Action.AIR,
 )  # fmt: skip
 S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
 NEWTON_STEPS = 6  # an S of a tenth of what would fold it is exact to rounding after three
@@ -100,7 +100,7 @@ def _missing(correction: Correction, run: Run) -> list[str]:
     """What a run lacks for one correction, in words; a motor group that does not run needs none."""
     own = correction.declared
     wanted = [*own.channels, *own.reads]
-    if own.action is Action.DELAY:  # whatever of these a run has is late by the same
+    if own.late:  # whatever of these a run has is late by the same
         return []
     whole = [channel for channel in wanted if channel not in GROUP_CHANNELS]
     groups = [g for g in run.groups if not correction.groups or g in correction.groups]
@@ -162,12 +162,26 @@ def straight(logged: Any, per_unit: float) -> Any:
     return 2.0 * logged / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * per_unit * logged, 0.0)))
 
 
-def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
-    time = columns["time"]
+def _late(columns: Columns, run: Run, c: Correction) -> list[str]:
+    """Columns that came late by the same."""
     late = [name for name in affected(c, run.groups) if name in columns]
     if "motor_speed" in late and "heave_velocity" not in columns:  # a simulation that the log drove is late as well
         late += [name for name in columns if name.endswith("_simulated")]
+    return late
+
+
+def _filter(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
+    """What went into a first-order lag is what came out and its change within the time constant."""
+    time = columns["time"]
+    if len(time) < 2:
+        return columns
+    late = {name: columns[name] + c.value * np.gradient(columns[name], time) for name in _late(columns, run, c)}
+    return columns | late
+
+
+def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
+    """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
+    time, late = columns["time"], _late(columns, run, c)
     if not late or len(time) < 2:
         return columns
     at = time + (c.value * (time - time[0]) / (1.0 - c.value) if c.declared.by_time else c.value)
@@ -220,6 +234,7 @@ def _air(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {
     **dict.fromkeys((Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE), _shown),
+    Action.FILTER: _filter,
     Action.DELAY: _delay,
     Action.MASS: _mass,
     Action.WARMTH: _warmth,

@@ -16,6 +16,7 @@ _OF_THE_PLANT = {
     Action.HEAT: "accumulator_thermal",
     Action.SLIP: "slip_leakage",
     Action.AIR: "entrained_air",
+    Action.FILTER: "signal_delay",
 }
 
 

@@ -181,12 +181,19 @@ def to(*found_as: tuple[str, Parameter]) -> Corrects:
     return corrects
 
 
+def late_by(values: Values) -> dict[str, float]:
+    """The corrections that a shape of lateness is, and what each has of it: of a speed that comes late, or of pressures
+    that do, which is a speed that comes early."""
+    side, sign = ("pressure", -1.0) if values["late"] == PRESSURES else ("signal", 1.0)
+    if "by_time" in values:
+        return {f"{side}_clock": sign / CLOCKED}
+    filtered = values.get("filtered", 0.0)
+    parts = {f"{side}_delay": sign * (1.0 - filtered), f"{side}_filter": sign * filtered}
+    return {name: share for name, share in parts.items() if share}
+
+
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
-    """A speed that comes late, or pressures that do, which is a speed that comes early."""
-    kind, factor = ("clock", 1.0 / CLOCKED) if shape.values.get("by_time") else ("delay", 1.0)
-    if shape.values["late"] == SPEED:
-        return [correction(f"signal_{kind}", found[tau.name], factor)]
-    return [correction(f"pressure_{kind}", found[tau.name], -factor)]
+    return [correction(name, found[tau.name], share) for name, share in late_by(shape.values).items()]
 
 
 def signal_candidates() -> list[Candidate]:

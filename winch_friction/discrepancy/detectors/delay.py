@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values
-from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, tau
+from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, SMALL, SPEED, late_by, tau
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -21,38 +21,62 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 
 AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
-GROWING = (0.8, 1.0, 1.25)  # the same of a clock that drifts
+COARSELY = (0.8, 1.0, 1.25)  # the same of a clock that drifts, and of a filter
+FILTERED = (1.0, 0.5)  # shares of what is late that a filter of first order makes, alone or behind a scan or a bus
+PRESSES = 0.95  # of the longest small one, from which on it may be a longer one
 REACH = 1.1  # times a delay: half way to the next one
+
+Key = tuple[str, frozenset[tuple[str, float]]]  # a run's name and the values of a shape
+
+
+def suspected(slots: Sequence[Slot], cross: CrossFit, fitted: Explanation) -> Slot | None:
+    """The first delay among these that is no small one: of the longer ones that are tried, or as long as a small one,
+    of which its first derivative says all, may be."""
+    for slot in slots:
+        if slot.name != DELAY or slot.law:
+            continue
+        shape: Shape = slot.origin[1]
+        small = 0.0 not in (shape.values["ahead"], shape.values["behind"])
+        if not small or slot in fitted.slots and abs(_fitted(slot, cross, fitted)) >= PRESSES * SMALL * tau.typical:
+            return slot
+    return None
 
 
 def without_delay(
     given: Given, candidates: Sequence[Candidate], suspect: Slot, cross: CrossFit, fitted: Explanation
 ) -> list[Candidate]:
     """The candidates, the `suspect` delay as what its signals are without it, and without one that grows in each run:
-    two loggers' clocks are set when a run begins, and drift."""
+    two loggers' clocks are set when a run begins, and drift. What starts, stops or swings within tenths of a second
+    comes out of a filter smaller too, which no delay makes; of a wave it delays all alike."""
     half = 0.5 * float(np.median([run.time[-1] for run in given.prepared]))  # s, when one that grows is its mean
     late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted, half)
     shapes = [_shape(size * factor, late) for factor in AROUND]
-    shapes += [_shape(size * factor * CLOCKED / half, late, by_time=True) for factor in GROWING]
-    columns: dict[tuple[str, float, bool], FloatArray] = {}
+    shapes += [_shape(size * factor * CLOCKED / half, late, by_time=1.0) for factor in COARSELY]
+    columns: dict[Key, FloatArray] = {}
 
-    def taken_out(delay: float, by_time: bool = False) -> FrictionModel:
-        return replace(given.model, corrections=(_delay(delay, late, by_time),))  # what it has is out of these runs
-
-    def keep(delay: float, by_time: bool, without: Iterable[PreparedRun]) -> None:
+    def keep(shape: Shape, without: Iterable[PreparedRun]) -> None:
         for old, new in zip(given.prepared, without, strict=True):
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
-            columns[old.name, delay, by_time] = (old.gap - gap)[:, None] / delay
+            columns[_key(old, shape.values)] = (old.gap - gap)[:, None] / shape.values["delay"]
 
-    # a swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay differs
-    met = meet(given.runs, given.crane, taken_out(size), ()).prepared
-    modes = {run.name: run.wire_mode for run in met}
-    keep(size, False, met)
-    del met  # its gaps are all that is needed
-    for shape in shapes:
-        delay, by_time = shape.values["delay"], "by_time" in shape.values
-        if by_time or delay != size:
-            keep(delay, by_time, met_in_turn(given, taken_out(delay, by_time), modes))
+    def keep_all(shapes: Sequence[Shape]) -> None:
+        """A swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay
+        differs."""
+        own = next(each for each in shapes if each.values["delay"] == size)
+        met = meet(given.runs, given.crane, _without(own, given.model), ()).prepared
+        modes = {run.name: run.wire_mode for run in met}
+        keep(own, met)
+        del met  # its gaps are all that is needed
+        for shape in shapes:
+            if shape is not own:
+                keep(shape, met_in_turn(given, _without(shape, given.model), modes))
+
+    keep_all(shapes)
+    if (size > 0.0) == (late == SPEED):
+        for share in FILTERED:
+            filtered = [_shape(size * factor, late, filtered=share) for factor in COARSELY]
+            keep_all(filtered)
+            shapes += filtered
     return [
         replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
         if each.name == DELAY and not each.law_name
@@ -67,32 +91,44 @@ def _size(slot: Slot, cross: CrossFit, fitted: Explanation, half: float) -> floa
     values = slot.origin[1].values
     size = values["ahead"] - values["behind"]
     if slot in fitted.slots:
-        at = cross.problem.columns(fitted.slots).index(slot.columns[0])
-        size = float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
+        size = _fitted(slot, cross, fitted)
     return size * half / CLOCKED if "by_time" in values else size
 
 
-def _shape(delay: float, late: float, by_time: bool = False) -> Shape:
-    """One of `delay` s, or that has grown to it `CLOCKED` s after a run began."""
-    values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay}
-    values |= {"by_time": 1.0} if by_time else {}
+def _fitted(slot: Slot, cross: CrossFit, fitted: Explanation) -> float:
+    at = cross.problem.columns(fitted.slots).index(slot.columns[0])
+    return float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
+
+
+def _shape(delay: float, late: float, **how: float) -> Shape:
+    """One of `delay` s, or that has grown to it `CLOCKED` s after a run began, or of which a filter makes a share."""
+    values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay, **how}
     reach = sorted((delay / REACH / tau.typical, delay * REACH / tau.typical))
-    signal, when = "pressures" if late == PRESSURES else "speed", f" after {CLOCKED:g} s" if by_time else ""
-    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms{when}", values, (reach[0], reach[1]))
+    signal, more = "pressures" if late == PRESSURES else "speed", ""
+    if "by_time" in how:
+        more = f" after {CLOCKED:g} s"
+    elif "filtered" in how:
+        more = " by a filter" if how["filtered"] == 1.0 else " by a filter and a delay"
+    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms{more}", values, (reach[0], reach[1]))
 
 
-def _delay(delay: float, late: float, by_time: bool) -> Correction:
-    side, value = ("pressure", -delay) if late == PRESSURES else ("signal", delay)
-    name, value = (f"{side}_clock", value / CLOCKED) if by_time else (f"{side}_delay", value)
-    return Correction(name, float(np.clip(value, *Correction(name, 0.0).bounds)))
+def _without(shape: Shape, model: FrictionModel) -> FrictionModel:
+    """The model that takes this out of the signals; what it has itself is out of these runs."""
+    found = [
+        Correction(name, float(np.clip(shape.values["delay"] * share, *Correction(name, 0.0).bounds)))
+        for name, share in late_by(shape.values).items()
+    ]
+    return replace(model, corrections=tuple(found))
+
+
+def _key(run: PreparedRun, values: Values) -> Key:
+    return run.name, frozenset(values.items())
 
 
 def _shapes(candidate: Candidate, exact: Sequence[Shape], runs: Sequence[PreparedRun]) -> list[Shape]:
     return [*candidate.shapes(runs), *exact]
 
 
-def _columns(
-    candidate: Candidate, exact: Mapping[tuple[str, float, bool], FloatArray], run: PreparedRun, values: Values
-) -> FloatArray:
-    own = exact.get((run.name, values.get("delay", 0.0), "by_time" in values))
+def _columns(candidate: Candidate, exact: Mapping[Key, FloatArray], run: PreparedRun, values: Values) -> FloatArray:
+    own = exact.get(_key(run, values))
     return candidate.columns(run, values) if own is None else own

@@ -28,6 +28,7 @@ class Action(Enum):
     BEND = "bend"  # measured = true + e (true - beyond) from `beyond` on, true below
     S_SHAPE = "s_shape"  # measured = true + e s(x), s = 6 sqrt(3) x (1 - x) (1 - 2 x), x = true / beyond: at most e
     DELAY = "delay"  # measured(t) = true(t - e)
+    FILTER = "filter"  # true = measured + e d(measured)/dt: a first-order lag with the time constant e
     MASS = "mass"  # hook_load = true mass - e (times wire_out where it is named)
     RADIUS = "radius"  # rope radius = crane file's + e
     INERTIA = "inertia"  # inertia at the shaft = crane file's + e
@@ -68,7 +69,13 @@ class DeclaredCorrection:
         """What it is, in words."""
         return self.parameter.doc
 
+    @property
+    def late(self) -> bool:
+        """Whether it is when a signal was logged that is wrong, of whatever a run has of these channels."""
+        return self.action in LATE
 
+
+LATE = (Action.DELAY, Action.FILTER)
 _PRESSURES = ("pressure_a", "pressure_b")
 _SPEED = ("motor_speed", "drum_speed", "shaft_angle")
 _DRIVE = (*_PRESSURES, "motor_torque")
@@ -78,8 +85,9 @@ _OIL = ("oil_temperature",)
 def _signal(
     name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
-    parameter = Parameter(name, unit, typical, lower=-reach, upper=reach, doc=doc)
-    by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action is not Action.DELAY
+    lower = 0.0 if action is Action.FILTER else -reach  # a filter makes nothing early
+    parameter = Parameter(name, unit, typical, lower=lower, upper=reach, doc=doc)
+    by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action not in LATE
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
 
 
@@ -90,9 +98,11 @@ def _gains(name: str, action: Action, *size: Any, per: str = "", **more: Any) ->
     return own, _signal(f"{name}_a", action, *size, one, "pressure_a", **more)
 
 
-def _late(name: str, unit: str, typical: float, reach: float, doc: str, **more: Any) -> tuple[DeclaredCorrection, ...]:
+def _late(
+    name: str, unit: str, typical: float, reach: float, doc: str, action: Action = Action.DELAY, **more: Any
+) -> tuple[DeclaredCorrection, ...]:
     """Of the speed, and of the pressures or what else tells the drive's torque."""
-    size, more = (Action.DELAY, unit, typical, reach), {"live": False, **more}
+    size, more = (action, unit, typical, reach), {"live": False, **more}
     return (
         _signal(f"signal_{name}", *size, doc.format("the speed is"), *_SPEED, **more),
         _signal(f"pressure_{name}", *size, doc.format("the pressures (or the motor torque) are"), *_DRIVE, **more),
@@ -145,6 +155,7 @@ _DECLARED = (
             "displacement", bends_in="m^3/rad"),
     *_late("delay", "s", 0.05, 0.5, "how late {} logged"),
     *_late("clock", "1", 1e-3, 5e-3, "how late {} logged, per second since the run began", by_time=True),
+    *_late("filter", "s", 0.05, 0.5, "time constant of the first-order filter behind which {} logged", Action.FILTER),
     DeclaredCorrection(
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),
         "geometry", Action.RADIUS, by_layer=True,

@@ -78,7 +78,7 @@ def test_a_feedforward_that_still_waits_after_a_report_is_an_error(
     active: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     node = active(CompensatorNode, diagnostics_period=1.0)
-    now = node.service_now()
+    now = node._activated
     for later, level in ((0.5, WARN), (5.0, ERROR)):
         monkeypatch.setattr(node, "service_now", lambda later=later: now + later)
         assert node.health()[0].level == level

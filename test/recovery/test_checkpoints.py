@@ -27,10 +27,10 @@ WRITER = """
 import sys
 from winch_friction.records.checkpoint import write_checkpoint
 number = int(sys.argv[2])
-print("ready", flush=True)
 while True:
     number += 1
     write_checkpoint(sys.argv[1], {"number": number, "filling": [float(number)] * 4000})
+    print("written", flush=True)
 """
 
 
@@ -97,7 +97,7 @@ def test_a_writer_killed_at_any_moment_leaves_a_whole_checkpoint(tmp_path):
         with subprocess.Popen(
             [sys.executable, "-c", WRITER, str(path), str(number)], stdout=subprocess.PIPE, text=True
         ) as writer:
-            writer.stdout.readline()
+            writer.stdout.readline()  # a busy machine may take as long for the first as the rest has
             time.sleep(0.02 + 0.06 * rng.random())
             os.kill(writer.pid, signal.SIGKILL)
         snapshot = read_checkpoint(path)

@@ -175,7 +175,7 @@ def test_what_one_law_does_by_an_implausible_size_another_may_do_by_its_own(monk
 
     every = [named("pressure_scale", "thermal span shift"), named("pressure_scale", ""), named("swivel_offset", ""),
              named("tare_load", "in some runs")]  # fmt: skip
-    monkeypatch.setattr(again, "at_hand", lambda *_: every)
+    monkeypatch.setattr(again, "every_candidate", lambda *_: every)
     monkeypatch.setattr(again, "search_runs", search)
     monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(UNEXPLAINED)

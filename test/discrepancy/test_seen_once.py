@@ -1,15 +1,20 @@
 """What a run tells whatever the model says is found once and held once, however many models meet it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from gap_rig import runs_with
 
-from winch_friction.discrepancy import regressors, workflow
-from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy import catalogue, regressors, standing, workflow
+from winch_friction.discrepancy.answer import GapOptions, Verdict
+from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.engine import regions
 from winch_friction.discrepancy.engine.blocks import RunBlocks
-from winch_friction.discrepancy.expansion import Expansion, expand_around, meet
+from winch_friction.discrepancy.expansion import Expansion, Split, expand_around, meet
 from winch_friction.discrepancy.preparation import prepare as preparing
+from winch_friction.discrepancy.preparation import seen as seeing
+from winch_friction.discrepancy.search import Study, nameless, search_runs
 
 
 def _other(model):
@@ -35,13 +40,14 @@ def test_a_search_that_finds_nothing_looks_at_each_run_once(monkeypatch, crane_1
     runs, looks = runs_with(917, "quiet", length=0.3), []
     see = preparing.see
 
-    def counted(run, crane, turning=False):
+    def counted(run, crane, turning=False, before=None):
         if not turning:
             looks.append(run.name)
-        return see(run, crane, turning)
+        return see(run, crane, turning, before)
 
     monkeypatch.setattr(preparing, "see", counted)
-    workflow.find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False))
+    result = workflow.find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False))
+    assert not any(run.means for side in (result.train, result.holdout) for run in side.runs)
     assert sorted(looks) == sorted(run.name for run in runs)
 
 
@@ -72,14 +78,95 @@ def test_what_a_constant_weight_could_explain_goes_in_place():
     np.testing.assert_allclose(found.y, y - weight * (weight @ y) / scale, atol=1e-12)
 
 
-def test_what_was_turned_round_keeps_nothing_to_prepare_it_again(crane_150t, crane2_model):
-    runs = runs_with(917, "quiet", length=0.3)
+def test_what_was_turned_round_keeps_nothing_to_prepare_it_again(monkeypatch, crane_150t, crane2_model):
+    runs, grids, uniform = runs_with(917, "quiet", length=0.3), [], seeing.uniform
     given = meet(runs, crane_150t, crane2_model)
+    monkeypatch.setattr(seeing, "uniform", lambda run: grids.append(run.name) or uniform(run))
     base = regressors.base_of(crane2_model, crane2_model)
     seed = Expansion(given.prepared, regressors.layout_of(base, [], given.prepared, crane2_model), crane2_model)
     none = seed.cross([run.name for run in given.prepared]).explain(())
     assert all(run.seen is None for run in expand_around(given, seed, none, [], turning=True).runs)
+    assert not grids  # it is the same, and of a million rows a tenth of the peak
     assert all(run.seen is not None for run in expand_around(given, seed, none, []).runs)
+
+
+def _layout(prepared, model, candidates):
+    return regressors.layout_of(regressors.base_of(model, model), candidates, prepared, model)
+
+
+def test_means_of_columns_that_were_asked_for_before_are_kept(monkeypatch, crane_150t, crane2_model):
+    """A search that asks once more in another way puts hundreds of columns of the same runs to the same blocks."""
+    prepared = meet(runs_with(917, "quiet", length=0.3), crane_150t, crane2_model).prepared
+    candidates, _ = catalogue.testable(signal_candidates(), prepared, crane2_model)
+    layout, asked, made = _layout(prepared, crane2_model, candidates), [], regressors.slot_columns
+    monkeypatch.setattr(regressors, "slot_columns", lambda run, slot: asked.append(slot.name) or made(run, slot))
+    first = regressors.build_problem(prepared, layout)
+    slots = len(prepared) * len(layout.slots)
+    assert len(asked) == slots > 100
+    twice = replace(candidates[0], columns=lambda run, values: 2.0 * candidates[0].columns(run, values))
+    again = regressors.build_problem(prepared, _layout(prepared, crane2_model, [*candidates, twice]))
+    more = len(again.layout.slots) - len(layout.slots)
+    assert len(asked) == slots + len(prepared) * more  # of another candidate of the same name they are made
+    width = first.blocks.x.shape[1]
+    np.testing.assert_array_equal(again.blocks.x[:, :width], first.blocks.x)
+    own = layout.slots[0].columns[0]
+    np.testing.assert_allclose(again.blocks.x[:, width], 2.0 * first.blocks.x[:, own])
+
+
+def test_the_means_of_days_of_logs_are_not_kept(monkeypatch, crane_150t, crane2_model):
+    prepared = meet(runs_with(917, "quiet", length=0.3), crane_150t, crane2_model).prepared
+    candidates, _ = catalogue.testable(signal_candidates(), prepared, crane2_model)
+    layout = _layout(prepared, crane2_model, candidates)
+    regressors.build_problem(prepared, layout, by_sample=True)
+    assert not any(run.means for run in prepared)  # of what just reversed nobody asks twice
+    monkeypatch.setattr(regressors, "MOST_KEPT", 1000)
+    regressors.build_problem(prepared, layout)
+    assert not any(run.means for run in prepared)
+
+
+def test_runs_around_a_point_are_prepared_once_as_long_as_somebody_holds_them(crane_150t, crane2_model):
+    runs = runs_with(917, "quiet", length=0.3)
+    given = meet(runs, crane_150t, crane2_model)
+    seed = Expansion(given.prepared, _layout(given.prepared, crane2_model, []), crane2_model)
+    none = seed.cross([run.name for run in given.prepared]).explain(())
+    first = expand_around(given, seed, none, [])
+    assert expand_around(given, seed, none, []).runs is first.runs
+    moved = replace(none, beta=none.beta + 1e-6)
+    other = expand_around(given, seed, moved, [])
+    assert all(np.any(one.gap != two.gap) for one, two in zip(first.runs, other.runs, strict=True))
+    assert expand_around(given, seed, none, [], turning=True).runs is not first.runs
+    assert len(given.around) == 2
+    del first, other
+    assert not given.around
+
+
+@pytest.mark.parametrize("names", [(), ("tare_load",)])
+def test_a_file_that_was_put_to_the_runs_before_is_not_fitted_again(names, monkeypatch, crane_150t, crane2_model):
+    """What chance draws is drawn again, so that nothing after it hangs on whether a file was known."""
+    runs = runs_with(917, "quiet", *((name, 1.0) for name in names), length=0.3)
+    split = Split(tuple(runs), tuple(run.name for run in runs[:-3]), tuple(run.name for run in runs[-3:]))
+    study = Study(split, crane_150t, GapOptions(plan=False), np.random.default_rng(1))
+    search = search_runs(study, meet(runs, crane_150t, crane2_model))
+    fits, polished = [], standing.polished
+    monkeypatch.setattr(standing, "polished", lambda *all_of_it: fits.append(1) or polished(*all_of_it))
+
+    def tried(search):
+        return standing.tried(replace(study, rng=np.random.default_rng(2)), search)
+
+    first, again = tried(search), tried(search)
+    assert len(fits) == 1
+    assert (again.holdout.size_before, again.holdout.size_after) == (
+        first.holdout.size_before,
+        first.holdout.size_after,
+    )
+    assert again.train.size_after == first.train.size_after
+    assert np.isfinite(again.train.size_after.interval).all()
+    kind = "ambiguous" if names else "unexplained"  # the same set of names under another verdict
+    other = tried(replace(search, verdict=Verdict(kind)))
+    assert (other.repaired.model.provenance["verdict"], len(fits)) == (kind, 1)
+    assert other.repaired.model.values == first.repaired.model.values
+    tried(nameless(search))
+    assert len(fits) == 1 + len(names)
 
 
 def test_regions_of_many_blocks_are_weighed_a_few_at_a_time():

@@ -32,7 +32,7 @@ class Asked:
     """What was told anew, and in turn with which wires: the corrections, by name, of every model that was asked."""
 
     def __init__(self, monkeypatch):
-        self.told, self.in_turn = [], []
+        self.told, self.in_turn, self.kept = [], [], {}
         monkeypatch.setattr(delay, "meet", self.meet)
         monkeypatch.setattr(delay, "met_in_turn", self.met_in_turn)
 
@@ -49,8 +49,14 @@ class Asked:
         self.in_turn.append({each.name: each.value for each in model.corrections})
         yield prepared(self.gap_without(model))
 
+    def once(self, key, make):
+        if key not in self.kept:
+            self.kept[key] = make()
+        return self.kept[key]
+
     def shapes_of(self, size=SIZE, late=SPEED):
-        given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=(prepared(np.full(len(TIME), 2.0)),))
+        runs = (prepared(np.full(len(TIME), 2.0)),)
+        given = SimpleNamespace(runs=(), crane=None, model=Model(), prepared=runs, once=self.once)
         shape = Shape("late", {"ahead": max(size, 0.0), "behind": max(-size, 0.0), "late": late})
         suspect = Slot(delay.DELAY, "late", (0,), origin=(None, shape))
         own = Candidate(
@@ -71,6 +77,12 @@ def test_the_five_values_share_the_swing_that_is_told_without_the_first_estimate
     for each in found.shapes([]):  # what a delay of one second would leave
         np.testing.assert_allclose(found.columns(run, each.values), 1.0)
     assert len(found.shapes([])) == 8 + 6
+    count = len(asked.told), len(asked.in_turn)
+    again, _ = asked.shapes_of()
+    assert (len(asked.told), len(asked.in_turn)) == count  # a search that asks in another way suspects the same
+    np.testing.assert_allclose(again.columns(run, found.shapes([])[0].values), 1.0)
+    asked.shapes_of(2.0 * SIZE)
+    assert (len(asked.told), len(asked.in_turn)) == (2 * count[0], 2 * count[1])
     # shapes of other sizes are the first derivative's
     small = found.columns(run, {"ahead": 0.01, "behind": 0.0, "late": SPEED})
     np.testing.assert_allclose(small, 0.01 * 2.0)

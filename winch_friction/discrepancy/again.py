@@ -9,11 +9,11 @@ from functools import partial
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
-from winch_friction.discrepancy.catalogue import another_in_each_run, at_hand, of_one_group
+from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, share_left, worse_runs
 from winch_friction.discrepancy.run_states import EACH_RUN
-from winch_friction.discrepancy.search import Search, Study, search_runs
+from winch_friction.discrepancy.search import Search, Study, every_candidate, search_runs
 from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -57,8 +57,7 @@ def without_implausible(study: Study, trial: Trial, search: Search) -> Trial:
     beyond = {(slot.name, slot.law) for slot in final.slots if search.cross.at_bound(final, slot)}
     if not beyond:
         return trial
-    every = at_hand(given.prepared, given.model, study.options.effects_file)
-    kept = tuple(each for each in every if (each.name, each.law_name) not in beyond)
+    kept = tuple(each for each in every_candidate(study, given) if (each.name, each.law_name) not in beyond)
     other = search_runs(replace(study, options=replace(study.options, candidates=kept)), given)
     return _closing(study, other, trial) if other.selection.found else trial
 

@@ -1,9 +1,10 @@
 """Runs as a model sees them, around a point, the seed or the best explanation so far; and what no run tells alone: does
 the wire give, and what hangs where nobody weighed it?"""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -54,6 +55,18 @@ class Given:
     model: FrictionModel
     loads: Mapping[str, float]  # kg by run, where there is no `hook_load`
     prepared: tuple[PreparedRun, ...]
+    _made: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    # as long as somebody holds them: an hour of prepared runs is 90 MB
+    around: MutableMapping[Hashable, Expansion] = field(
+        default_factory=WeakValueDictionary, init=False, repr=False, compare=False
+    )
+
+    def once(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What `make` makes of these very runs, made once for each `key`, which holds all else that it hangs on: a
+        search that asks in another way asks much of the same again."""
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]
 
     def only(self, names: Sequence[str]) -> "Given":
         """The runs of these names, prepared as all of them agree that their wire is."""
@@ -181,6 +194,27 @@ def expand_around(
     given: Given, before: Expansion, explanation: Explanation, candidates: Sequence[Candidate], turning: bool = False
 ) -> Expansion:
     """Runs prepared around a fitted explanation: its base parameters, and the torque its effects put on the motors."""
+    seed = given.model
+    from_seed = before.runs is given.prepared and not turning
+    key = _point(before, explanation) if from_seed else None
+    known = given.around.get(key)
+    runs, model = (known.runs, known.model) if known else _prepared_around(given, before, explanation, turning)
+    found = Expansion(runs, layout_of(base_of(seed, model), candidates, runs, seed), model)
+    if from_seed:
+        given.around.setdefault(key, found)
+    return found
+
+
+def _point(before: Expansion, explanation: Explanation) -> Hashable:
+    """All that tells an explanation of the runs as the seed sees them from another: effects, their sizes, the base."""
+    effects = tuple((slot.origin[0], tuple(slot.origin[1].values.items())) for slot in explanation.slots)
+    scales = before.layout.scales[[column for slot in explanation.slots for column in slot.columns]]
+    return effects, scales.tobytes(), explanation.beta.tobytes()
+
+
+def _prepared_around(
+    given: Given, before: Expansion, explanation: Explanation, turning: bool
+) -> tuple[tuple[PreparedRun, ...], FrictionModel]:
     base, seed, count = before.layout.base, given.model, before.layout.base.parameters
     values = np.array(before.model.values) + explanation.beta[:count] * base.scale[:count]
     bounds = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
@@ -193,7 +227,7 @@ def expand_around(
         new = prepare(run, given.crane, model, load, known, turning, old.wire_mode, spikes, old.seen)
         own = new if not turning else replace(new, seen=None)  # nobody prepares again what was turned
         prepared.append(replace(own, corrections=old.corrections).sharing(old))
-    return Expansion(tuple(prepared), layout_of(base_of(seed, model), candidates, prepared, seed), model)
+    return tuple(prepared), model
 
 
 def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:

@@ -6,7 +6,7 @@ nobody logged a temperature.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import stdtr
@@ -14,7 +14,7 @@ from scipy.special import stdtr
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, joined, run_blocks, segment_length
-from winch_friction.discrepancy.engine.chance import chance_of_no_gain, rms, rms_with_interval
+from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms, rms_with_interval
 from winch_friction.discrepancy.engine.problem import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -188,23 +188,31 @@ def _relative(residual: FloatArray, drive: FloatArray) -> float:
 
 
 def compare(before: Given, after: Given, names: Sequence[str], rng: np.random.Generator) -> Side:
-    """The gap of these runs with either model, over the blocks that both can use."""
+    """The gap of these runs with either model, over the blocks that both can use, and its size with an interval."""
+    return sized(beside(before, after, names), rng)
+
+
+def sized(side: Side, rng: np.random.Generator) -> Side:
+    """The side with intervals of its sizes, from redrawn segments."""
+    segment, run = side.blocks.segment, side.blocks.run
+    before, after = (rms_with_interval(each, segment, run, rng) for each in (side.before, side.after))
+    return replace(side, size_before=before, size_after=after)
+
+
+def beside(before: Given, after: Given, names: Sequence[str]) -> Side:
+    """The gap of these runs with either model, over the blocks that both can use; its sizes are not known yet."""
     pairs = [(a, b) for a, b in zip(before.prepared, after.prepared, strict=True) if a.name in names]
     length = segment_length(sum(old.time[-1] for old, _ in pairs))
     tables = [_blocks(old, new, length) for old, new in pairs]
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
-    y_before, y_after = blocks.y, blocks.x[:, 0]
-    skew = blocks.x[:, 1]
+    y_before, y_after, skew = blocks.y, *blocks.x.T
     least = np.array([least_noise_of(old) for old, _ in pairs])
     noise = np.array([_noise(y_after, skew, blocks, k, least[k]) for k in range(len(pairs))])
     floor, closes = (rms(each[blocks.run]) if len(pairs) else 0.0 for each in (noise, least))
-    runs = tuple(old for old, _ in pairs)
-    torque = np.array([drive_of(run) for run in runs])[blocks.run]
+    torque, untold = np.array([drive_of(old) for old, _ in pairs])[blocks.run], Size(np.nan, (np.nan, np.nan))
     return Side(
-        runs=runs, blocks=blocks, before=y_before, after=y_after,
-        size_before=rms_with_interval(y_before, blocks.segment, blocks.run, rng),
-        size_after=rms_with_interval(y_after, blocks.segment, blocks.run, rng), noise_floor=floor,
-        least_noise=closes,
+        runs=tuple(old for old, _ in pairs), blocks=blocks, before=y_before, after=y_after,
+        size_before=untold, size_after=untold, noise_floor=floor, least_noise=closes,
         relative=(_relative(y_before, torque), _relative(y_after, torque)),
     )  # fmt: skip
 
@@ -216,16 +224,9 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float) -> RunBlocks:
     inside = (at >= own[0] - 1e-9) & (at <= own[-1] + 1e-9)
     used = old.used & inside & new.used_at(at)
     gap = np.interp(at, own, new.gap) / new.unit_torque
-    return run_blocks(
-        old.time,
-        old.gap / old.unit_torque,
-        (np.column_stack([gap, timing_column(old) / old.unit_torque]),),
-        used,
-        old.direction,
-        old.channels,
-        block_size(old),
-        length,
-    )
+    columns = (np.column_stack([gap, timing_column(old) / old.unit_torque]),)
+    own_gap, size = old.gap / old.unit_torque, block_size(old)
+    return run_blocks(old.time, own_gap, columns, used, old.direction, old.channels, size, length)
 
 
 def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float) -> float:

@@ -1,6 +1,6 @@
 """The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +19,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import RunBlocks, Slot, run_blocks, segment_length, usable_blocks
+from winch_friction.discrepancy.engine.blocks import Means, RunBlocks, Slot, run_blocks, segment_length, usable_blocks
 from winch_friction.discrepancy.engine.chance import rms
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
@@ -34,6 +34,7 @@ from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
+MOST_KEPT = 100_000_000  # bytes of means for a search that asks again; those of days of logs fill a memory
 STEP = LIMITS.step * LIMITS.least_noise
 SMALL = 0.1  # of the typical size: a value below it says nothing of how far off it may be
 HELD = 1e-6  # of a tolerance: so little that it is none
@@ -149,30 +150,17 @@ def layout_of(base: Base, candidates: Sequence[Candidate], runs: Sequence[Prepar
                 either = parameter.lower < 0.0 if parameter.typical > 0.0 else parameter.upper > 0.0
                 low, high = shape.bounds or (-most if either or present else 0.0, most)
                 if candidate.corrects is not None and parameter.unit == "1":  # a share means what it is declared for
-                    low, high = (
-                        max(low, parameter.lower / typical),
-                        min(high, parameter.upper / typical),
-                    )
+                    low, high = max(low, parameter.lower / typical), min(high, parameter.upper / typical)
                 lower.append(low)
                 upper.append(high)
             if candidate.free and candidate.term is not None and candidate.term.table is not None:
                 form = bending(candidate.term.table)
                 # a level at the first knot has no slope
                 curves += [] if form is None else [(columns[len(columns) - len(form) :], form)]
-            slots.append(
-                Slot(
-                    candidate.name,
-                    shape.label,
-                    columns,
-                    candidate.brings,
-                    candidate.plausible,
-                    (candidate, shape),
-                    candidate.law_name,
-                    candidate.free,
-                    candidate.plain_in(model),
-                    shape.part,
-                )
-            )
+            slots.append(Slot(
+                candidate.name, shape.label, columns, candidate.brings, candidate.plausible, (candidate, shape),
+                candidate.law_name, candidate.free, candidate.plain_in(model), shape.part,
+            ))  # fmt: skip
     whole = np.zeros((len(scales), len(scales))) if curves else None
     for columns, form in curves:
         assert whole is not None
@@ -216,12 +204,21 @@ def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:
     return np.asarray(candidate.columns(run, shape.values))
 
 
-def regressors(run: PreparedRun, layout: Layout) -> Iterator[FloatArray]:
-    """The scaled columns of one run in the gap's unit, the base's first, then each slot's: (samples, some columns)."""
+def regressors(run: PreparedRun, layout: Layout, size: int) -> Iterator[FloatArray | Means]:
+    """The scaled columns of one run in the gap's unit, the base's first: (samples, some columns); or kept means."""
     base = np.column_stack([run.jacobian, tolerance_columns(run)])
     yield from _scaled(base, layout.base.scale, run.unit_torque)
     for slot in layout.slots:
+        if (kept := run.means.get(_kept_as(slot, layout, size))) is not None:
+            yield kept[1]
+            continue
         yield from _scaled(slot_columns(run, slot), layout.scales[list(slot.columns)], run.unit_torque)
+
+
+def _kept_as(slot: Slot, layout: Layout, size: int) -> Hashable:
+    """All that the means of a slot's columns hang on; the candidate, kept with them, keeps its id."""
+    candidate, shape = slot.origin
+    return id(candidate), tuple(shape.values.items()), layout.scales[list(slot.columns)].tobytes(), size
 
 
 def _scaled(columns: FloatArray, scales: FloatArray, unit: float) -> Iterator[FloatArray]:
@@ -240,23 +237,27 @@ def block_size(run: PreparedRun) -> int:
 def build_problem(
     runs: Sequence[PreparedRun], layout: Layout, by_sample: bool = False, known: Sequence[Slot] = ()
 ) -> Problem:
-    """The regression over these runs' usable samples, in blocks or, where time is short, one by one, in the gap's
-    unit."""
+    """The regression over usable samples, in the gap's unit: in blocks or, where time is short, one by one."""
     length = segment_length(sum(run.time[-1] for run in runs))
     sizes = [1 if by_sample else block_size(run) for run in runs]
     ends = np.cumsum([0] + [usable_blocks(run.used, size) for run, size in zip(runs, sizes, strict=True)])
     x = np.empty((len(layout.scales), ends[-1]))  # the second largest thing there is, and what all fits read
     own = zip(runs, sizes, pairwise(ends), strict=True)
-    tables = [_blocks(run, layout, size, length, x[:, a:b]) for run, size, (a, b) in own]
+    keep = not by_sample and x.nbytes <= MOST_KEPT  # of what just reversed nobody asks twice
+    tables = [_blocks(run, layout, size, length, x[:, a:b], keep) for run, size, (a, b) in own]
     return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known, x.T)
 
 
-def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: FloatArray) -> RunBlocks:
+def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: FloatArray, keep: bool) -> RunBlocks:
     table = run_blocks(
-        run.time, run.gap / run.unit_torque, regressors(run, layout), run.used, run.direction, run.channels, size,
-        length, into,
+        run.time, run.gap / run.unit_torque, regressors(run, layout, size), run.used, run.direction, run.channels,
+        size, length, into,
     )  # fmt: skip
     weighed = "hook_load" in run.present or not run.groups
+    first = weighed and not run.means  # whoever holds these runs holds the table as well, and nobody changes it
+    for slot in layout.slots if keep else ():
+        own = into[slot.columns[0] : slot.columns[-1] + 1]
+        run.means.setdefault(_kept_as(slot, layout, size), (slot.origin[0], Means((own if first else own.copy()).T)))
     return table if weighed else _weightless(table, layout.base.parameters)
 
 
@@ -285,8 +286,7 @@ def least_noise_of(run: PreparedRun) -> float:
 
 def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Accounted:
     """What an explanation's effects add to what the driving motors carry, and to the passive side's signals; errors of
-    the driving motors' own signals add nothing.
-    """
+    the driving motors' own signals add nothing."""
     missing, error, of_stroke = (np.zeros(len(run.time)) for _ in range(3))
     at = len(layout.base.names)
     for slot in explanation.slots:

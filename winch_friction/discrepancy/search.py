@@ -166,6 +166,12 @@ class Search:
         return self.selection.base if self.verdict.kind in (UNEXPLAINED, NOTHING) else self.selection.final
 
 
+def every_candidate(study: Study, given: Given) -> Sequence[Candidate]:
+    """All that a search of these runs begins with."""
+    file = study.options.effects_file
+    return given.once(("candidates", file), lambda: at_hand(given.prepared, given.model, file))
+
+
 def search_runs(study: Study, given: Given, also: LastResort | None = None) -> Search:
     """What is missing according to the training runs; raises `InputError` for runs that lack what the balance needs.
 
@@ -175,8 +181,8 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
     model, prepared, train, rng = given.model, given.prepared, study.split.train, study.rng
     training = [(r, p) for r, p in zip(given.runs, prepared, strict=True) if r.name in train]
     own_runs, own_prepared = [r for r, _ in training], [p for _, p in training]
-    ripple = angle.detect(own_runs, own_prepared, given.crane, model)
-    known = study.options.candidates or at_hand(prepared, model, study.options.effects_file)
+    ripple = given.once(("ripple", train), partial(angle.detect, own_runs, own_prepared, given.crane, model))
+    known = study.options.candidates or every_candidate(study, given)
     if also is not None:
         known = [*known, *also(prepared, model)]
     usable, blind = testable(known, prepared, model)

@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Side, Verdict
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot, first_halves
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
-from winch_friction.discrepancy.expansion import Split, meet
+from winch_friction.discrepancy.expansion import Given, Split, meet
 from winch_friction.discrepancy.outdone import one_law
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
+    beside,
     compare,
     far_off,
     fits_only_its_own,
@@ -26,6 +27,7 @@ from winch_friction.discrepancy.proof import (
     leaves_too_much,
     nobodys,
     read_back,
+    sized,
     unproven,
     worse_runs,
 )
@@ -219,11 +221,24 @@ def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
 def tried(study: Study, search: Search) -> Trial:
     """The repaired model of a search and what it leaves of all runs, read back from its file."""
     search, split = placed(search, study.split), study.split
-    repaired = draft(search, search.explanation, _provenance(study, search))
-    repaired = polished(repaired, search.given.model, split.runs, split.train, study.crane, search.given)
-    after = meet(split.runs, study.crane, read_back(repaired.model), (), search.given)
-    sides = (compare(search.given, after, names, study.rng) for names in (split.train, split.holdout))
-    return Trial(search, repaired, *sides)
+    given, drafted = search.given, draft(search, search.explanation, _provenance(study, search))
+    # a set without a name is tried by every way that asks again, and only its provenance is another
+    model, covariance = drafted.model, drafted.model.covariance
+    key = (
+        model.name, model.terms, model.values, None if covariance is None else covariance.tobytes(), model.corrections,
+        repr((model.bounds, drafted.parameters, drafted.said, drafted.cut)), split.train, split.holdout,
+    )  # fmt: skip
+    repaired, gaps = given.once(key, partial(_polished_and_met, study, given, drafted))
+    model = replace(repaired.model, provenance=drafted.model.provenance)
+    return Trial(search, replace(repaired, model=model), *(sized(each, study.rng) for each in gaps))
+
+
+def _polished_and_met(study: Study, given: Given, drafted: Repair) -> tuple[Repair, tuple[Side, Side]]:
+    """A draft fitted once more, and what its file leaves of the training and of the locked runs."""
+    split = study.split
+    repaired = polished(drafted, given.model, split.runs, split.train, study.crane, given)
+    after = meet(split.runs, study.crane, read_back(repaired.model), (), given)
+    return repaired, (beside(given, after, split.train), beside(given, after, split.holdout))
 
 
 def as_given(study: Study, search: Search) -> Trial:

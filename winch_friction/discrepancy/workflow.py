@@ -155,6 +155,8 @@ def assemble(study: Study, trial: Trial) -> GapResult:
     """The result that a trial stands by."""
     runs, search, repaired = study.split.runs, trial.search, trial.repaired
     cross, selection, verdict, given = search.cross, search.selection, search.verdict, search.given
+    for run in given.prepared:  # go with the result, and nobody asks them for columns any more
+        run.means.clear()
     found = selection.found if search.explanation is selection.final else ()
     experiment = _experiment(given.crane, search, study.options) if study.options.plan else None
     first = {each.slot.name: each for each in reversed(found)}  # of a cause with two laws, the one found first

@@ -50,8 +50,29 @@ def without_delay(
     comes out of a filter smaller too, which no delay makes; of a wave it delays all alike."""
     half = 0.5 * float(np.median([run.time[-1] for run in given.prepared]))  # s, when one that grows is its mean
     late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted, half)
-    shapes = [_shape(size * factor, late) for factor in AROUND]
-    shapes += [_shape(size * factor * CLOCKED / half, late, by_time=1.0) for factor in COARSELY]
+    ways = _ways(size, late, half)
+    columns = given.once(("without a delay", size, half, late), lambda: _gaps_without(given, ways, size))
+    shapes = [each for way in ways for each in way]
+    return [
+        replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
+        if each.name == DELAY and not each.law_name
+        else each
+        for each in candidates
+    ]
+
+
+def _ways(size: float, late: float, half: float) -> list[list[Shape]]:
+    """Shapes of what may be late by about `size` s, those of one kind together, each with one of that very size."""
+    delays = [_shape(size * factor, late) for factor in AROUND]
+    clocks = [_shape(size * factor * CLOCKED / half, late, by_time=1.0) for factor in COARSELY]
+    if (size > 0.0) != (late == SPEED):
+        return [delays + clocks]
+    return [delays + clocks, *([_shape(size * f, late, filtered=share) for f in COARSELY] for share in FILTERED)]
+
+
+def _gaps_without(given: Given, ways: Iterable[Sequence[Shape]], size: float) -> Mapping[Key, FloatArray]:
+    """By how much the gap of each run changes without what each of these shapes is, N m per s of it; `size` is the
+    first estimate."""
     columns: dict[Key, FloatArray] = {}
 
     def keep(shape: Shape, without: Iterable[PreparedRun]) -> None:
@@ -59,9 +80,8 @@ def without_delay(
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             columns[_key(old, shape.values)] = (old.gap - gap)[:, None] / shape.values["delay"]
 
-    def keep_all(shapes: Sequence[Shape]) -> None:
-        """A swing on the wire, which a delay hides, is told once, without the first estimate: then only the delay
-        differs."""
+    for shapes in ways:
+        # a swing on the wire, which a delay hides, is told once, without the first estimate: then only that differs
         own = next(each for each in shapes if each.values["delay"] == size)
         met = meet(given.runs, given.crane, _without(own, given.model), ()).prepared
         modes = {run.name: run.wire_mode for run in met}
@@ -70,19 +90,7 @@ def without_delay(
         for shape in shapes:
             if shape is not own:
                 keep(shape, met_in_turn(given, _without(shape, given.model), modes))
-
-    keep_all(shapes)
-    if (size > 0.0) == (late == SPEED):
-        for share in FILTERED:
-            filtered = [_shape(size * factor, late, filtered=share) for factor in COARSELY]
-            keep_all(filtered)
-            shapes += filtered
-    return [
-        replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
-        if each.name == DELAY and not each.law_name
-        else each
-        for each in candidates
-    ]
+    return columns
 
 
 def _size(slot: Slot, cross: CrossFit, fitted: Explanation, half: float) -> float:

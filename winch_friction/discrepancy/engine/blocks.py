@@ -37,6 +37,13 @@ class Slot:
 
 
 @dataclass(frozen=True)
+class Means:
+    """Columns whose means over the blocks of a record are known already, (blocks, columns)."""
+
+    values: FloatArray
+
+
+@dataclass(frozen=True)
 class RunBlocks:
     """The blocks of one record; `position` is the block's number on the record's own grid."""
 
@@ -107,20 +114,23 @@ def segment_length(total: float) -> float:
 
 
 def run_blocks(
-    time: FloatArray, gap: FloatArray, columns: Iterable[FloatArray], mask: np.ndarray, direction: FloatArray,
+    time: FloatArray, gap: FloatArray, columns: Iterable[FloatArray | Means], mask: np.ndarray, direction: FloatArray,
     features: Mapping[str, FloatArray], size: int, length: float, into: FloatArray | None = None,
 ) -> RunBlocks:  # fmt: skip
     """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long.
 
     `columns` come in parts (samples, some columns), each of which is let go once its means are taken: all of them over
-    all samples of an hour are a gigabyte. The means go `into` a place of the right size (columns, blocks) where one is
-    given: those of many records are half a gigabyte, for which there is no room twice.
+    all samples of an hour are a gigabyte; or as the `Means` that they have, where these were asked for before. The
+    means go `into` a place of the right size (columns, blocks) where one is given: those of many records are half a
+    gigabyte, for which there is no room twice.
     """
     starts, counts, keep = _usable(mask, size)
     means = {name: _means(values, starts, counts, mask)[keep] for name, values in features.items()}
     return RunBlocks(
         y=_means(gap, starts, counts, mask)[keep],
-        x=_beside_each_other((_means(part, starts, counts, mask)[keep] for part in columns), into),
+        x=_beside_each_other(
+            (p.values if isinstance(p, Means) else _means(p, starts, counts, mask)[keep] for p in columns), into
+        ),
         segment=(time[starts[keep]] / length).astype(int),
         position=np.flatnonzero(keep),
         features=means,
@@ -196,7 +206,7 @@ def grams(blocks: Blocks) -> Grams:
     half = rows * (size + 1) + columns
     upper, b, y2 = np.empty((len(pairs), len(half))), np.empty((len(pairs), size)), np.empty(len(pairs))
     for k in range(len(pairs)):
-        own = _stretch(order[part_of_block == k])
+        own = stretch(order[part_of_block == k])
         weight = blocks.weight[own]
         z = np.empty((size + 1, len(weight))).T
         np.multiply(blocks.x[own], weight[:, None], out=z[:, :size])
@@ -214,9 +224,9 @@ def _folds(run: np.ndarray) -> np.ndarray:
     return np.arange(len(run)) * min(LIMITS.folds, len(run)) // len(run)
 
 
-def _stretch(places: np.ndarray) -> np.ndarray | slice:
+def stretch(places: np.ndarray) -> np.ndarray | slice:
     """Places that follow each other as the stretch that they are, which is read where it stands."""
-    return slice(places[0], places[-1] + 1) if (np.diff(places) == 1).all() else places
+    return slice(places[0], places[-1] + 1) if len(places) and (np.diff(places) == 1).all() else places
 
 
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:

@@ -1,20 +1,13 @@
 """From a measured run to what every candidate reads."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
 
-from winch_friction.discrepancy.preparation.balance import (
-    SHOWS,
-    SPARSEST,
-    Accounted,
-    Balance,
-    Balancing,
-    Groups,
-)
+from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of, swinging_mass
@@ -89,6 +82,8 @@ class PreparedRun:
     present: frozenset[str]  # columns that the file had; `hook_load` also where a measured force stands for it
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
     seen: Seen | None = None  # for preparing the same run once more; None where nobody will
+    # means of columns over its blocks, for whoever asks for the same ones again; of this very run, and of no copy
+    means: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def kind(self) -> tuple[str, ...]:
@@ -108,7 +103,7 @@ class PreparedRun:
         """The same run, with the arrays of another that hold the same to the bit: most do not depend on the model, and
         an hour of all of them is 90 MB."""
         return replace(self, **{each.name: _shared(getattr(self, each.name), getattr(other, each.name))
-                                for each in fields(self)})  # fmt: skip
+                                for each in fields(self) if each.init})  # fmt: skip
 
 
 def _shared(own: Any, other: Any) -> Any:
@@ -152,7 +147,7 @@ def prepare(
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
     seen = before.seen if before is not None else seen
-    seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning)
+    seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning, seen)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
     swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode, wire)

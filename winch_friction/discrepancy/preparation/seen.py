@@ -240,9 +240,10 @@ class Seen:
         return np.asarray((padded[:-2] + 4.0 * padded[1:-1] + padded[2:]) / 6.0)
 
 
-def see(run: Run, crane: Crane, turning: bool = False) -> Seen:
-    """What a run tells whatever the model says; `turning` as in `motion_of`, whose errors it raises."""
-    grid = uniform(run)
+def see(run: Run, crane: Crane, turning: bool = False, before: Seen | None = None) -> Seen:
+    """What a run tells whatever the model says; `turning` as in `motion_of`, whose errors it raises. Of a run that was
+    seen in another way `before` the grid is the same, and is held once."""
+    grid = before.grid if before is not None and before.run is run else uniform(run)
     return Seen(run, crane, turning, grid, motion_of(grid, crane, run.name, turning))
 
 

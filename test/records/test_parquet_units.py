@@ -1,6 +1,7 @@
 """Units that a Parquet file says beside its names, in the three ways in which programs write them."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pyarrow as pa
@@ -61,3 +62,14 @@ def test_a_bracket_goes_before_a_note_and_a_unit_that_does_not_fit_is_refused(tm
 @pytest.mark.parametrize("content", ["rpm", "[1, 2]", '{"motor_speed": 7, "hook_load": " "}'])
 def test_notes_that_are_no_units_say_nothing(content):
     assert said_units(pa.table(VALUES).replace_schema_metadata({"units": content}).schema) == {}
+
+
+def test_what_a_table_took_is_given_back_once_it_is_gone(tmp_path, monkeypatch):
+    """A table is as large as its run, and a pool keeps what it has unless it is asked when the table is no more."""
+    path, pool, left = tmp_path / "long.parquet", pa.default_memory_pool(), []
+    pq.write_table(pa.table({"time": np.arange(20000) * 0.02, "motor_speed": np.ones(20000)}), path)
+    before = pool.bytes_allocated()
+    asked = SimpleNamespace(release_unused=lambda: left.append(pool.bytes_allocated() - before))
+    monkeypatch.setattr(pa, "default_memory_pool", lambda: asked)
+    assert len(read_run(path, complete=False)) == 20000
+    assert left == [0]

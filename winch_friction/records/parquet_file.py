@@ -21,7 +21,12 @@ _DATES = ("timestamp", "duration")  # types of a column of dates, as pandas writ
 
 def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = True) -> Run:
     """A run from a Parquet file; raises `InputError` with row (from 1) and column."""
-    table = _table(path)
+    run = _run_of(path, _table(path), crane, complete)
+    _pyarrow()[0].default_memory_pool().release_unused()  # of the table, which is gone now: it is as large as the run
+    return run
+
+
+def _run_of(path: Path, table: Any, crane: Crane | None, complete: bool) -> Run:
     problems = Problems()
     headers = read_headers(path, _with_units(table), problems)
     place: Place = lambda row: f"row {row + 1}"
@@ -44,7 +49,6 @@ def read_parquet_run(path: Path, crane: Crane | None = None, complete: bool = Tr
             warnings=[*said_of_nameless(headers, path.name), *spoilt],
         )  # fmt: skip
     problems.say()
-    _pyarrow()[0].default_memory_pool().release_unused()  # of the packed columns, half as much as the run
     return run
 
 

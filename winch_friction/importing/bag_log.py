@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.importing.signal_logs import Found, Signal
+from winch_friction.importing.one_clock import Signal
+from winch_friction.importing.signal_logs import Found
 from winch_friction.records.bag_file import open_reader
 from winch_friction.records.bag_storage import readable
 

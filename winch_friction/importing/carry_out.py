@@ -63,16 +63,17 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
 def open_with_map(path: Path, log_map: LogMap) -> Log:
     """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found."""
     wanted = {*log_map.time_from, *(e.source for e in log_map.columns.values() if not e.constant)}
+    clocks = {key: value for key, value in log_map.log.items() if key == "clocks"}
     kind = str(log_map.log.get("kind", "")) or ("workbook" if _is_kind(path, "workbook") else "text")
     try:
-        log = read_log(path, log_map.log if kind in ("text", "workbook") and _is_kind(path, kind) else None)
+        log = read_log(path, log_map.log if _is_kind(path, kind) else clocks)
         if wanted <= {column.name for column in log.columns}:
             return log
     except InputError:
         if not log_map.log:
             raise
-    kept = {key: value for key, value in log_map.log.items() if key in ("encoding", "delimiter", "sheet")}
-    log = read_log(path, kept if _is_kind(path, kind) else None)
+    kept = {key: value for key, value in log_map.log.items() if key in ("encoding", "delimiter", "sheet", "clocks")}
+    log = read_log(path, kept if _is_kind(path, kind) else clocks)
     missing = wanted - {column.name for column in log.columns}
     if missing:
         raise InputError(

@@ -4,11 +4,13 @@ A spreadsheet with `Active` over three columns and `Passive` over the next three
 group before it each is one column.
 """
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
 from winch_friction.importing.cells import is_missing
 
+_UNIT = re.compile(r"\s*[\[(][^\])]*[\])]$")  # behind a name
 _FEWEST = 2  # groups: one word above all the columns is a title
 
 
@@ -23,8 +25,9 @@ def with_groups(names: Sequence[str], above: Sequence[Any]) -> list[str]:
         last = last if is_missing(cell) else " ".join(str(cell).split())
         groups.append(last)
     plain = [" ".join(str(name).split()) for name in names]
-    twice = {name for name in plain if name and plain.count(name) > 1}
-    told = [f"{group} {name}".strip() if name in twice else name for group, name in zip(groups, plain, strict=True)]
-    grouped = {group for group, name in zip(groups, plain, strict=True) if name in twice}
-    ours = [name for name, own in zip(told, plain, strict=True) if own in twice]
+    bare = [_UNIT.sub("", name) for name in plain]
+    twice = [bool(name) and bare.count(name) > 1 for name in bare]
+    told = [f"{group} {name}".strip() if ours else name for group, name, ours in zip(groups, plain, twice, strict=True)]
+    grouped = {group for group, ours in zip(groups, twice, strict=True) if ours}
+    ours = [name for name, own in zip(told, twice, strict=True) if own]
     return told if len(grouped) >= _FEWEST and len(set(ours)) == len(ours) else list(names)

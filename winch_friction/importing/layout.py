@@ -11,6 +11,7 @@ from winch_friction.importing.units import bare_unit, looks_like_unit
 _SEEN = 300  # rows looked at for the beginning of the values
 _RUN = 4  # rows of values in a row that make a beginning
 _ALIKE = 0.9  # of the rows of values, that end in the same column or beside it unless cells stay empty
+_LABELS = 0.25  # of a row's cells: words where values should be; a sensor that failed in the first row is one of many
 _HEAD = 30  # rows above the values among which a row of labelled units is looked for
 _ABOVE = 5  # rows above the values among which names and units are looked for
 
@@ -44,6 +45,8 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
     if first is None:
         return None
     marks = decimal, thousands
+    while first + run < len(seen) and _labels_values(seen[first], seen[first + 1 : first + 1 + run], *marks):
+        first += 1
     above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, *marks, len(seen[first]))]
     units = next((k for k in reversed(above) if _is_unit_row(seen[k])), -1)
     if units < 0:  # a program's head: a property a row, each behind its label
@@ -55,6 +58,17 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
         names, units = units, -1
     other = [k for k in texts if k != names and abs(k - names) <= 2]
     return Layout(names, units, first, width, other[-1] if other else -1)
+
+
+def _labels_values(row: Row, below: Sequence[Row], decimal: str, thousands: str) -> bool:
+    """Whether a row of numbers is one of a program's head, each behind its label (`Port; 851; Port; 851`): words stand
+    where all rows below it have values."""
+    is_value = lambda cell: is_number(cell, decimal, thousands) or is_time(cell)
+    words = [
+        k for k, cell in enumerate(row)
+        if not is_missing(cell) and not is_value(cell) and all(k < len(b) and is_value(b[k]) for b in below)
+    ]  # fmt: skip
+    return len(words) > 1 and len(words) >= _LABELS * len(row)
 
 
 def _names_row(rows: Sequence[Row], candidates: list[int]) -> int:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from winch_friction.importing.mapping import BAD_CELLS, PLACES, SCHEMA
+from winch_friction.importing.own_clocks import CLOCKS
 from winch_friction.importing.time_base import FORMS, ORDERS
 from winch_friction.importing.units import CHANNEL_UNITS
 
@@ -27,6 +28,7 @@ def map_schema() -> dict[str, Any]:
             "questions": _TEXTS,
             "log": _object({
                 **dict.fromkeys(("kind", "encoding", "thousands", "sheet", "namespace"), _TEXT),
+                "clocks": {"enum": list(CLOCKS)},
                 **dict.fromkeys(("delimiter", "decimal"), {**_TEXT, "minLength": 1, "maxLength": 1}),
                 **dict.fromkeys(("names_row", "unit_row", "first_row"), _ROW),
             }),

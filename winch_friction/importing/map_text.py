@@ -18,6 +18,7 @@ _COLUMNS = """\
 #   of: 215 cm^3/rev   what a share (%) is of           at: motor | drum | rope   where a speed or torque is measured
 #   constant: 96 kg in place of from and unit, for what is known and not logged
 """
+_SAID_OF = {"clocks": "   # held or lines: what is between two values of columns with times of their own; one: no such"}
 
 
 def map_text(log_map: LogMap) -> str:
@@ -30,7 +31,7 @@ def map_text(log_map: LogMap) -> str:
         lines += ["questions:", *(f"  - {_quoted(each)}" for each in log_map.questions)]
     if log_map.log:
         lines.append("\n# How the file is read.\nlog:")
-        lines += [f"  {key}: {_quoted(value)}" for key, value in log_map.log.items()]
+        lines += [f"  {key}: {_quoted(value)}{_SAID_OF.get(key, '')}" for key, value in log_map.log.items()]
     if log_map.time_from:
         lines.append("\ntime:")
         lines += _time_lines(log_map)

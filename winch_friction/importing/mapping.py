@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from winch_friction.importing.own_clocks import CLOCKS
 from winch_friction.importing.time_base import FORMS, ORDERS, TimeBase
 from winch_friction.physics.errors import InputError, unknown_key
 from winch_friction.records.strict_yaml import Section, read_yaml
@@ -14,7 +15,7 @@ LARGEST = 1 << 18  # bytes: a map of a thousand columns has a quarter of it
 BAD_CELLS = ("missing", "refuse")
 PLACES = ("motor", "drum", "rope")
 _NUMBERS = ("names_row", "unit_row", "first_row")
-_TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace")
+_TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace", "clocks")
 
 
 @dataclass(frozen=True)
@@ -147,6 +148,8 @@ def _log(top: Section) -> dict[str, Any]:
     found: dict[str, Any] = {key: section.text(key) for key in _TEXTS if key in section}
     found |= {key: int(section.number(key)) for key in _NUMBERS if key in section}
     section.close()
+    if "clocks" in found:
+        _choice(section, "clocks", CLOCKS, "one")
     for key in ("delimiter", "decimal"):
         if len(found.get(key, ".")) != 1:
             raise InputError(f"{section.where}: {key} must be one character, found {found[key]!r}")
@@ -180,7 +183,10 @@ def with_settings(log_map: LogMap, settings: list[str]) -> LogMap:
         if not equals or not dot:
             raise InputError(f"--set '{setting}': write CHANNEL.FIELD=VALUE, e.g. hook_load.unit=t or time.zone=UTC")
         if name == "log":
-            raise InputError(f"--set '{setting}': how a log is read stands in the map file: write it under log: there")
+            raise InputError(
+                f"--set '{setting}': how a log is read stands in the map file: write it under log: there (log.clocks "
+                "with --propose)"
+            )
         log_map = _changed(log_map, name, attribute, value.strip(), setting)
         kept = tuple(each for each in log_map.questions if not each.startswith(f"{name}:"))
         log_map = replace(log_map, questions=kept)

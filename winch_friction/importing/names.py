@@ -20,6 +20,9 @@ _SIMILAR = 0.82  # share of equal letters from which a word counts as the misspe
 _CLOSE = 0.85  # the same for the second word of a compound, whose first one is known
 _LINKS = ("", "s", "n", "en", "e", "es", "er")  # what German and Norwegian put between the words of a compound
 _FOLD = str.maketrans({"ä": "a", "æ": "a", "ö": "o", "ø": "o", "ü": "u", "å": "a", "ß": "ss"})
+_TYPE = re.compile(
+    r"(?<![^\W\d_])(?:f|r|lr)(?=[A-ZÄÖÜÆØÅ][a-zäöüæøåß])"
+)  # a controller's mark of a real number: fHookLoad
 _NEUTRAL = frozenset({"actual"})  # says nothing of what is measured
 
 Concepts = Mapping[str, float]  # concept -> how surely a token means it, 0 ... 1
@@ -52,8 +55,10 @@ def vocabulary() -> Vocabulary:
 
 
 def tokens(name: str) -> list[str]:
-    """The folded words of a name: cut at everything that is no letter, and where a capital begins."""
+    """The folded words of a name: cut at everything that is no letter, and where a capital begins; without a
+    controller's mark of the type."""
     text = unicodedata.normalize("NFC", name).replace("°", " ")
+    text = _TYPE.sub("", text)
     text = re.sub(r"(?<=[a-zäöüæøåß])(?=[A-ZÄÖÜÆØÅ])", " ", text)
     return [_folded(each) for each in re.findall(r"[^\W\d_]+|\d+", text)]
 

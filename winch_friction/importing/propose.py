@@ -14,6 +14,7 @@ from winch_friction.importing.log import Log, listed
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
+from winch_friction.importing.own_clocks import CLOCKS
 from winch_friction.importing.reading import read_log
 from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.time_columns import settle_time
@@ -27,10 +28,11 @@ from winch_friction.importing.units import (
     is_share,
     usual_units,
 )
-from winch_friction.physics.errors import counted
+from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 
+_CLOCKS_SAID = "log.clocks="
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
 _SIGNALS, _NAMED = 500, 0.5  # names of one archive; how well a name must fit a channel
 _POOLED = 20_000  # values of each log that are looked at together
@@ -57,7 +59,8 @@ def propose(
     `watched` hands the paths on while somebody looks how far the reading is.
     Raises `InputError` only for logs that cannot be read at all and for settings that say nothing.
     """
-    logs = [read_log(path) for path in watched(paths)]
+    clocks, settings = _said_clocks(settings)
+    logs = [read_log(path, clocks) for path in watched(paths)]
     draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
     _refuse_different_names(draft)
     _refuse_rows_of_values(draft)
@@ -84,6 +87,15 @@ def propose(
     notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes) + tuple(draft.notes)
     problems = tuple(dict.fromkeys([*draft.problems, *log_map.questions]))
     return Proposal(log_map, problems, notes + tuple(_bad_cells(logs, log_map)))
+
+
+def _said_clocks(settings: Sequence[str]) -> tuple[dict[str, str] | None, list[str]]:
+    """What the person says of columns with times of their own, as settings of the reader, and the other settings."""
+    said = [each.removeprefix(_CLOCKS_SAID).strip() for each in settings if each.startswith(_CLOCKS_SAID)]
+    if said and said[-1] not in CLOCKS:
+        raise InputError(f"--set '{_CLOCKS_SAID}{said[-1]}': write one of {', '.join(CLOCKS)}")
+    others = [each for each in settings if not each.startswith(_CLOCKS_SAID)]
+    return {"clocks": said[-1]} if said else None, others
 
 
 def _said_signs(settings: Sequence[str]) -> frozenset[str]:

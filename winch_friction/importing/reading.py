@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.importing.log import Log, without_bad_values
+from winch_friction.importing.own_clocks import with_own_clocks
 from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import BAG_SUFFIXES, is_bag
 
@@ -25,9 +26,13 @@ _INSTEAD = {
 
 
 def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
-    """A log of any kind, without the values that it calls bad itself; raises `InputError` in one line for what is
-    missing, empty or of no known kind."""
-    return without_bad_values(_read(path, settings))
+    """A log of any kind, without the values that it calls bad itself, on one clock.
+
+    Raises `InputError` in one line for what is missing, empty or of no known kind. Without
+    `settings` it is found out whether its columns have clocks of their own.
+    """
+    log = without_bad_values(_read(path, settings))
+    return with_own_clocks(log, "" if settings is None else str(settings.get("clocks", "one")))
 
 
 def _read(path: Path, settings: Mapping[str, Any] | None) -> Log:

@@ -1,7 +1,4 @@
-"""Logs of measuring programs: Parquet, MATLAB .mat (v5 and v7.3), HDF5, LabVIEW .tdms, ASAM .mf4 / .mdf.
-
-Signals of rates of their own are put on the densest signal's times, each held at its latest value, as a node sees it.
-"""
+"""Logs of measuring programs: Parquet, MATLAB .mat (v5 and v7.3), HDF5, LabVIEW .tdms, ASAM .mf4 / .mdf."""
 
 import gc
 import sys
@@ -14,15 +11,12 @@ from typing import Any
 import numpy as np
 
 from winch_friction.importing.hdf5_log import matlab_arrays, plain_arrays
-from winch_friction.importing.log import Log, LogColumn, listed, number_column, unique_names
+from winch_friction.importing.log import Log, LogColumn, listed
+from winch_friction.importing.one_clock import Signal, of_one_length, on_one_clock
 from winch_friction.importing.optional import library
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray
 from winch_friction.records.parquet_units import said_units
 
-TIME = "time"  # the name given to the times that a file keeps beside its signals
-_SILENT, _SHORT = 5.0, 1.0  # usual steps and s that a signal may say nothing without a word
-_PEEKED = 300  # cells of a column of text whose decimal mark is looked at
 _LABELLED = {"values", "label"}  # a signal of a structure with time
 _DEEPEST = 6  # structs within structs of a .mat file
 _OBJECTS = (
@@ -31,17 +25,6 @@ _OBJECTS = (
 )
 _HDF5, _HDF5_AT = b"\x89HDF\r\n\x1a\n", (0, 512, 1024, 2048)  # signature, and bytes behind which it may stand
 _MOST = 50_000_000  # values of one signal: ten days at 50 Hz
-
-
-@dataclass(frozen=True)
-class Signal:
-    """A signal with its unit and its own times in s, or None where the file gives no times."""
-
-    name: str
-    values: Any
-    unit: str = ""
-    times: FloatArray | None = None
-    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -79,59 +62,10 @@ def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[s
         raise InputError(f"{path}: holds no signal of more than one value")
     timed = [each for each in signals if each.times is not None and len(each.times) == len(each.values)]
     if not timed:
-        return _of_one_length(path, signals)
-    base = max((each.times for each in timed), key=lambda t: len(t) if t is not None else 0)
-    assert base is not None
-    others = [each for each in timed if each.times is not None and not np.array_equal(each.times, base)]
-    columns = [number_column(TIME, base, "s")]
-    names = unique_names([TIME, *(each.name for each in timed)])[1:]
-    columns += [_column(name, each, base) for name, each in zip(names, timed, strict=True)]
+        return of_one_length(signals)
+    columns, notes = on_one_clock(timed)
     left = [each.name for each in signals if all(each is not one for one in timed)]  # two may bear one name
-    notes = (
-        [f"{len(others)} signals have times of their own: held at their latest value on the times of the densest"]
-        if others
-        else []
-    )
-    silent = [said for each in others if (said := _silence(each, float(base[-1])))]
-    notes += [f"signals that say nothing for long, their last value held: {'; '.join(silent)}"] if silent else []
     return columns, notes + ([f"signals without times left out: {listed(left)}"] if left else [])
-
-
-def _silence(signal: Signal, end: float) -> str:
-    """A signal's name with its longest silence up to the log's end, '' for one that goes on as it does."""
-    times = np.append(signal.times if signal.times is not None else [], end)
-    steps = np.diff(times)
-    longest = int(np.argmax(steps))
-    usual = float(np.median(steps[:-1])) if len(steps) > 1 else 0.0
-    if not steps[longest] > max(_SILENT * usual, _SHORT):
-        return ""
-    return f"{signal.name} for {steps[longest]:.4g} s, {times[longest] - times[0]:.4g} s after its first value"
-
-
-def _of_one_length(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[str]]:
-    lengths = [len(each.values) for each in signals]
-    length = max(set(lengths), key=lambda n: (lengths.count(n), n))
-    kept = [each for each in signals if len(each.values) == length]
-    names = unique_names([each.name for each in kept])
-    left = [f"{each.name} ({len(each.values)})" for each in signals if len(each.values) != length]
-    notes = [f"arrays of another length than {length} left out: {listed(left)}"] if left else []
-    return [_column(name, each, None) for name, each in zip(names, kept, strict=True)], notes
-
-
-def _column(name: str, signal: Signal, base: FloatArray | None) -> LogColumn:
-    values = np.asarray(signal.values)
-    if base is not None and signal.times is not None and not np.array_equal(signal.times, base):
-        index = np.searchsorted(signal.times, base, side="right") - 1
-        values = np.where(index >= 0, values[np.maximum(index, 0)], np.nan)
-    if np.issubdtype(values.dtype, np.datetime64):
-        return LogColumn(name, np.full(len(values), np.nan), signal.unit, text=values, note=signal.note)
-    if values.dtype.kind in "biuf":
-        return number_column(name, values, signal.unit, signal.note)
-    from winch_friction.importing.cells import as_column, decimal_mark
-
-    cells = values.tolist()
-    decimal, thousands = decimal_mark(cells[-_PEEKED:], "\t")
-    return as_column(name, cells, decimal, thousands, signal.unit, signal.note)
 
 
 def _parquet(path: Path) -> Found:

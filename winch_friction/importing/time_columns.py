@@ -8,11 +8,11 @@ import numpy as np
 from winch_friction.importing.calendar_columns import calendar_columns
 from winch_friction.importing.draft import Draft
 from winch_friction.importing.log import Log, LogColumn, listed
-from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.ticks import fraction_unit
 from winch_friction.importing.time_base import TimeBase, TimeGuess, guess_form, guess_time, to_seconds
+from winch_friction.importing.time_names import is_named, says_time, time_reading
 from winch_friction.importing.time_numbers import counts_rows
-from winch_friction.importing.units import fitting_si_unit, header_readings
+from winch_friction.importing.units import fitting_si_unit
 from winch_friction.physics.signals import FloatArray
 
 _DATED = 0.3  # a date beside the clock: worth more than the order of day and month, if open, makes it unsure
@@ -21,17 +21,16 @@ _CLOCKS = (
     2e-3  # by which two clocks may differ: a quartz is a tenth of it off, no sensor tells so small an error of a rate
 )
 _STEPS = 2.0  # a clock of whole seconds begins and ends within a step of another
-_SURE = 0.5  # how well a name says a time, from which it is one and nothing else
 
 
 def settle_time(draft: Draft) -> None:
     """Put the likeliest time into the draft's map, or say why no column is one."""
     best: tuple[float, tuple[LogColumn, ...], TimeGuess] | None = None
     for columns in _time_candidates(draft.logs[0]):
-        bare, unit = _time_reading(columns[0])
+        bare, unit = time_reading(columns[0])
         if unit and fitting_si_unit("time", unit) is None:
             continue
-        named = _named(bare) if len(columns) < _PARTS or columns[0].text is not None else 1.0
+        named = says_time(bare) if len(columns) < _PARTS or columns[0].text is not None else 1.0
         guess = guess_time(columns, unit)
         if guess is None or (not named and not _steady(draft.logs[0], columns)):
             continue
@@ -59,7 +58,7 @@ def settle_time(draft: Draft) -> None:
     if (
         len(columns) == 1
         and first.numeric
-        and not _is_named(first)
+        and not is_named(first)
         and counts_rows(first.values[np.isfinite(first.values)])
     ):
         draft.questions.append(
@@ -74,7 +73,7 @@ def _look_at_rivals(draft: Draft, columns: tuple[LogColumn, ...], guess: TimeGue
     log = draft.logs[0]
     taken = to_seconds(columns, guess.base, "time", log.place, strict=False)
     for other in log.columns:
-        rival = None if other in columns or not _is_named(other) else guess_time([other], _time_reading(other)[1])
+        rival = None if other in columns or not is_named(other) else guess_time([other], time_reading(other)[1])
         if rival is None:
             continue
         told = to_seconds([other], rival.base, "time", log.place, strict=False)
@@ -85,7 +84,7 @@ def _look_at_rivals(draft: Draft, columns: tuple[LogColumn, ...], guess: TimeGue
             draft.questions.append(
                 f"time: '{names}' and '{other.name}' tell two times, {own:.6g} s and {its:.6g} s from the first row to "
                 "the last: which is it? --set time.from=COLUMN; where each belongs to the columns beside it (two "
-                "tables side by side), bring them to one time first"
+                "tables side by side), --set log.clocks=held"
             )
             return
         if _kind(rival.base) == _kind(guess.base) and both.any():
@@ -100,7 +99,7 @@ def _look_at_origin(draft: Draft, columns: tuple[LogColumn, ...], other: LogColu
     if _begins_a_table(draft.logs[0], columns, other):
         draft.questions.append(
             f"time: '{other.name}' stands {shown} than '{names}' in every row, and columns of its own stand behind it: "
-            "where these are of its times (two tables side by side), bring them to one time first; where all columns "
+            "where these are of its times (two tables side by side), --set log.clocks=held; where all columns "
             f"of a row are of one instant, --set time.from={columns[0].name!r}"
         )
     else:
@@ -128,13 +127,13 @@ def _step(seconds: FloatArray) -> float:
 
 def _why_none(log: Log) -> str:
     """Why no column is the time: it falls, it goes back, its cells are read by no form, or there is none."""
-    named = [c for c in log.columns if _is_named(c)]
+    named = [c for c in log.columns if is_named(c)]
     turned = lambda c: replace(c, values=c.values[::-1], text=None if c.text is None else c.text[::-1])
     for column in named:
-        if guess_time([turned(column)], _time_reading(column)[1]) is not None:
+        if guess_time([turned(column)], time_reading(column)[1]) is not None:
             return f"'{column.name}' falls from row to row, the newest first; sort the log by time"
     for column in named:
-        form = guess_form([column], _time_reading(column)[1])
+        form = guess_form([column], time_reading(column)[1])
         if form is not None:
             seconds = to_seconds([column], form.base, "time", log.place, strict=False)
             if np.nanmin(np.diff(seconds)) == 0.0:
@@ -158,15 +157,6 @@ def _why_none(log: Log) -> str:
     return f"no column of times found among {listed(c.name for c in log.columns)}"
 
 
-def _is_named(column: LogColumn) -> bool:
-    """Whether a column bears the name of a time, and not a `t` beside other words."""
-    return _named(_time_reading(column)[0]) > _SURE
-
-
-def _named(bare: str) -> float:
-    return name_score("time", name_concepts(bare))
-
-
 def _with_fraction(
     log: Log, columns: tuple[LogColumn, ...], guess: TimeGuess
 ) -> tuple[tuple[LogColumn, ...], TimeGuess]:
@@ -179,12 +169,6 @@ def _with_fraction(
             base = replace(guess.base, spread=False, fraction=unit)
             return (*columns, column), replace(guess, base=base, because=because)
     return columns, guess
-
-
-def _time_reading(column: LogColumn) -> tuple[str, str]:
-    """Name and unit of a column, the unit one of time where the header has several readings."""
-    readings = [(bare, unit or column.unit) for bare, unit in header_readings(column.name)]
-    return next((r for r in readings if not r[1] or fitting_si_unit("time", r[1]) is not None), readings[0])
 
 
 def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:

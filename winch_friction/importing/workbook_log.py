@@ -47,6 +47,9 @@ def _read_sheet(
     if "first_row" in given:
         names, units, first = (int(given.get(key, 0)) - 1 for key in ("names_row", "unit_row", "first_row"))
         layout = Layout(names, units, first, layout.width)
+    if layout.names >= 0:  # most rows are narrower where signals end early
+        named = [k for k, cell in enumerate(rows[layout.names]) if not is_missing(cell)]
+        layout = replace(layout, width=max(layout.width, named[-1] + 1 if named else 0))
     body = [(k + 1, row) for k, row in enumerate(rows) if k >= layout.first and not all(map(is_missing, row))]
     columns = _columns(rows, [row for _, row in body], layout, decimal, thousands)
     notes = _formulas_without_values(path, name, columns, [k for k, _ in body])

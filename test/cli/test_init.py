@@ -7,6 +7,7 @@ import pytest
 import yaml
 
 from winch_friction.cli.main import run
+from winch_friction.importing.map_schema import map_schema
 from winch_friction.importing.mapping import load_map
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import refuse_other_crane
@@ -46,7 +47,7 @@ def test_what_is_written_is_read(own):
     refuse_other_crane(load_model("seed_crane_50t.yaml"), crane)
     assert load_scenario("ahc_crane_50t.yaml").crane == crane.name
     assert load_map(own / "log_map.yaml").crane == crane.name
-    schemas = all_schemas()
+    schemas = {**all_schemas(), "map": map_schema()}
     written = {"crane_50t": "crane", "plant_crane_50t": "plant", "seed_crane_50t": "model", "log_map": "map"}
     for name, kind in {**written, "ahc_crane_50t": "scenario", "normal_crane_50t": "scenario"}.items():
         assert problems(yaml.safe_load((own / f"{name}.yaml").read_text()), schemas[kind]) == []
@@ -146,8 +147,22 @@ def test_the_schema_refuses_a_motor_groups_name_that_the_reader_refuses():
     content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
     content["groups"] = {"active 1": 3, "passive": 8}
     assert problems(content, all_schemas()["crane"]) == [
-        "groups: 'active 1' is not a name of a motor group: letters, digits and _, a letter first"
+        "groups: must be a name of a motor group: letters, digits and _, a letter first, found 'active 1'"
     ]
+
+
+@pytest.mark.parametrize(
+    ("gear", "said"),
+    [
+        (-3, "gear_ratio: must be above 0, found -3"),
+        ([3], "gear_ratio: must be a number, or {value, unit}, found [3]"),
+    ],
+)
+def test_what_a_schema_says_is_a_sentence(gear, said):
+    """`-3 is not in 1, or {value, unit}`."""
+    content = yaml.safe_load((config_directory() / "cranes" / "crane_150t.yaml").read_text())
+    content["gear_ratio"] = gear
+    assert problems(content, all_schemas()["crane"]) == [said]
 
 
 def test_published_schemas_are_the_readers(tmp_path):

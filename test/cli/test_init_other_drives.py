@@ -6,6 +6,7 @@ import yaml
 
 from winch_friction.cli.main import run
 from winch_friction.importing.expectations import fits
+from winch_friction.importing.map_schema import map_schema
 from winch_friction.importing.mapping import load_map
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -41,8 +42,12 @@ def test_a_winch_without_pressures_has_its_files(drive, here, capsys):
     assert (model.crane, model.terms) == ("winch_5t", ())
     assert CHANNELS[drive] in found.columns
     assert not [name for name in found.columns if "pressure" in name or "displacement" in name]
+    schemas = {**all_schemas(), "map": map_schema()}
     for file, kind in (("winch_5t", "crane"), ("seed_winch_5t", "model"), ("log_map", "map")):
-        assert problems(yaml.safe_load((here / f"{file}.yaml").read_text()), all_schemas()[kind]) == []
+        assert (
+            problems(yaml.safe_load((here / f"{file}.yaml").read_text()), {**all_schemas(), "map": map_schema()}[kind])
+            == []
+        )
     # 5 t at the outer of four layers: 50 kN on 0.352 m over 90, of which a feedforward may take 0.3
     assert crane.absolute_torque_limit == pytest.approx(
         0.3 * 5000 * 9.80665 * crane.drum.layer_radii[-1] / 90, rel=0.01

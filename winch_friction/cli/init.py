@@ -166,9 +166,12 @@ def schemas(
     """
     import json
 
+    from winch_friction.importing.map_schema import map_schema
+    from winch_friction.records.schemas import titled
     from winch_friction.simulation.file_schemas import all_schemas
 
-    texts = {out / f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in all_schemas().items()}
+    every = {**all_schemas(), "map": titled("map", map_schema())}
+    texts = {out / f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in every.items()}
     _write_all(texts, overwrite, as_json)
 
 

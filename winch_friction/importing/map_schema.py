@@ -14,11 +14,9 @@ _ROW = {"type": "integer", "minimum": 0}
 
 
 def map_schema() -> dict[str, Any]:
-    """The schema as plain types, JSON Schema 2020-12."""
+    """The schema as plain types, without its title."""
     channels = "|".join(CHANNEL_UNITS)
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "winch_friction map: how a log becomes run files",
         "type": "object",
         "required": ["schema", "columns"],
         "additionalProperties": False,

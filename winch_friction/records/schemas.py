@@ -1,4 +1,4 @@
-"""JSON Schemas of the files that the strict reader takes apart: crane, model, practice, map; and their use.
+"""JSON Schemas of the files that the strict reader takes apart: crane, model, practice; and their use.
 
 The readers decide; a schema serves an editor's completion, and tells all problems of a file where a reader, which
 stops at the first, has refused it.
@@ -27,7 +27,8 @@ def quantity(unit: str, bounds: Mapping[str, float] | None = None) -> Schema:
         "required": ["value"],
         "additionalProperties": False,
     }
-    return {"description": f"in {unit}, or {{value, unit}}", "anyOf": [{**NUMBER, **(bounds or {})}, spelled]}
+    words = f"a number{'' if unit == '1' else f' in {unit}'}, or {{value, unit}}"
+    return {"description": words, "anyOf": [{**NUMBER, **(bounds or {})}, spelled]}
 
 
 def _object(required: Mapping[str, Schema], optional: Mapping[str, Schema] | None = None, **more: Any) -> Schema:
@@ -48,6 +49,7 @@ def _tag(name: str) -> Schema:
 # kinds of value, as people say them
 _KINDS = {"integer": "a whole number", "number": "a number", "string": "a text", "array": "a list [...]",
           "object": "a mapping of keys", "boolean": "true or false"}  # fmt: skip
+_BOUNDS = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
 _DRIVES = ["hydraulic", "electric", "power", "current"]
 _DRIVE = _object(
     {"kind": {"enum": _DRIVES}}, {"torque_constant": quantity("N*m/A"), "slowest_speed": quantity("rad/s")}
@@ -76,16 +78,6 @@ _CONSTANTS = {
     "max_displacement": quantity("m^3/rad"), "density": quantity("kg/m^3"), "viscosity": quantity("Pa*s"),
     "gear_ratio": quantity("1"),
 }  # fmt: skip
-_ENTRY = _object(
-    {},
-    {
-        "from": TEXT, "constant": TEXT, "unit": TEXT, "sign": {"enum": [1, -1]}, "factor": NUMBER, "add": NUMBER,
-        "of": TEXT, "at": {"enum": ["motor", "drum", "rope"]}, "differentiate": NUMBER,
-        "confidence": NUMBER, "because": TEXT,
-    },
-    anyOf=[{"required": ["from"]}, {"required": ["constant"]}],
-)  # fmt: skip
-
 DECLARED: dict[str, Schema] = {
     "crane": _object(
         {
@@ -135,11 +127,6 @@ DECLARED: dict[str, Schema] = {
          "tests": {**_NAMES, "minItems": 1}},
         {"held_out_tests": _NAMES, "ahc_tests": _NAMES, "motor_model": TEXT, "note": TEXT},
     ),
-    "map": _object(
-        {"schema": _tag("map"), "columns": {**MAPPING_OF, "minProperties": 1, "additionalProperties": _ENTRY}},
-        {"crane": TEXT, "time": MAPPING_OF, "log": MAPPING_OF, "bad_cells": {"enum": ["missing", "refuse"]},
-         "unused": _NAMES, "questions": _NAMES},
-    ),
 }  # fmt: skip
 
 
@@ -169,9 +156,12 @@ def _said(error: Any) -> list[str]:
         missing = [key for key in error.validator_value if key not in error.instance]
         return [f"{front}key '{key}' is missing" for key in missing]
     words = error.message
-    if error.validator in ("anyOf", "pattern", "type"):
+    beyond = [each for each in error.context or () if each.validator in _BOUNDS]
+    if beyond:  # a number, but not one that can be
+        words = f"must be {_BOUNDS[beyond[0].validator]} {beyond[0].validator_value:g}, found {error.instance!r}"
+    elif error.validator in ("anyOf", "pattern", "type"):
         kind = _KINDS.get(str(error.schema.get("type")), "what belongs here")
-        words = f"{error.instance!r} is not {error.schema.get('description', kind)}"
+        words = f"must be {error.schema.get('description', kind)}, found {error.instance!r}"
     return [f"{front}{words}"]
 
 

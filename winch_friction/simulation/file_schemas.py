@@ -1,7 +1,8 @@
 """JSON Schemas of the configuration files, and all problems of a file at once.
 
-Scenario and plant schemas are generated from the classes that read these files; those of crane, model, practice and
-map, which a strict reader takes apart key by key, are in `records.schemas` and held to the readers by tests.
+Scenario and plant schemas are generated from the classes that read these files; those of crane, model and
+practice, which a strict reader takes apart key by key, are in `records.schemas`, that of a map in
+`importing.map_schema`, and held to the readers by tests.
 """
 
 from collections.abc import Mapping
@@ -18,7 +19,7 @@ _LIMITS = {"gt": "exclusiveMinimum", "ge": "minimum", "le": "maximum"}
 
 
 def all_schemas() -> dict[str, Schema]:
-    """Every schema by the kind of file."""
+    """Every schema by the kind of file, but that of a map."""
     own = {"scenario": schema_of(Scenario, "scenario"), "plant": schema_of(PlantFile, "plant")}
     return {name: titled(name, each) for name, each in sorted({**DECLARED, **own}.items())}
 

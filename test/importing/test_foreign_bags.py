@@ -50,6 +50,25 @@ def test_a_foreign_recording_is_proposed_and_imported(tmp_path, crane_150t):
     assert same(back, run, ["motor_speed", "main.pressure_a", "main.pressure_b", "main.displacement", "hook_load"])
 
 
+def test_numbers_of_messages_within_messages_are_signals(tmp_path):
+    """A speed in a TwistStamped was not read, and not said to be left out."""
+    kind = "geometry_msgs/msg/TwistStamped"
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(5):
+            header = stamp_header(100.0 + 0.02 * k, MESSAGES)
+            vectors = {
+                each: MESSAGES.make("geometry_msgs/msg/Vector3", x=1.0 * k, y=0.0, z=0.0)
+                for each in ("linear", "angular")
+            }
+            twist = MESSAGES.make("geometry_msgs/msg/Twist", **vectors)
+            bag.write("/winch/twist", MESSAGES.make(kind, header=header, twist=twist), 100.0 + 0.02 * k)
+    log = read_log(tmp_path / "bag")
+    assert log.column("/winch/twist:twist.angular.x").unit == "rad/s"
+    assert log.column("/winch/twist:twist.linear.x").unit == "m/s"
+    assert log.column("/winch/twist:twist.angular.x").values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert not [each.name for each in log.columns if "stamp" in each.name]
+
+
 def test_a_sensor_that_falls_silent_is_said(tmp_path):
     """Its last value is held to the end of the log."""
     with BagWriter(tmp_path / "bag") as bag:

@@ -1,6 +1,7 @@
 """Recordings of ROS 2 whose topics are not the winch's own: every number of every message as a signal of a log.
 
-A signal is named `topic:field`, of a JointState `topic:velocity[joint]`; its unit is the message's. Times are the
+A signal is named `topic:field`, of a message within it `topic:twist.angular.x`, of a JointState
+`topic:velocity[joint]`; its unit is the message's. Times are the
 header stamps where there are any, else the receipts; all are put on the densest signal's, held at their latest value.
 """
 
@@ -21,6 +22,9 @@ _UNITS = {
     "sensor_msgs/msg/FluidPressure": {"fluid_pressure": "Pa"},
     "sensor_msgs/msg/Temperature": {"temperature": "degC"},
 }
+_WITHIN = {"angular": "rad/s", "linear": "m/s", "angular_velocity": "rad/s", "force": "N", "torque": "N*m"}
+_MOTIONS = ("Twist", "Imu", "Wrench", "Odometry")  # types whose vectors have these units; those of an Accel have others
+_DEEPEST = 4  # messages within messages: the twist of an Odometry is the third
 _MOST_FIELDS = 64  # numbers of one message: an image or a point cloud is no signal
 _CLOCKS_APART = 60.0  # s; stamps farther from the receipt are of another clock, or zero
 
@@ -44,7 +48,7 @@ def bag_signals(path: Path) -> Found:
                 name = f"{connection.topic}:{field}"
                 times[name].append(time)
                 values[name].append(value)
-                units[name] = _UNITS.get(connection.msgtype, {}).get(field.partition("[")[0], "")
+                units[name] = _unit(connection.msgtype, field)
     said = [each.removeprefix(f"{path.name}: ") for each in said]
     said += [f"topic '{topic}': {count} messages cannot be read" for topic, count in broken.items()]
     return Found([_ordered(name, times[name], values[name], units[name]) for name in values], notes=tuple(said))
@@ -63,13 +67,24 @@ def _stamp(message: Any, receipt: float) -> float:
     return stamp if abs(stamp - receipt) < _CLOCKS_APART else receipt
 
 
-def _numbers(message: Any) -> Iterator[tuple[str, float]]:
-    """The numbers of a message by field; arrays by their names where they have some, else by index."""
+def _unit(kind: str, field: str) -> str:
+    """The unit that a type's own definition says of a field, '' for none."""
+    within = field.split(".")[-2] if "." in field else ""
+    if within in _WITHIN and any(word in kind for word in _MOTIONS):
+        return _WITHIN[within]
+    return _UNITS.get(kind, {}).get(field.partition("[")[0], "")
+
+
+def _numbers(message: Any, deepest: int = _DEEPEST) -> Iterator[tuple[str, float]]:
+    """The numbers of a message by field, `within.field` of a message in it; arrays by their names where they have some,
+    else by index."""
     names = getattr(message, "name", None)
     for field in message.__dataclass_fields__:
         value = getattr(message, field)
         if isinstance(value, (bool, int, float, np.integer, np.floating)):
             yield field, float(value)
+        elif hasattr(value, "__dataclass_fields__") and field != "header" and deepest:
+            yield from ((f"{field}.{name}", each) for name, each in _numbers(value, deepest - 1))
         elif (
             isinstance(value, np.ndarray)
             and value.dtype.kind in "biuf"

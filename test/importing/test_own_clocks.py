@@ -170,6 +170,27 @@ def test_what_a_historian_left_out_is_drawn_as_it_wrote(rule, clocks, tmp_path, 
     assert told.log_map.log["clocks"] == other
 
 
+def test_a_log_of_changes_is_held_where_that_is_said(tmp_path, crane_150t):
+    """Its columns share a clock and have a value where it changed: most cells were empty, with no way to hold them."""
+    rows = series(lambda _: 0.1, 0.0)
+    times, last, lines = rows["motor_speed"][0], {}, [["Time [s]", *(f"{n} [{u}]" for n, u, *_ in SIGNALS.values())]]
+    for k, t in enumerate(times):
+        cells = [f"{t:.1f}"]
+        for name, (_, values) in rows.items():
+            moved = name not in last or abs(values[k] - last[name]) > 0.02 * np.abs(values).max()
+            last[name] = values[k] if moved else last[name]
+            cells.append(f"{values[k]:.4f}" if moved else "")
+        lines.append(cells)
+    log = tmp_path / "log.csv"
+    log.write_text("\n".join(";".join(row) for row in lines), encoding="utf-8")
+    asked = propose([log], crane_150t, "crane_150t")
+    assert any("of a log of changes, where each holds until the next" in each for each in asked.notes), asked
+    run, _ = taken(log, crane_150t, tmp_path, ("log.clocks=held",))
+    assert len(run) == len(times)
+    assert agree(run, 0.5)
+    assert all(np.isfinite(run[name]).all() for name in SIGNALS)
+
+
 def test_times_that_all_say_the_same_are_one(tmp_path, crane_150t):
     """`MOTOR.SPEED [rpm] time [s]` was taken for the speed of the drum."""
     log = tmp_path / "log.csv"
@@ -208,9 +229,9 @@ def test_what_the_map_says_of_clocks_is_held_against_the_log(tmp_path, crane_150
     run, found = taken(log, crane_150t, tmp_path)
     plain = tmp_path / "plain.csv"
     plain.write_text(
-        "Time [s];MotorSpeed [rpm]\n" + "\n".join(f"{k / 10};{k % 7}" for k in range(50)), encoding="utf-8"
+        "MotorSpeed [rpm];Time [s]\n" + "\n".join(f"{k % 7};{k / 10}" for k in range(50)), encoding="utf-8"
     )
-    with pytest.raises(InputError, match=r"plain\.csv: log\.clocks is 'held', but its columns have no times"):
+    with pytest.raises(InputError, match=r"plain\.csv: log\.clocks is 'held', but no column of times begins it"):
         import_log(plain, found.log_map, crane_150t)
     with pytest.raises(InputError, match=r"'log\.clocks=two': write one of one, held, lines"):
         propose([log], crane_150t, "crane_150t", ("log.clocks=two",))

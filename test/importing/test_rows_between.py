@@ -6,6 +6,7 @@ from importing.logs import example, rows_of, write_text
 
 from winch_friction.importing.layout import find_layout
 from winch_friction.importing.propose import propose
+from winch_friction.importing.reading import read_log
 from winch_friction.importing.text_log import read_text_log
 
 
@@ -34,6 +35,26 @@ def test_a_row_whose_first_cell_has_no_value_stays(first, rows, tmp_path):
     lost[1] = rows[5][1]
     log = read_text_log(write_text(tmp_path / "log.csv", [*rows[:200], lost, *rows[200:]]))
     assert len(log.columns[0].values) == len(rows)
+
+
+def test_a_summary_below_the_rows_is_none_of_them(tmp_path, crane_150t):
+    """'Mittelwert;;112,3;...' was refused as no time: it has as many cells as a row."""
+    run = example("test_02")
+    rows = rows_of(run)
+    log = write_text(tmp_path / "log.csv", [*rows, ["Mittelwert:", *rows[5][1:]], ["MAX", *rows[6][1:]]])
+    read = read_log(log)
+    assert len(read) == len(run)
+    assert any("2 lines are no row of values" in each and "Mittelwert" in each for each in read.notes)
+
+
+def test_a_row_of_types_says_no_units(tmp_path, crane_150t):
+    """'D', a double, was a day, in which no channel is, and the time went back 'by -0.1 s'."""
+    names, *rows = rows_of(example("test_02"), decimal=".")
+    kinds = [["#TYPES"], ["date", *["D"] * (len(names) - 1)], ["#ROWS", str(len(rows))]]
+    log = write_text(tmp_path / "log.csv", [["#NAMES"], names, *kinds, *rows], ",")
+    read = read_log(log)
+    assert {each.unit for each in read.columns} == {""}
+    assert propose([log], crane_150t, "crane_150t").log_map.time_from == ("Zeit",)
 
 
 def test_a_table_that_begins_with_words_has_no_remarks(rows, tmp_path):

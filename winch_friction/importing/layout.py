@@ -13,6 +13,11 @@ _RUN = 4  # rows of values in a row that make a beginning
 _ALIKE = 0.9  # of the rows of values, that end in the same column or beside it unless cells stay empty
 _LABELS = 0.25  # of a row's cells: words where values should be; a sensor that failed in the first row is one of many
 _HEAD = 30  # rows above the values among which a row of labelled units is looked for
+_TYPES = frozenset({
+    "date", "datetime", "timestamp", "time", "d", "double", "f", "float", "real", "real32", "real64", "lreal", "i",
+    "int", "int16", "int32", "int64", "dint", "uint", "word", "dword", "l", "long", "s", "str", "string", "text",
+    "b", "bool", "boolean",
+})  # fmt: skip  # how programs say what kind of value a column holds
 _ABOVE = 5  # rows above the values among which names and units are looked for
 
 Row = Sequence[Any]
@@ -38,7 +43,9 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
     width = max(widths, key=lambda w: (widths[w], w))
     good = [_share_of_values(row, decimal, thousands) >= 0.4 and abs(_width(row) - width) <= 1 for row in seen]
     # a logger that writes changes leaves the other cells empty
-    if sum(widths[w] for w in (width - 1, width, width + 1)) < _ALIKE * sum(widths.values()):
+    alike = sum(widths[w] for w in (width - 1, width, width + 1)) >= _ALIKE * sum(widths.values())
+    alone = sum(_is_time_alone(row, decimal, thousands) for row in seen)
+    if not alike or alone > (1.0 - _ALIKE) * len(seen):
         good = [_share_of_values(row, decimal, thousands, 1) >= 0.4 for row in seen]
     run = min(_RUN, sum(good))
     first = next((k for k in range(len(seen)) if all(good[k : k + run]) and len(good[k : k + run]) == run), None)
@@ -69,6 +76,12 @@ def _labels_values(row: Row, below: Sequence[Row], decimal: str, thousands: str)
         if not is_missing(cell) and not is_value(cell) and all(k < len(b) and is_value(b[k]) for b in below)
     ]  # fmt: skip
     return len(words) > 1 and len(words) >= _LABELS * len(row)
+
+
+def _is_time_alone(row: Row, decimal: str, thousands: str) -> bool:
+    """Whether a row has a time, and other cells with nothing in them."""
+    empty = len(row) > 2 and all(is_missing(cell) for cell in row[1:])
+    return empty and (is_number(row[0], decimal, thousands) or is_time(row[0]))
 
 
 def _names_row(rows: Sequence[Row], candidates: list[int]) -> int:
@@ -119,4 +132,7 @@ def _is_labelled_unit_row(row: Row, width: int) -> bool:
 
 def _is_unit_row(row: Row) -> bool:
     cells = [bare_unit(str(cell)) for cell in row if not is_missing(cell)]
+    kinds = {cell.casefold() for cell in cells}
+    if kinds <= _TYPES and max(map(len, kinds), default=0) > 1:  # `date; D; D`: D of a double, not of a day
+        return False
     return len(cells) >= 2 and sum(looks_like_unit(cell) for cell in cells) >= 0.6 * len(cells)

@@ -38,15 +38,15 @@ class Signal:
 
 
 def on_one_clock(
-    signals: Sequence[Signal], lines: bool = False, steady: bool = False
+    signals: Sequence[Signal], lines: bool = False, steady: bool = False, base: FloatArray | None = None
 ) -> tuple[list[LogColumn], list[str]]:
     """The densest signal's times as a column, every signal at these, and what is to be said of it; all have times.
 
     `lines`: along straight lines between a signal's values, else held at the latest. `steady`: where the densest times
-    come as they like they are replaced by steady ones of the shortest usual step.
+    come as they like they are replaced by steady ones of the shortest usual step. `base`: other times than the densest.
     """
     clocks = [np.asarray(each.times, dtype=float) for each in signals]
-    base = max(clocks, key=len)
+    base = max(clocks, key=len) if base is None else base
     others = sum(not np.array_equal(each, base) for each in clocks)
     notes = []
     if others:

@@ -28,6 +28,7 @@ class _Clock:
 
     at: int
     seconds: FloatArray
+    base: TimeBase
     signals: Sequence[LogColumn]
 
     @property
@@ -39,25 +40,27 @@ class _Clock:
 def with_own_clocks(log: Log, said: str = "") -> Log:
     """The log on one clock where its columns have several.
 
-    `said`: one of CLOCKS, as the map has it; '' to find out, and to put into the log's settings what was found.
-    Raises `InputError` where the map says own clocks of a log that has none.
+    `said`: one of CLOCKS, as the map has it, also of a log of changes, whose columns have one clock and a value where
+    it changed; '' to find out, and to put into the log's settings what was found.
+    Raises `InputError` where the map says so of a log that does not begin with a column of times.
     """
     if said == "one":
         return log
-    clocks = _clocks(log)
+    clocks = _clocks(log, 1 if said else 2)
     if said and not clocks:
-        raise InputError(f"{log.path}: log.clocks is '{said}', but its columns have no times of their own")
+        raise InputError(f"{log.path}: log.clocks is '{said}', but no column of times begins it")
     if not said and not _are_own(clocks):
         return log
     times = [log.columns[each.at].name for each in clocks]
-    if all(np.array_equal(each.seconds, clocks[0].seconds, equal_nan=True) for each in clocks):
+    if len(clocks) > 1 and all(np.array_equal(each.seconds, clocks[0].seconds, equal_nan=True) for each in clocks):
         again = [column for k, column in enumerate(log.columns) if k not in {each.at for each in clocks[1:]}]
         note = f"{len(clocks)} columns of times say the same: '{times[0]}' is taken"
         return replace(log, columns=tuple(again), settings=_with(log, said or "held"), notes=(*log.notes, note))
     signals = [_signal(column, clock) for clock in clocks for column in clock.signals]
     signals = [each for each in signals if len(each.values)]
     lines = said == "lines" or (not said and draws_lines(signals))
-    columns, notes = on_one_clock(signals, lines, steady=True)
+    rows = np.sort(clocks[0].seconds[clocks[0].known]) if len(clocks) == 1 else None  # of a log of changes
+    columns, notes = on_one_clock(signals, lines, rows is None, rows)
     if lines and not said:
         notes.append(
             "a compressed record: values leap behind silences; if it holds changes, write clocks: held in the map"
@@ -69,7 +72,11 @@ def with_own_clocks(log: Log, said: str = "") -> Log:
         for each in clock.signals
         if each.bad
     ]
-    notes.append(f"{len(clocks)} columns of times, each of the columns behind it: {listed(times)}")
+    if len(clocks) > 1:
+        notes.append(f"{len(clocks)} columns of times, each of the columns behind it: {listed(times)}")
+    if clocks[0].base.form == "datetime":
+        zone = f", {clocks[0].base.zone} where no zone is given" if clocks[0].base.zone else ""
+        notes.append(f"dates of the order {clocks[0].base.order}{zone}")
     return replace(
         log, columns=tuple(columns), settings=_with(log, "lines" if lines else "held"),
         place=lambda row: f"sample {row + 1}", notes=(*log.notes, *notes),
@@ -80,7 +87,7 @@ def _with(log: Log, clocks: str) -> Mapping[str, object]:
     return {**log.settings, "clocks": clocks}
 
 
-def _clocks(log: Log) -> list[_Clock]:
+def _clocks(log: Log, fewest: int) -> list[_Clock]:
     """The columns of times from the first column on, signals behind each; none where it is not a table of such."""
     columns = [each for each in log.columns if not _is_hollow(each)]
     borne = Counter(own_name(each.name) for each in columns)
@@ -98,11 +105,11 @@ def _clocks(log: Log) -> list[_Clock]:
             found.append((k, base))
     ends = [*(k for k, _ in found), len(columns)]
     base = _common_base([(columns[k], base) for k, base in found])
-    if len(found) < 2 or base is None or ends[0] or any(b - a < 2 for a, b in pairwise(ends)):
+    if len(found) < fewest or base is None or ends[0] or any(b - a < 2 for a, b in pairwise(ends)):
         return []
     clocks = [
         _Clock(
-            log.columns.index(columns[k]), to_seconds([columns[k]], base, "time", log.place, strict=False),
+            log.columns.index(columns[k]), to_seconds([columns[k]], base, "time", log.place, strict=False), base,
             columns[k + 1 : end],
         )
         for (k, _), end in zip(found, ends[1:], strict=True)

@@ -31,6 +31,7 @@ from winch_friction.importing.units import (
 from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.run_checks import SPARSE, rows_between
 
 _CLOCKS_SAID = "log.clocks="
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
@@ -85,8 +86,21 @@ def propose(
     unused = tuple(c.name for c in logs[0].columns if c.name not in used)
     log_map = replace(draft.log_map, unused=unused, questions=tuple(dict.fromkeys(draft.questions)))
     notes = tuple(f"{log.path.name}: {note}" for log in logs for note in log.notes) + tuple(draft.notes)
+    notes += tuple(_say_of_changes(draft))
     problems = tuple(dict.fromkeys([*draft.problems, *log_map.questions]))
     return Proposal(log_map, problems, notes + tuple(_bad_cells(logs, log_map)))
+
+
+def _say_of_changes(draft: Draft) -> list[str]:
+    """What to do with columns that have a value in some rows only, at no rhythm: a logger writes what has changed."""
+    log = draft.logs[0]
+    used = [log.column(each.source) for each in draft.log_map.columns.values() if not each.constant]
+    shares = {c.name: float(np.isfinite(c.values).mean()) for c in used if c.numeric and not rows_between(c.values)}
+    sparse = [f"'{name}' ({100.0 * share:.2g} %)" for name, share in shares.items() if share < SPARSE]
+    told = (
+        f"a value in some rows only: {', '.join(sparse)}; the others stay empty; of a log of changes, where each holds "
+    )
+    return [f"{log.path.name}: {told}until the next, --propose --set log.clocks=held"] if sparse else []
 
 
 def _said_clocks(settings: Sequence[str]) -> tuple[dict[str, str] | None, list[str]]:

@@ -17,6 +17,11 @@ from winch_friction.physics.signals import FloatArray
 
 _BLOCK = 4096  # rows cut at once: a few MB of cells
 FEW = 0.5  # of the columns: what has more cells is a row, whatever its first one says
+_SUMMARY = frozenset({
+    "mittelwert", "mittel", "minimum", "maximum", "min", "max", "mean", "average", "avg", "std", "stdev", "stddev",
+    "sum", "total", "summe", "standardabweichung", "median", "gjennomsnitt", "middelverdi", "snitt", "standardavvik",
+    "rms", "count", "anzahl",
+})  # fmt: skip  # what a row of its columns' statistics begins with
 _TOGETHER = 4  # columns of other cells than plain numbers that are kept whole at a time
 
 
@@ -48,12 +53,13 @@ class Body:
                     self.short.append(number)
 
     def _is_remark(self, row: list[str]) -> bool:
-        """Whether a row holds a few cells and begins with a word where the others have a time or a number."""
+        """Whether a row begins with a word where the others have a time or a number, and holds a few cells or a summary
+        of the columns."""
         first = row[0].strip()
         if not self._valued or not first or first[0].isdigit() or first.lower() in NO_VALUE:
             return False
         few = sum(bool(cell.strip()) for cell in row) <= FEW * self.width
-        return few and not _is_value(first, self._marks)
+        return (few or first.casefold().rstrip(" :.=") in _SUMMARY) and not _is_value(first, self._marks)
 
     def blocks(self) -> Iterator[list[list[str]]]:
         """The rows, all of one width, a block at a time."""

@@ -136,6 +136,9 @@ def _why_none(log: Log) -> str:
         form = guess_form([column], time_reading(column)[1])
         if form is not None:
             seconds = to_seconds([column], form.base, "time", log.place, strict=False)
+            if np.nanmin(np.diff(seconds)) > 0.0:
+                unit = time_reading(column)[1]
+                return f"'{column.name}' rises like one, but '{unit}' is no unit of a time; take it out of the log"
             if np.nanmin(np.diff(seconds)) == 0.0:
                 same = float(np.mean(np.diff(seconds) == 0.0))
                 return (

@@ -83,6 +83,27 @@ def test_a_verb_that_looks_at_no_recording_by_itself_says_nothing_of_dates(tmp_p
     assert found["notes"] == []
 
 
+def test_a_suppliers_table_among_the_logs_is_no_recording(tmp_path, monkeypatch, capsys):
+    """It stopped the whole crane: 'no column time'."""
+    from winch_friction.cli import fleet as verb
+    from winch_friction.fleet.ledger import Outcome
+
+    (tmp_path / "north").mkdir()
+    (tmp_path / "north" / "a.csv").write_text("time\n")
+    table = "# of the makers\nspeed [rpm];pressure [bar];displacement [cm^3/rev];efficiency [%]\n1000;100;215;93\n"
+    (tmp_path / "north" / "motor.csv").write_text(table)
+    seen = []
+    done = lambda task: seen.append(task) or Outcome(task.key, "north", "a", 0, 0.1, {"verb": None, "traits": []}, "")
+    monkeypatch.setattr(verb, "carry_out", done)
+    status, found = fleet(capsys, "identify", tmp_path / "north", "--out", tmp_path / "out")
+    assert status == 0
+    assert [[each.name for each in task.recordings] for task in seen] == [["a"]]
+    assert found["notes"] == [f"{tmp_path}/north/motor.csv: a supplier's table and no recording: left out"]
+    (tmp_path / "north" / "a.csv").unlink()
+    assert main.run(["fleet", "identify", str(tmp_path / "north"), "--out", str(tmp_path / "o"), *FILES]) == 2
+    assert "'identify motor' reads it" in capsys.readouterr().err
+
+
 def test_a_cranes_name_of_digits_stays_a_name(tmp_path):
     row = {"recording": "a", "time": 1.7e9, "kind": "trait", "name": "friction", "value": 1.0, "std": 0.1, "unit": "%"}
     write_store(tmp_path, [{**row, "crane": "007"}, {**row, "crane": "012"}])

@@ -3,7 +3,7 @@
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,9 @@ from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
 from winch_friction.physics.errors import InputError
+
+if TYPE_CHECKING:
+    from winch_friction.fleet.recordings import Recording
 
 
 def command(
@@ -63,10 +66,11 @@ def command(
     refuse_unwritable(out / "fleet.json")
     refuse_foreign(out, ("fleet.json", "report.html"), "fleet.jsonl")
     options = _storage_options(storage or [])
-    recordings = find_recordings(sources, options, own_folders(out))
+    recordings, tables = _without_tables(find_recordings(sources, options, own_folders(out)))
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
     outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)
     content = {"verb": verb, "outcomes": [asdict(each) for each in outcomes], **_over_time(outcomes, out)}
+    content["notes"] += [f"{each.address}: a supplier's table and no recording: left out" for each in tables]
     content["provenance"] = provenance_of([], crane, model)  # the recordings' names are below; many, and far away
     _write(out, content, verb, outcomes)
     if as_json:
@@ -76,6 +80,19 @@ def command(
         show_table(f"{verb} over {len(recordings)} recordings", ("recording", "exit", "seconds", "outcome"), rows)
         _show_changes(content)
     raise typer.Exit(_status(outcomes))
+
+
+def _without_tables(found: "list[Recording]") -> "tuple[list[Recording], list[Recording]]":
+    """The recordings, and the suppliers' tables that lie among them on this machine.
+
+    Raises `InputError` where nothing else is there.
+    """
+    from winch_friction.identification.supplier_file import is_supplier_table
+
+    tables = [each for each in found if "://" not in each.address and is_supplier_table(Path(each.address))]
+    if tables and len(tables) == len(found):
+        raise InputError(f"{tables[0].address}: a supplier's table and no recording; 'identify motor' reads it")
+    return [each for each in found if each not in tables], tables
 
 
 def _done(tasks: list[Task], ledger: Ledger, workers: int | None, scheduler: str, anew: bool) -> list[Outcome]:

@@ -1,5 +1,6 @@
 """Reading a supplier's table: CSV with units in the headers, efficiency or torque."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +22,19 @@ _UNITS = {"efficiency": "1", "torque": "N*m", "torque_loss": "N*m"}
 _LOSSES = tuple(_UNITS)
 _CHANNELS = {"speed": "motor_speed", "pressure": "pressure_a", "displacement": "displacement",
              "torque": "motor_torque", "torque_loss": "motor_torque"}  # fmt: skip
+_HEAD = 10_000  # characters; a table has ten columns at most
 _NEXT_TO_NONE = 1e-9  # of the largest value that a channel can mean
 _WEIGHTS = (1e-9, 1e9)
+
+
+def is_supplier_table(path: Path) -> bool:
+    """Whether a file's head is that of a supplier's table, whatever its rows are."""
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return False
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        head = next((line for line in file if line.strip() and not line.startswith("#")), "")
+    names = {cell.partition("[")[0].strip().strip('"') for cell in re.split("[,;\t]", head[:_HEAD])}
+    return names >= set(_AXES) and bool(names & set(_LOSSES))
 
 
 def read_supplier_table(path: str | Path, max_displacement: float | None = None) -> SupplierTable:

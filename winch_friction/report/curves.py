@@ -69,9 +69,11 @@ def curve_plot(curves: Sequence[ModelCurve]) -> Plot:
 
 
 def parts_plot(curve: ModelCurve) -> Plot:
-    """The terms' torques over speed, stacked."""
-    frame = Frame(curve.model, {SPEED: curve.speed / RPM, **{f"{n} [N·m]": part for n, part in curve.parts.items()}})
+    """The terms' torques over speed, stacked, those that take off it below zero; and what they are together."""
+    parts = {f"{n} [N·m]": part for n, part in curve.parts.items()}
+    frame = Frame(curve.model, {SPEED: curve.speed / RPM, **parts, TORQUE: curve.torque})
     lines = [Line(name.replace("_", " "), SPEED, f"{name} [N·m]", kind="area") for name in curve.parts]
+    lines.append(Line("together", SPEED, TORQUE, role="measured"))
     said = f"Terms at {curve.load / 1e3:.3g} t; together they are the friction."
     return Plot("Friction by term", [frame], lines, SPEED, [TORQUE], said, height=330)
 

@@ -9,6 +9,7 @@
     plain: ["#62b8f5", "#ffa25c", "#5fd0a0", "#e08fc4", "#a99cf0", "#d6b94a", "#7cc7da", "#ef918b"]};
   const DASH = {before: "6px,3px", noise: "2px,3px", truth: "solid", measured: "solid", after: "solid"};
   const WIDTH = {measured: 1.6, before: 1.4, after: 1.8, truth: 3, noise: 1.2, other: 1};
+  const HATCH = ["", "/", "x", "."];  // what dashes are to lines: areas beyond the colours
   const CYCLE = ["solid", "7px,3px", "2px,2px", "7px,3px,2px,3px"];
   const dark = matchMedia("(prefers-color-scheme: dark)"), paper = matchMedia("print");
   const narrow = () => innerWidth < 560;
@@ -75,7 +76,9 @@
         return {...base, type: "bar", marker: {color: colour, line: {color: colour, width: 1},
           pattern: role === "before" ? {shape: "/", fillmode: "replace", fgcolor: colour, bgcolor: c.card, size: 6} : {shape: ""}}};
       if (kind === "dots") return {...base, type: "scatter", mode: "markers", marker: {color: colour, size: 5}};
-      if (kind === "area") return {...base, type: "scatter", mode: "lines", stackgroup: "row" + row, line: {color: colour, width: 0.5}};
+      const below = kind === "area" && columns[y].reduce((sum, each) => sum + each, 0) < 0;  // a stack of its own under zero
+      if (kind === "area") return {...base, type: "scatter", mode: "lines", stackgroup: (below ? "under" : "row") + row, line: {color: colour, width: 0.5},
+        fillcolor: colour + "90", fillpattern: {shape: HATCH[Math.floor(k / c.plain.length) % HATCH.length], fgcolor: c.card, bgcolor: colour + "90", size: 7, solidity: 0.35}};
       if (kind === "band") {
         const there = Array.from(columns[x]), back = there.slice().reverse();
         return {...base, x: there.concat(back), y: Array.from(columns[upper]).concat(Array.from(columns[y]).reverse()),

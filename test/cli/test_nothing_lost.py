@@ -182,3 +182,17 @@ def test_a_folder_of_runs_is_not_one_recording(here, capsys):
 def test_a_bag_that_is_not_there_is_said_at_once(verb, here, capsys):
     assert run([verb, "--bag", "nothere", *(["--port", "0"] if verb == "dashboard" else [])]) == 2
     assert "nothere: no such bag" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("verb", ["dashboard", "watch"])
+def test_what_is_no_bag_is_said_at_once(verb, here, capsys):
+    """The page stood empty for as long as somebody waited."""
+    pytest.importorskip("rosbags")
+    (here / "run.csv").write_text("time\n")
+    (here / "empty").mkdir()
+    port = ["--port", "0"] if verb == "dashboard" else []
+    for name, said in (("run.csv", "not a readable rosbag2 recording"), ("empty", "not a rosbag2 folder")):
+        assert run([verb, "--bag", name, *port]) == 2
+        found = capsys.readouterr()
+        assert said in found.err
+        assert not found.out

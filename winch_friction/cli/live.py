@@ -22,10 +22,11 @@ BAG_PERIOD = 0.2  # s of the bag per frame
 def frames(bag: Path | None, namespace: str, rate: float, joint: str = "") -> Iterator[dict[str, Any]]:
     """Frames of a bag (`rate` times as fast as it was; 0: at once) or, without one, of the running nodes.
 
-    `joint` carries the winch's speed; '' stands for winch_motor, else the first there is.
+    `joint` carries the winch's speed; '' stands for winch_motor, else the first there is. Raises `InputError` for
+    what is no bag, before anything is served.
     """
-    if bag is not None and not bag.exists():
-        raise InputError(f"{bag}: no such bag")
+    if bag is not None:
+        bag_topics(bag)
     return bag_frames(bag, namespace, rate, joint) if bag is not None else live_frames(namespace, joint)
 
 

@@ -129,6 +129,27 @@ def test_a_spreadsheet_of_pairs_below_their_tags(tmp_path, crane_150t):
     assert agree(run, 0.05)
 
 
+@pytest.mark.parametrize("kind", ["mat", "h5"])
+def test_structs_with_a_time_of_their_own_are_signals_of_it(kind, tmp_path, crane_150t):
+    """Of timeseries of several rates those of the commonest length were taken, and the others left out."""
+    rows, log = series(), tmp_path / f"log.{kind}"
+    if kind == "mat":
+        from scipy.io import savemat
+
+        savemat(log, {"log": {"_".join(SIGNALS[n][:2]).replace("cm3/rev", "ccm"): {"Time": t, "Data": v}
+                              for n, (t, v) in rows.items()}})  # fmt: skip
+    else:
+        h5py = pytest.importorskip("h5py")
+        with h5py.File(log, "w") as file:
+            for name, (times, values) in rows.items():
+                group = file.create_group(SIGNALS[name][0])
+                group.create_dataset("time", data=times).attrs["unit"] = "s"
+                group.create_dataset("value", data=values).attrs["unit"] = SIGNALS[name][1]
+    run, found = taken(log, crane_150t, tmp_path)
+    assert agree(run, 0.02)
+    assert not [each for each in found.notes if "left out" in each]
+
+
 def corners(times, values, slack):
     """A swinging door: the corners of straight lines that leave no value by more than `slack`."""
     kept, low, high = [0], -np.inf, np.inf

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from winch_friction.importing.log import Log, LogColumn, listed, own_name
-from winch_friction.importing.one_clock import Signal, draws_lines, on_one_clock
+from winch_friction.importing.one_clock import Signal, column_of, draws_lines, on_one_clock
 from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
 from winch_friction.importing.time_names import is_clock_of
 from winch_friction.physics.errors import InputError, counted
@@ -81,6 +81,34 @@ def with_own_clocks(log: Log, said: str = "") -> Log:
         log, columns=tuple(columns), settings=_with(log, "lines" if lines else "held"),
         place=lambda row: f"sample {row + 1}", notes=(*log.notes, *notes),
     )  # fmt: skip
+
+
+def with_times_of_their_structs(signals: Sequence[Signal]) -> tuple[list[Signal], list[str]]:
+    """The signals of structs that hold their own time, with it (`speed.Time`, `speed.Data`, as of a timeseries), and
+    the names of the others; none where there are not two such structs of different times.
+    """
+    structs: dict[str, list[Signal]] = {}
+    for each in signals:
+        structs.setdefault(each.name.rpartition(".")[0], []).append(each)
+    found: list[tuple[str, Signal, LogColumn, TimeBase]] = []
+    for name, members in structs.items():
+        for each in members if name else ():
+            column = column_of(each.name.rpartition(".")[2], each)
+            named, unit = is_clock_of(column)
+            guess = guess_time([column], unit) if named else None
+            if guess is not None and not guess.question:
+                found.append((name, each, column, replace(guess.base, spread=False)))
+                break
+    base = _common_base([(column, own) for _, _, column, own in found])
+    if base is None or all(np.array_equal(each.values, found[0][1].values) for _, each, _, _ in found[1:]):
+        return [], []
+    timed, left = [], {id(each): each.name for each in signals}
+    for name, clock, column, _ in found:
+        seconds = to_seconds([column], base, "time", lambda row: f"sample {row + 1}", strict=False)
+        others = [each for each in structs[name] if each is not clock and len(each.values) == len(seconds)]
+        timed += [replace(each, name=name if len(others) == 1 else each.name, times=seconds) for each in others]
+        left = {key: told for key, told in left.items() if key not in map(id, (clock, *others))}
+    return timed, list(left.values())
 
 
 def _with(log: Log, clocks: str) -> Mapping[str, object]:

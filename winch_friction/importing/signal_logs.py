@@ -14,6 +14,7 @@ from winch_friction.importing.hdf5_log import matlab_arrays, plain_arrays
 from winch_friction.importing.log import Log, LogColumn, listed
 from winch_friction.importing.one_clock import Signal, of_one_length, on_one_clock
 from winch_friction.importing.optional import library
+from winch_friction.importing.own_clocks import with_times_of_their_structs
 from winch_friction.physics.errors import InputError
 from winch_friction.records.parquet_units import said_units
 
@@ -61,10 +62,12 @@ def _aligned(path: Path, signals: list[Signal]) -> tuple[list[LogColumn], list[s
     if not signals:
         raise InputError(f"{path}: holds no signal of more than one value")
     timed = [each for each in signals if each.times is not None and len(each.times) == len(each.values)]
+    left = [each.name for each in signals if all(each is not one for one in timed)]  # two may bear one name
+    if not timed:
+        timed, left = with_times_of_their_structs(signals)
     if not timed:
         return of_one_length(signals)
     columns, notes = on_one_clock(timed)
-    left = [each.name for each in signals if all(each is not one for one in timed)]  # two may bear one name
     return columns, notes + ([f"signals without times left out: {listed(left)}"] if left else [])
 
 

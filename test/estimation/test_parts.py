@@ -233,6 +233,47 @@ def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
     assert late.sensitivity == pytest.approx(early.sensitivity, rel=1e-6, abs=1e-8)
 
 
+def test_another_prior_takes_back_what_the_range_had_moved(kind, seed):
+    """Held at the edge of the range by the narrow prior, sample by sample, the wide one took the pull for told by the
+    data: a parameter that had been held at its upper edge was found at the lower one."""
+    config = EstimatorConfig(forgetting_time=1e12)
+    free, held = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
+    _, step = some_filter(seed, kind=kind)
+    rng, at_edge = np.random.default_rng(6), 0
+    start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
+    for each in (free, held):
+        covariance = start.copy()
+        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each.parameters.prior
+        each.state = np.zeros((each.size, 1)), covariance
+    unbounded(free)
+    held.parameters.lower[:], held.parameters.upper[:] = -0.02, 0.02
+    held.parameters.contains = lambda phi: bool(np.all(np.abs(phi) <= 0.02))
+    for k in range(200):
+        gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
+        step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
+        for each in (free, held):
+            each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
+            innovation, variance = each.innovation(0.01 * k)
+            each.correct(innovation, variance, True)
+        at_edge += np.any(np.abs(held.phi) >= 0.02)
+    assert at_edge > 10
+    assert np.abs(held.phi - free.phi).max() > 0.01
+    unbounded(held)
+    for each in (free, held):
+        each.change_prior(lambda each=each: each.parameters.widen(range(each.parameters.size)))
+    assert held.x == pytest.approx(free.x, rel=1e-6, abs=1e-8)
+
+
+def test_what_is_taken_anew_was_moved_by_no_range(kind, seed):
+    each, _ = some_filter(seed, kind=kind)
+    each._moved[:] = 1.0
+    each.take_anew([(SPEED, 3.0, 0.5)])
+    x, covariance = each.state
+    each.take_parameters(x[:, 0], covariance, each.sensitivity.copy())
+    assert not each._moved[[SPEED, *range(FIRST_PARAMETER, each.size)]].any()
+    assert each._moved[LOAD] == 1.0
+
+
 @pytest.mark.parametrize("widths", [0.3, np.inf])
 def test_the_compiled_step_is_numpys(seed, widths):
     """Through learning and rest, fading, and the edge of the range."""

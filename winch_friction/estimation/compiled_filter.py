@@ -23,7 +23,7 @@ class CompiledFilter(StateFilter):
         self._wire, self._by, self._rows = np.zeros((LOAD, ACTING)), np.zeros(self.size), np.zeros((LOAD, self.size))
         # a step's numbers go to arrays through their bytes: NumPy takes three times as long to read a tuple
         self._wire_bytes = Struct(f"{LOAD * ACTING}d")
-        self._given_bytes = Struct(f"{GIVEN_GRADIENT + len(parameters.center) + len(sensors)}d")
+        self._given_bytes = Struct(f"{GIVEN_GRADIENT + len(parameters.center) + len(sensors) + 1}d")
         self._given = np.zeros(self._given_bytes.size // 8)
         self._wire_at, self._given_at = self._wire.data, self._given.data
 
@@ -33,7 +33,7 @@ class CompiledFilter(StateFilter):
         noises = noise_variances(step, self.config, self._factor.value, load_known)
         self._given_bytes.pack_into(
             self._given_at, 0, step.torque - step.friction, step.heave, fading(step.duration, self.config), *noises,
-            *step.by_parameters, *step.by_sensors,
+            *step.by_parameters, *step.by_sensors, 0.0,  # nothing acts on what the range has moved
         )  # fmt: skip
         self._kernel_ahead(
             self._now, self._ahead, self._seen, self._wire, self._given, self._free, self._scale, self._by, self._rows

@@ -57,13 +57,13 @@ class StateFilter:
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
         self.considered = ConsideredErrors(self._sensors.tolist(), config.speed_delay_std > 0.0)
-        # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, x; a sensor
-        # error and what is known to act enter where the noises do
-        noisy, carried = size + NOISES, len(sensors) + 1
+        # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, what the
+        # parameters' range has moved, x; a sensor error and what is known to act enter where the noises do
+        noisy, carried = size + NOISES, len(sensors) + 2
         self._now = np.zeros((noisy + carried, noisy))
         self._noises = np.einsum("ii->i", self._now[:noisy])[size:]
-        self.P, self.sensitivity = self._now[:size, :size], self._now[noisy:-1, :size]
-        self._flat, self._carried = self._now[-1, :size], self._now[noisy:, :size]
+        self.P, self.sensitivity = self._now[:size, :size], self._now[noisy:-2, :size]
+        self._moved, self._flat, self._carried = self._now[-2, :size], self._now[-1, :size], self._now[noisy:, :size]
         self._acting = self._now[noisy:, size:]
         self.x = self._flat.reshape(size, 1)
         self.phi: FloatArray = self._flat[self._phi]  # the scaled parameters (m,)
@@ -171,11 +171,18 @@ class StateFilter:
         In `stick` the load is considered as well: a brake may carry it, and for as long as it likes.
         """
         if learning and not stick:
-            self.considered.step(self._seen[self.size : -1], innovation, variance)
+            self.considered.step(self._seen[self.size : -2], innovation, variance)
         inside = self._take_in(innovation, variance, learning, stick)
         self._learned_for = self._unfaded
         if learning and not inside:
-            self._flat[:] = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+            self._into_range()
+
+    def _into_range(self) -> None:
+        """Move the parameters inside their range, and keep in mind by how much that moved every state: it is nothing
+        that the data told."""
+        moved = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+        self._moved += moved - self._flat
+        self._flat[:] = moved
 
     def _take_in(self, innovation: float, variance: float, learning: bool, stick: bool) -> bool:
         """The prediction becomes what is; whether the learned parameters are inside their range."""
@@ -214,19 +221,22 @@ class StateFilter:
         """Judge the same data by another prior of the parameters, which `change` makes.
 
         With the prior's mean at the seed (phi = 0) and dJ the change of its precision:
-        P' = (P^-1 + dJ)^-1, x' = x - P' dJ phi, here without the inverse of P.
+        P' = (P^-1 + dJ)^-1, x' = x - P' dJ phi, here without the inverse of P. What the range had moved under the prior
+        before is taken back first: the other prior would take it for told by the data, and go beyond it.
         """
         before = np.linalg.inv(self.parameters.prior)
         change()
         change_of_precision = np.linalg.inv(self.parameters.prior) - before
         across = self.P[:, self._phi].copy()
         factor = change_of_precision @ np.linalg.inv(np.eye(len(before)) + self.phi_covariance @ change_of_precision)
+        self._flat -= self._moved
+        self._moved[:] = 0.0
         self._flat -= across @ (factor @ self.phi)
         self.sensitivity -= self.sensitivity[:, self._phi] @ factor.T @ across.T
         covariance = self.P - across @ factor @ across.T
         self.P[:] = 0.5 * (covariance + covariance.T)
         if not self.parameters.contains(self.phi):
-            self._flat[:] = self.parameters.projected(self._flat, self.P, FIRST_PARAMETER)
+            self._into_range()
 
     # -- beginning anew
     def begin_load(self, variance: float, torque: float = 0.0) -> None:
@@ -239,12 +249,12 @@ class StateFilter:
         phi, self.considered = self._phi, self.considered.anew()
         self.P[:, phi] = self.P[phi, :] = 0.0
         self.P[phi, phi], self.sensitivity[:, phi] = covariance[phi, phi], sensitivity[:, phi]
-        self._flat[phi] = self.parameters.projected(x, covariance, FIRST_PARAMETER)[phi]
+        self._flat[phi], self._moved[phi] = self.parameters.projected(x, covariance, FIRST_PARAMETER)[phi], 0.0
 
     def take_anew(self, fresh: Sequence[FreshState]) -> None:
         """Take these states as given, correlated with nothing; the rest is kept."""
         for state, value, variance in fresh:
             self.P[state, :] = self.P[:, state] = 0.0
             self.P[state, state] = variance
-            self.sensitivity[:, state] = 0.0
+            self.sensitivity[:, state] = self._moved[state] = 0.0
             self._flat[state] = value

@@ -176,16 +176,22 @@ class Learned:
     within: float
 
 
-def honest_nees(covariance: FloatArray, sensitivity: FloatArray, errors: Sequence[float]) -> float:
-    """The mean NEES of a filter that is right, where the considered errors are what they are.
+def honest_nees(
+    covariance: FloatArray, prior: FloatArray, sensitivity: FloatArray, errors: Sequence[float], off: FloatArray
+) -> float:
+    """The mean NEES of a filter that is right, where the considered errors and the truth are what they are.
 
-    `covariance` (m, m) is the parameters' without them, `sensitivity` (k, m) what one sigma of each does to the
-    parameters, `errors` how many sigma each is. Averaged over errors that are drawn it is m; without any, less: the
-    stated covariance holds room for what is not there.
+    `covariance` (m, m) is the parameters' without the errors, `prior` (m, m) what it was before the data,
+    `sensitivity` (k, m) what one sigma of each error does to the parameters, `errors` how many sigma each is, `off`
+    (m,) by how much the truth is off the prior's mean. Averaged over errors and truths that are drawn it is m. Without
+    errors it is less: the stated covariance holds room for what is not there. So it is with a truth that differs from
+    the seed by what the data tell: of what they do not tell nothing is wrong then.
     """
     stated = covariance + sensitivity.T @ sensitivity
-    there = sensitivity * np.asarray(errors, float)[:, None]
-    return float(np.trace(np.linalg.solve(stated, covariance)) + np.trace(there @ np.linalg.solve(stated, there.T)))
+    kept = np.linalg.solve(prior, covariance).T  # of what the truth is off, what no data took away
+    by_noise = covariance - kept @ covariance
+    known = np.asarray(errors, float) @ sensitivity + kept @ off  # the truth beyond the mean estimate
+    return float(np.trace(np.linalg.solve(stated, by_noise)) + known @ np.linalg.solve(stated, known))
 
 
 def learn(
@@ -208,7 +214,9 @@ def learn(
     sigmas = [considered.get(name, 0.0) / std for name, std in own.items()]
     inner = estimator._filter
     one_sigma = inner.sensitivity[:, FIRST_PARAMETER:] * np.array(list(own.values()))[:, None]
-    honest = honest_nees(inner.phi_covariance, one_sigma, sigmas)
+    known = estimator._parameters
+    truth_off = (np.array(truth.values) - known.center)[known.free] / known.scale
+    honest = honest_nees(inner.phi_covariance, known.prior, one_sigma, sigmas, truth_off)
     inside = float(estimator.consistency.share_inside)
     return Learned(model, max(map(abs, errors.values())), inside, nees, honest, within)
 

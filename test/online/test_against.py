@@ -11,6 +11,7 @@ from sea import CRANE, PERIOD, TOPICS, Fed, check_invariants, swell
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.online.agreement import Agreement
+from winch_friction.physics.channels import RPM
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
@@ -346,6 +347,21 @@ def test_a_target_that_is_wrong_for_a_while_is_let_go_whatever_nobody_doubts(lea
     longest = max(len(run) for run in "".join("x" if each else " " for each in pushed).split())
     assert 0.1 < longest * PERIOD <= lead + 0.3
     assert any(pushed[-20:])  # a target that is right begins anew
+
+
+def test_a_command_in_another_unit_asks_for_no_friction_of_a_speed_that_nothing_turns_at() -> None:
+    """In rpm it passes as rad/s around each reversal, and is doubted half a second later: meanwhile 2000 N m, all that
+    is ever granted, were published of a winch whose friction is 375."""
+    fed = Fed()
+    fed.run(REVERSAL + 0.2 - fed.now)
+    usual = max(abs(said.friction_torque) for _, said in fed.published)
+
+    def in_rpm(sample: Sample) -> None:
+        sample.speed_reference /= RPM
+
+    said = fed.run(1.8, in_rpm)
+    assert max(abs(each.friction_torque) for each in said) < 2.0 * usual
+    check_invariants(fed)
 
 
 def test_nobody_knows_whether_command_or_speed_is_wrong() -> None:

@@ -17,6 +17,7 @@ from winch_friction.physics.winch.crane import Crane, at_its_speeds
 from winch_friction.physics.winch.operating_point import (
     ChannelRanges,
     SpeedPredictor,
+    fastest_command,
     sample_operating_point,
     smooth_sign,
     time_to_reversal,
@@ -245,7 +246,7 @@ class FeedforwardCompensator:
         )  # fmt: skip
         groups = len(sample.groups)
         torque = self.config.scale * self._law.torque(x, groups)
-        magnitude = self._seed_law.magnitude(x, groups)
+        magnitude = self._seed_law.magnitude(x, groups, fastest_command(sample.motor_speed, self._ranges.speed))
         envelope = self.config.envelope * magnitude
         if not (math.isfinite(torque) and math.isfinite(envelope)):
             self._lost = ("finite model",)

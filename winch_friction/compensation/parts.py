@@ -122,8 +122,12 @@ class FrictionLaw:
         """Sum of gain times contribution, N m at the motor shaft; overflow comes out as NaN."""
         return sum(map(mul, self.gains, self._parts(x, groups)))
 
-    def magnitude(self, x: Sequence[float], groups: int) -> float:
-        """Sum of the terms' magnitudes at direction 1, N m: the largest torque that the signs could make of them."""
+    def magnitude(self, x: Sequence[float], groups: int, fastest: float = math.inf) -> float:
+        """Sum of the terms' magnitudes at direction 1, N m: the largest torque that the signs could make of them; no
+        more than at `fastest` rad/s where the speed is above it: a command in rpm is obeyed until it is doubted."""
+        if x[1] > fastest:
+            slower = (x[0], fastest, math.copysign(fastest, x[2]), *x[3:])
+            return min(self.magnitude(x, groups), self.magnitude(slower, groups))
         parts = self._parts((1.0, *x[1:]), groups)
         if self._all_used:
             return sum(map(abs, parts))

@@ -16,7 +16,7 @@ from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReading
 from winch_friction.physics.channels import column_unit
 from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import Change, ChannelRanges
+from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, Change, ChannelRanges
 from winch_friction.records.topics import Input, stamp_time
 
 # -- the stamp of a message
@@ -231,9 +231,7 @@ class Motions:
 
 
 # -- the inputs beside each other
-# the command and the speed: a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s)
-SPEED_SHARE, SPEED_APART = 0.3, 0.1  # of the larger one, of the largest speed
-SPEED_TIME = 0.5  # s
+SPEED_TIME = 0.5  # s that the command and the speed may be apart
 # to and fro: jumps of this share of the largest speed, so many, within this time
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
 

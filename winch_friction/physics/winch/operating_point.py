@@ -92,6 +92,17 @@ def time_to_reversal(ahead: PredictedSpeed) -> float:
     return -ahead.speed / ahead.acceleration if ahead.speed * ahead.acceleration < 0.0 else math.inf
 
 
+# -- the command beside the speed
+# a winch follows within its lag (0.1 s at 130 rad/s^2 is 13 rad/s): command and speed that are further apart than this
+# share of the larger one and this share of the largest speed contradict each other
+SPEED_SHARE, SPEED_APART = 0.3, 0.1
+
+
+def fastest_command(speed: float, largest: float) -> float:
+    """The fastest command, rad/s, that a measured speed does not contradict, of a winch whose `largest` is this."""
+    return (abs(speed) + SPEED_APART * largest) / (1.0 - SPEED_SHARE)
+
+
 # -- the operating point of a sample, or of each of a run
 # m^3/rad; the feedback of a motor that is swung out reads about zero, of which a power law has no logarithm, and below
 LEAST_DISPLACEMENT = 1e-12

@@ -20,6 +20,8 @@ CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stay
 # load's acceleration, the share that a straight line over the length must explain, and what a metre may weigh, times
 # what the crane file says or in kg/m
 FOLLOWS_WIRE, HEAVIEST_WIRE, HEAVIEST_UNKNOWN = 0.5, 1.5, 200.0
+# relative spread of a wire's stiffness over runs: by less a load is followed for a dozen periods; of it, what is less
+OUT_OF_TUNE, CLEARLY_CLOSER = 0.02, 0.5
 STILL, MOST_STILL = 2.0 / 3.0, 0.6  # of a wire's mass; of what hangs, of which a wire is nine tenths at most
 
 
@@ -61,6 +63,17 @@ class SuspendedLoad:
 def swinging_mass(hanging: float, wire: float) -> float:
     """Mass in kg that swings where `wire` kg of it are its own: a third of these (Rayleigh, Theory of Sound)."""
     return hanging - STILL * wire if STILL * wire < MOST_STILL * hanging else hanging
+
+
+def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray, wire: FloatArray) -> bool:
+    """Whether one stiffness gives loads their frequencies in rad/s if a third of their wires' mass swings along, and
+    none does if all of what hangs swings: a run's own frequency makes up for its mass, one for all of them does not.
+
+    By run: wire paid out in m, what hangs and the wire's part of it in kg.
+    """
+    swinging = np.array(list(map(swinging_mass, hanging, wire)))
+    whole, along = (float(np.std(np.log(frequency**2 * length * mass))) for mass in (hanging, swinging))
+    return whole > OUT_OF_TUNE and along < CLEARLY_CLOSER * whole
 
 
 def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> SuspendedLoad:

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.suspended_load import STILL
+from winch_friction.discrepancy.preparation.suspended_load import STILL, heavy_by_tune
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
     FOLLOWED,
@@ -18,36 +18,31 @@ from winch_friction.discrepancy.preparation.wire_mode import (
 from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch import Crane
 
-ALIKE, FEWEST_ALIKE = 0.2, 4  # of the damping's logarithm; runs of one wire
-FEWEST_UNOPPOSED = 3  # of such runs, where as many others do not object
-# times what a run leaves on a rigid wire, from where on the mode that others agree on is denied by it: less a swing too
-# small to see may leave by chance, two deviations over twenty independent samples. On rigid wires of six winches runs
-# with half the load or more left 2 to 10 000 times as much, on elastic ones of six others no run left more than 1.0
+# of the damping's logarithm; runs of one wire; the same where as many others do not object
+ALIKE, FEWEST_ALIKE, FEWEST_UNOPPOSED = 0.2, 4, 3
+# times what a run leaves on a rigid wire, from where on it denies the mode that others agree on: less a swing too small
+# to see may leave by chance (two deviations of twenty samples). On rigid wires runs with half the load or more left 2
+# to 10 000 times as much, on elastic ones none more than 1.0, of six winches each
 DENIED = 1.2
-# of those that agree, how many may swing as well but seem damped otherwise: a motion sensor's noise, an inertia that is
-# wrong and reversals all make them seem so, and which of them are alike is no chance: one in ten is within `ALIKE`
-MOST_ASTRAY = 0.5
-SWINGS_LEFT = 0.01  # of the swinging: what is left of it by less is told from nothing by nobody
-# a damping ratio that leaves so many times what a rope's leaves where a load rings on it: what is damped by a filter is
-# left alike by both. Relative: what half a percent of the length and of the load moves a frequency by, twice over
+# of those that agree, how many may swing as well but seem damped otherwise, as a motion sensor's noise, a wrong inertia
+# and reversals make them: which are alike is no chance. Of the swinging, what nobody tells from nothing
+MOST_ASTRAY, SWINGS_LEFT = 0.5, 0.01
+# a ratio that leaves so many times what a rope's leaves where a load rings: what a filter damps, both leave alike.
+# Relative: what half a percent of the length and of the load moves a frequency by, twice over
 BLUNT, SHARP, IN_TUNE = 0.3, 1.6, 0.02
-PLAIN = 0.1  # of what swings in a run that tells alone: by 0.01 to 0.03 of it plain ones did, by 0.2 what is blurred
+PLAIN = 0.1  # of what swings in a run that tells alone: plain ones left 0.01 to 0.03 of it, what is blurred 0.2
 STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
-# of what a mode that is damped like a filter leaves of all runs together: winches whose motion sensor's noise was most
-# of it left 0.9 and more by any rope's damping, those whose load plainly swings 0.03 to 0.7
-CLEARLY_BEST = 0.8
-MOST_SPREAD = 0.6  # of the runs' damping, in its logarithm; one wire has one damping
-HEAVY, ASKED = 0.1, 3  # of the mass that swings, the wire's own: half of it in frequency; runs that swing most by such
-# of the mean logarithm of what swings is left, over the runs whose wire is heavy: by less neither mass says more
-PLAINLY = 0.1
+# of what a filter's damping leaves of all runs together: winches of a motion sensor's noise left 0.9 and more by any
+# rope's damping, those that plainly swing 0.03 to 0.7; in the logarithm of the runs' damping, for one wire has one
+CLEARLY_BEST, MOST_SPREAD = 0.8, 0.6
+# of the mass that swings, the wire's own: half of it in frequency; runs that swing most by such; of the mean logarithm
+# of what is left of their swing: by less neither mass says more
+HEAVY, ASKED, PLAINLY = 0.1, 3, 0.1
 
 
 def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
-    """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass).
-
-    One damper for all runs or one ratio for all, whichever the runs agree on better; None if on neither, or if what
-    they agree on is damped like no wire.
-    """
+    """Damping ratio as a function of frequency rad/s and mass kg, from several runs' (frequency, ratio, mass): one
+    damper or one ratio, whichever they agree on better; None if on neither, or if that is damped like no wire."""
     frequency, ratio, mass = np.array(modes).T
     if np.median(ratio) >= MOST_DAMPED:
         return None
@@ -61,8 +56,8 @@ def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[flo
 def denies(left: Sequence[float], ratio: float) -> bool:
     """Whether a run that rings by no mode speaks against one of this damping ratio: its gap would swing more by it.
 
-    `left` as in `Swing`. A load too light, or a run too short, to show a swing leaves as much with it as without, and
-    has no say; where nothing is known of what a mode leaves, the run stands for a rigid wire.
+    `left` as in `Swing`. A load too light, or a run too short, to show a swing leaves as much with it as without and
+    has no say; of which nothing is known stands for a rigid wire.
     """
     return not len(left) or _left_by(left, ratio) > DENIED
 
@@ -70,11 +65,10 @@ def denies(left: Sequence[float], ratio: float) -> bool:
 def shared_damping(
     modes: Sequence[tuple[float, float, float]], untold: Sequence[Sequence[float]] = ()
 ) -> Callable[[float, float], float] | None:
-    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if enough of them agree closely.
+    """The same from (frequency, ratio, mass) of all runs that can follow their mode, if enough agree closely.
 
-    `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. What else
-    rings does so at no mode of the wire, whose frequency the load and the length give: by chance the runs would not
-    find one damping.
+    `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. By chance the
+    runs would not find one damping.
     """
     swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
     if len(swinging) < FEWEST_UNOPPOSED:
@@ -94,8 +88,7 @@ def shared_damping(
         if alike.sum() >= FEWEST_UNOPPOSED and np.median(ratio[alike]) < MOST_DAMPED / 2.0:
             agreed = agreed_damping(swinging[alike].tolist())
             found += [(agreed, alike.sum())] if agreed is not None and enough(alike, agreed) else []
-    # by chance many of twelve runs are alike in the one or the other: what all of them leave tells which it is
-    known = [(mode, left) for mode, left in zip(modes, untold, strict=False) if len(left) and mode[0] > 0.0]
+    known = [(mode, own) for mode, own in zip(modes, untold, strict=False) if len(own) and mode[0] > 0.0]
     return min(found, key=lambda pair: (_leaves(known, pair[0]), -pair[1]), default=(None, 0))[0]
 
 
@@ -107,13 +100,10 @@ def ringing_damping(
     and at the frequencies that one wire gives their loads and lengths. None of fewer than two, unless the one rings so
     plainly that next to nothing of it is left, or where as many runs say that the wire does not give.
 
-    What an edge of the sensors or a motion sensor's noise looks like is damped more, fits anything alike, and moves
-    with neither load nor length. What a motion sensor's noise rings by on a computed wire is small beside a swing that
-    is plainly there, and denies none. `modes`, `left` and `variances` as in `pooled_damping`, `length` of the wire in m
-    (nan: unknown).
+    What a motion sensor's noise looks like is damped more, moves with neither load nor length, and denies no plain
+    swing. `modes`, `left`, `variances` as in `pooled_damping`, `length` of the wire in m (nan: unknown).
     """
-    sharp = [k for k, own in enumerate(left) if len(own) and 0.0 < modes[k][1] < MOST_DAMPED / 2.0 and
-             min(own) <= LEAST_GAIN and _left_by(own, BLUNT) >= SHARP * min(own) and length[k] > 0.0]  # fmt: skip
+    sharp = _sharp(modes, left, length)
     alone = len(sharp) == 1 and min(left[sharp[0]]) <= PLAIN
     if len(sharp) < 2 and not alone:
         return None
@@ -124,7 +114,7 @@ def ringing_damping(
     alike = same[np.argmax(same.sum(axis=1))]
     if alike.sum() < 2 and not alone:
         return None
-    # one damper or one ratio: two runs of like loads and lengths do not tell, what all of them leave does
+    # one damper or one ratio: what all of them leave tells
     known = [(mode, own) for mode, own in zip(modes, left, strict=True) if len(own) and mode[0] > 0.0]
     damper = float(np.median((2.0 * ratio * frequency * mass)[alike]))
     agreed = min(_one_damper(damper), _one_ratio(float(np.median(ratio[alike]))), key=partial(_leaves, known))
@@ -143,13 +133,12 @@ def pooled_damping(
     leaves too much of it.
 
     `modes` as in `shared_damping`, `left` and `variances` as in `Swing`; runs of which nothing is known have no part.
-    What else a run's gap holds is its own, so that runs tell by the logarithm of what is left, as likelihoods of
-    unknown noise do: a calm hoist that rings down to nothing by one damping says more than a sea that is followed
-    alike by any. Where that does not tell, the variance does, as likelihoods of one noise do: many runs that hardly
-    swing, and hold nothing but noise, outvote by their logarithms the one whose load swings by ten times as much. Where
-    votes are at odds this decides: noise of a motion sensor rings on a computed wire as well, so that runs whose load
-    hardly moves the motors vote for a rigid one or one damped like a filter. A resonance has a damping that leaves
-    least; a wrong inertia or a late speed, which swing by no mode, leave alike whatever damps it.
+    What else a gap holds is its run's own, so that runs tell by the logarithm of what is left, as likelihoods of
+    unknown noise do: a calm hoist that rings down to nothing by one damping says more than a sea that any follows.
+    Where that does not tell, the variance does, as likelihoods of one noise do: many runs of noise alone outvote by
+    their logarithms the one whose load swings by ten times as much. Where votes are at odds this decides: runs whose
+    load hardly moves vote for a rigid wire or a filter, as a motion sensor's noise rings on a computed one. What is no
+    resonance leaves alike whatever damps it.
     """
     known = [k for k, own in enumerate(left) if len(own) and modes[k][0] > 0.0]
     if len(known) < FEWEST_ALIKE or sum(variances[k] for k in known) <= 0.0:
@@ -168,6 +157,14 @@ def pooled_damping(
         if a_rope and clearly and by_variance[at] <= 1.0 - LEAST_GAIN:
             return tried[at]
     return None
+
+
+def _sharp(
+    modes: Sequence[tuple[float, float, float]], left: Sequence[Sequence[float]], length: Sequence[float]
+) -> list[int]:
+    """Which runs ring as on a rope of known length: sharply, as no noise and no other cause does."""
+    return [k for k, own in enumerate(left) if len(own) and 0.0 < modes[k][1] < MOST_DAMPED / 2.0 and
+            min(own) <= LEAST_GAIN and _left_by(own, BLUNT) >= SHARP * min(own) and length[k] > 0.0]  # fmt: skip
 
 
 def _leaves(
@@ -202,19 +199,24 @@ def _closest(values: np.ndarray) -> np.ndarray:
 def swinging_along(
     prepared: Sequence[PreparedRun], crane: Crane, again: Callable[[int, float], PreparedRun]
 ) -> list[PreparedRun]:
-    """Runs whose wire's own mass swings along where that leaves less swinging in those whose wire is heavy.
-
-    Nobody tells whether a load cell feels the wire, or the stated weight is that of the wire that hangs there. `again`
-    prepares a run so, by its place and its wire's mass in kg.
-    """
+    """Runs whose wire's own mass swings along where one stiffness then fits them, or those of heavy wires swing less:
+    nobody tells whether the cell feels the wire. `again` prepares a run so, by its place and its wire's mass in kg."""
     weights = crane.wire_mass * np.array([np.nan_to_num(_length(run)) for run in prepared])
     along = (STILL * weights > HEAVY * np.array([run.swinging for run in prepared])) & np.isfinite(crane.wire_stiffness)
     heavy = sorted(map(int, np.flatnonzero(along)), key=lambda k: -prepared[k].swing_variance)[:ASKED]
     tried = {k: again(k, float(weights[k])) for k in heavy}
     less = [np.log(_least(own) / _least(prepared[k])) for k, own in tried.items()]
-    if not less or np.mean(less) > -PLAINLY:
+    if not less or (np.mean(less) > -PLAINLY and not _one_stiffness(prepared, weights)):
         return list(prepared)
     return [tried.get(k) or again(k, float(weights[k])) for k in range(len(prepared))]
+
+
+def _one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> bool:
+    """Whether runs that ring do so by one stiffness of the wire only if its own mass swings along."""
+    length, modes = [_length(run) for run in prepared], [(*run.wire_mode[:2], run.swinging) for run in prepared]
+    sharp = _sharp(modes, [_said(run) for run in prepared], length)
+    frequency, _, mass = np.array(modes)[sharp].T
+    return len(sharp) >= FEWEST_ALIKE and heavy_by_tune(frequency, np.array(length)[sharp], mass, weights[sharp])
 
 
 def _least(run: PreparedRun) -> float:
@@ -226,10 +228,9 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     """The wire is elastic in every run or in none: what a single run takes for swinging may be another effect.
 
     All share what damps it: what two tell that ring as this wire makes their loads do; else what most that can tell
-    agree on closely, unless most of heave compensation denies it, where friction at reversals blurs a swing but does
-    not take it away (a load too light to show one has no vote); else what swings in all of them together. If none of
-    these tells, heave compensation decides, which excites the mode throughout, and where a sparse log leaves its runs
-    at odds the kicks of the others have a say.
+    agree on closely, unless most of heave compensation denies it, where reversals blur a swing but do not take it away
+    (a load too light to show one has no vote); else what swings in all of them together. If none of these tells, heave
+    compensation decides, which excites the mode throughout, and of a sparse log the kicks of the others as well.
     """
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
@@ -272,8 +273,8 @@ def _in_tune(run: PreparedRun, stiffness: float) -> float:
 
 
 def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
-    """Whether as many runs speak against a load that swings so damped as ring like one on a rope: a mode that is damped
-    more than any rope takes the noise of a motion sensor out of heave compensation, and tears the other runs apart."""
+    """Whether as many runs speak against a load so damped as ring like one on a rope: more damping is a filter's, which
+    takes a motion sensor's noise out of heave compensation and tears the other runs apart."""
     ringing = sum(0.0 < run.wire_mode.damping < MOST_DAMPED for run in able)
     return sum(_denied(run, ratio) for run in able) >= max(ringing, 1)
 
@@ -290,8 +291,7 @@ def _rings(run: PreparedRun, ratio: Callable[[float, float], float], plain: bool
 
 
 def _said(run: PreparedRun) -> tuple[float, ...]:
-    """What a run says that a swing of each damping ratio would leave; where its sensors' noise rings by one, that is
-    nothing against it."""
+    """What a swing of each damping ratio would leave of a run; that its sensors' noise rings is nothing against one."""
     return tuple(min(each, 1.0) for each in run.swing_left) if run.swing_noise else run.swing_left
 
 

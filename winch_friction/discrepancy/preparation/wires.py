@@ -35,9 +35,9 @@ STEPS = 43  # of a damping ratio from 0.01 to 0.65: a tenth each
 # of what a filter's damping leaves of all runs together: winches of a motion sensor's noise left 0.9 and more by any
 # rope's damping, those that plainly swing 0.03 to 0.7; in the logarithm of the runs' damping, for one wire has one
 CLEARLY_BEST, MOST_SPREAD = 0.8, 0.6
-# of the mass that swings, the wire's own: half of it in frequency; runs that swing most by such; of the mean logarithm
-# of what is left of their swing: by less neither mass says more
-HEAVY, ASKED, PLAINLY = 0.1, 3, 0.1
+# of the mass that swings, the wire's own: half of it in frequency; runs that swing most by such, and how many of them
+# tell something; of the logarithm of what is left of the swing of each that tells: by less neither mass says more
+HEAVY, ASKED, TELLING, PLAINLY = 0.1, 6, 3, 0.1
 
 
 def agreed_damping(modes: Sequence[tuple[float, float, float]]) -> Callable[[float, float], float] | None:
@@ -206,7 +206,7 @@ def swinging_along(
     heavy = sorted(map(int, np.flatnonzero(along)), key=lambda k: -prepared[k].swing_variance)[:ASKED]
     tried = {k: again(k, float(weights[k])) for k in heavy}
     less = [np.log(_least(own) / _least(prepared[k])) for k, own in tried.items()]
-    if not less or (np.mean(less) > -PLAINLY and not _one_stiffness(prepared, weights)):
+    if not less or (np.sum(less) > -PLAINLY * min(len(less), TELLING) and not _one_stiffness(prepared, weights)):
         return list(prepared)
     return [tried.get(k) or again(k, float(weights[k])) for k in range(len(prepared))]
 

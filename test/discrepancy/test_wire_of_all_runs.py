@@ -13,7 +13,7 @@ from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
 from winch_friction.discrepancy.preparation.suspended_load import STILL, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, Mode
-from winch_friction.discrepancy.preparation.wires import ASKED, swinging_along
+from winch_friction.discrepancy.preparation.wires import ASKED, ringing_damping, swinging_along
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import Run
@@ -137,3 +137,16 @@ def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(
     assert changed == [along] * 5
     few = runs[:3]
     assert swinging_along(few, crane, lambda k, _: ringing(900.0, 25e3)) == few
+
+
+def test_runs_that_follow_no_mode_do_not_say_whether_it_is_one_damper_or_one_ratio():
+    """Four hoists ring by one ratio. Of heave compensation whose load swings by no mode any damping makes more, most
+    the sharpest: it "agreed" with one damper, which damps a light load more, and the hoists kept twice as much."""
+    tells = tuple(0.03 + np.log(ratio / 0.017) ** 2 for ratio in DAMPING_RATIOS)
+    follows_none = tuple(1.0 + 6.0 * (0.01 / ratio) ** 2 for ratio in DAMPING_RATIOS)
+    hoists = [(2.1, 0.017, 125e3), (3.5, 0.0165, 90e3), (2.0, 0.0175, 115e3), (3.0, 0.017, 140e3)]
+    modes = [*hoists, (2.9, 0.3, 30e3), (3.5, 0.28, 40e3), (2.7, 0.3, 20e3)]
+    left = [tells] * 4 + [follows_none] * 3
+    length = [3e8 / (own**2 * mass) for own, _, mass in modes]
+    agreed, _ = ringing_damping(modes, left, length, [200.0] * 4 + [20.0] * 3)
+    assert [agreed(own, mass) for own, _, mass in modes] == pytest.approx([0.017] * 7)

@@ -114,8 +114,8 @@ def ringing_damping(
     alike = same[np.argmax(same.sum(axis=1))]
     if alike.sum() < 2 and not alone:
         return None
-    # one damper or one ratio: what all of them leave tells
-    known = [(mode, own) for mode, own in zip(modes, left, strict=True) if len(own) and mode[0] > 0.0]
+    # one damper or one ratio: what all that follow a mode leave tells, others leave more by any that is not a filter's
+    known = [(modes[k], own) for k, own in enumerate(left) if len(own) and min(own) <= LEAST_GAIN and modes[k][0] > 0.0]
     damper = float(np.median((2.0 * ratio * frequency * mass)[alike]))
     agreed = min(_one_damper(damper), _one_ratio(float(np.median(ratio[alike]))), key=partial(_leaves, known))
     swings = min((1.0 - min(left[k])) * variances[k] for k in np.array(sharp)[alike])

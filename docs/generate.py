@@ -169,7 +169,7 @@ def _effects() -> str:
 
 
 def _corrections() -> str:
-    from winch_friction.physics.friction.correction import DECLARED
+    from winch_friction.physics.friction.declared_correction import DECLARED
 
     rows = []
     for each in DECLARED.values():

@@ -6,8 +6,8 @@ import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.physics.channels import BAR, CM3_PER_REV
-from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text

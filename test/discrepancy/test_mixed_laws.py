@@ -11,7 +11,7 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import BALANCING, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
-from winch_friction.discrepancy.detectors.delay import suspected, without_delay
+from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import as_rigid, meet, swings
@@ -19,6 +19,7 @@ from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of
+from winch_friction.discrepancy.search import long_delay
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import corrected
@@ -134,7 +135,7 @@ def test_a_suspected_delays_column_is_what_the_runs_are_without_it(crane_150t, c
     suspect = Slot(DELAY, late.label, (0,), origin=(own, late))
     other = SimpleNamespace(slots=())
     (exact,) = without_delay(given, [own], suspect, None, other)
-    assert suspected([suspect], None, other) is suspect
+    assert long_delay([suspect], None, other) is suspect
     shape = next(each for each in exact.shapes(given.prepared) if each.values.get("delay") == pytest.approx(0.1))
     assert shape.values["late"] == SPEED
     model = replace(given.model, corrections=(Correction("signal_delay", 0.1),))
@@ -144,7 +145,7 @@ def test_a_suspected_delays_column_is_what_the_runs_are_without_it(crane_150t, c
         np.testing.assert_allclose(0.1 * exact.columns(old, shape.values)[:, 0], old.gap - gap, atol=1e-9)
     # a small one is left to its first derivative
     small = own.shapes(given.prepared)[0]
-    assert suspected([Slot(DELAY, small.label, (0,), origin=(own, small))], None, other) is None
+    assert long_delay([Slot(DELAY, small.label, (0,), origin=(own, small))], None, other) is None
 
 
 def test_an_inertia_that_is_wrong_does_not_hide_the_swing_of_the_load(crane_150t, crane2_model):

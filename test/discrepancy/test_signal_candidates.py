@@ -33,7 +33,8 @@ from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.corrections import corrected, straight, unbent, unswung
-from winch_friction.physics.friction.correction import DECLARED, Correction
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.physics.signals import Run
 
 A, B, SWASH, MOTORS = np.array([2.2e7, 1.1e7, 3.0e6]), np.array([2.5e6, 4.0e6, 9.0e6]), 2.4e-5, 3

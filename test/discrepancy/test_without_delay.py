@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
-from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED, tau
+from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED
 from winch_friction.discrepancy.detectors import delay
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.search import long_delay
 from winch_friction.physics.friction import FrictionModel
 
 SIZE, MODE = 0.1, (3.0, 0.05, None)
@@ -126,8 +127,7 @@ def test_what_is_suspected_of_a_clock_that_drifts_is_its_delay_in_the_middle(lat
 @pytest.mark.parametrize(("value", "long"), [(0.039, True), (-0.04, True), (0.03, False)])
 def test_a_small_delay_as_long_as_one_may_be_is_taken_out_of_the_runs(value, long):
     slot = Slot(delay.DELAY, "small", (0,), origin=(None, Shape("small", SMALL_DELAY)))
-    problem = SimpleNamespace(columns=lambda slots: [0], layout=SimpleNamespace(scales=[tau.typical]))
-    fitted = SimpleNamespace(slots=(slot,), beta=np.array([value / tau.typical]))
-    assert delay.suspected([slot], SimpleNamespace(problem=problem), fitted) == (slot if long else None)
+    cross = SimpleNamespace(size=lambda explanation, slot: value)
+    assert long_delay([slot], cross, SimpleNamespace(slots=(slot,))) == (slot if long else None)
     # what is only near to what was found has no size of its own
-    assert delay.suspected([slot], SimpleNamespace(problem=problem), SimpleNamespace(slots=())) is None
+    assert long_delay([slot], cross, SimpleNamespace(slots=())) is None

@@ -11,8 +11,8 @@ from driven_winch import PERIOD, rigid_samples
 from winch_friction.compensation import FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
 from winch_friction.physics.channels import BAR, CM3_PER_REV
-from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError, from_mapping
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import GroupSample
 from winch_friction.physics.winch import sample_operating_point
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text

@@ -6,7 +6,7 @@ import pytest
 from cycles import cycles
 
 from winch_friction.identification.system_identification import identify_system, winch_seed
-from winch_friction.physics.corrections import Correction
+from winch_friction.physics.friction.correction import Correction
 
 OPTIONS = {"restarts": 1, "max_evaluations": 200}
 TESTS = {"a": (215, 79), "b": (164, 109), "c": (200, 20)}

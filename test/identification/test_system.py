@@ -17,8 +17,8 @@ from winch_friction.identification.system_fit import EQUATION_8, combined, fit_s
 from winch_friction.identification.system_identification import identify_system, winch_seed
 from winch_friction.identification.verification import test_errors as errors_of
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
-from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.records.model_file import load_model, save_model
 
 

@@ -7,8 +7,8 @@ from sea import CRANE, SEED, TOPICS, Fed
 
 from winch_friction.online.compensator import CompensatorService, refuse_other_terms
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text
 
 

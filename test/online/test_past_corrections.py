@@ -6,8 +6,8 @@ import pytest
 from sea import CRANE, PERIOD, SEED, TOPICS, Fed, check_invariants, swell
 
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.physics.corrections import Correction
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.records.bag_write import MESSAGES
 
 INF = float("inf")

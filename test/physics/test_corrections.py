@@ -9,17 +9,12 @@ import yaml
 from scipy.signal import lsim
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV
-from winch_friction.physics.corrections import (
-    DECLARED,
-    Action,
-    Correction,
-    SampleCorrector,
-    corrected,
-    corrected_crane,
-    unswung,
-)
+from winch_friction.physics.corrections import corrected, corrected_crane, unswung
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import DECLARED, Action
+from winch_friction.physics.sample_corrections import SampleCorrector
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import Drum
 from winch_friction.records.model_file import model_from_text, model_to_text

@@ -6,8 +6,9 @@ import pytest
 import yaml
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV
-from winch_friction.physics.corrections import DECLARED, Correction
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
 from winch_friction.records.strict_yaml import config_directory
 

@@ -7,8 +7,10 @@ import pytest
 from clean_sensors import CLEAN
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
-from winch_friction.physics.corrections import DECLARED, Action, Correction, corrected, corrected_crane
+from winch_friction.physics.corrections import corrected, corrected_crane
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import DECLARED, Action
 from winch_friction.simulation import Simulator, simulate
 
 OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY)

@@ -7,11 +7,11 @@ from winch_friction.compensation.config import CompensatorConfig, check_gains
 from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.compensation.parts import CarryingPressure, DrumTorque, FrictionLaw, Needs, pressure_per_torque
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
-from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed, refuse_other_crane
 from winch_friction.physics.friction.seed_range import refuse_outside_seed
+from winch_friction.physics.sample_corrections import SampleCorrector, past_corrections
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, at_its_speeds
 from winch_friction.physics.winch.operating_point import (

@@ -16,11 +16,11 @@ from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Eff
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
 from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
-from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
 from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.detectors.delay import suspected, without_delay
+from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.detectors.lost_flow import FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
@@ -38,6 +38,7 @@ from winch_friction.physics.winch import Crane
 
 LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
+PRESSES = 0.95  # of the longest small delay, from which on it may be a longer one
 
 # -- just after reversals
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
@@ -143,6 +144,19 @@ class Study:
     rng: np.random.Generator
 
 
+def long_delay(slots: Sequence[Slot], cross: CrossFit, fitted: Explanation) -> Slot | None:
+    """The first delay among these that is no small one: of the longer ones that are tried, or as long as a small one,
+    of which its first derivative says all, may be."""
+    for slot in slots:
+        if slot.name != DELAY or slot.law:
+            continue
+        shape: Shape = slot.origin[1]
+        small = 0.0 not in (shape.values["ahead"], shape.values["behind"])
+        if not small or slot in fitted.slots and abs(cross.size(fitted, slot)) >= PRESSES * SMALL * tau.typical:
+            return slot
+    return None
+
+
 @dataclass(frozen=True)
 class Search:
     """What the training runs gave."""
@@ -195,7 +209,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
         if not selection.final.slots and (most := most_of_it(cross, selection.base)):
             shapes = (most,)
-        late = suspected(shapes, cross, selection.final)
+        late = long_delay(shapes, cross, selection.final)
         if late is not None:
             candidates = without_delay(given, candidates, late, cross, selection.final)
         del cross  # the largest thing there is, and not needed beside the next one

@@ -20,10 +20,10 @@ from winch_friction.estimation.interval import FrictionFunctions, Intervals
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
-from winch_friction.physics.corrections import SampleCorrector, past_corrections
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed, with_stated_std
 from winch_friction.physics.friction.term import needed
+from winch_friction.physics.sample_corrections import SampleCorrector, past_corrections
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import ChannelRanges

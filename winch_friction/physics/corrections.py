@@ -1,4 +1,4 @@
-"""Corrections taken out: of whole runs, of live samples, of the crane (declared in `physics.friction.correction`).
+"""Corrections taken out of whole runs and of the crane.
 
 What happens to a channel on its way into the log is a delay, then a gain, which may grow, then an offset, then a
 filter; they are taken out in the opposite order. Loads, calculated gas pressures and the commanded speed follow, from
@@ -19,22 +19,11 @@ from winch_friction.physics.fluid import (
     relative_viscosity,
     relaxed_compression,
 )
-from winch_friction.physics.friction.correction import (
-    DECLARED,
-    Action,
-    Correction,
-    DeclaredCorrection,
-    check_corrections,
-    declared_correction,
-)
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import Action
 from winch_friction.physics.friction.model import FrictionModel
-from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, GroupSample, Run, Sample
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
 from winch_friction.physics.winch.crane import Crane, Drum, driving_group
-
-__all__ = [
-    "DECLARED", "Action", "Correction", "DeclaredCorrection", "SampleCorrector", "check_corrections", "corrected",
-    "corrected_crane", "declared_correction", "past_corrections",
-]  # fmt: skip
 
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
@@ -53,7 +42,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     """
     if not model.corrections:
         return run, crane
-    there = _in_turn(each for each in model.corrections if each.holds(float(run.time[0])))
+    there = in_turn(each for each in model.corrections if each.holds(float(run.time[0])))
     problems = [each for one in there for each in _missing(one, run)]
     if problems:
         raise InputError(f"{run.name}: {'; '.join(problems)} (model '{model.name}')")
@@ -111,10 +100,10 @@ def _missing(correction: Correction, run: Run) -> list[str]:
 # -- whole runs
 def _shown(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     error = c.error(columns["time"], columns.get("oil_temperature"))
-    return columns | {name: _true(columns[name], c, error) for name in affected(c, run.groups) if name in columns}
+    return columns | {name: true_value(columns[name], c, error) for name in affected(c, run.groups) if name in columns}
 
 
-def _true(logged: Any, c: Correction, error: Any) -> Any:
+def true_value(logged: Any, c: Correction, error: Any) -> Any:
     """The true value of what a channel shows; `error` is the correction's at that time."""
     action = c.declared.action
     if action is Action.OFFSET:
@@ -151,7 +140,7 @@ def unswung(logged: Any, c: Correction) -> Any:
     return x * c.beyond
 
 
-def _in_turn(corrections: Iterable[Correction]) -> list[Correction]:
+def in_turn(corrections: Iterable[Correction]) -> list[Correction]:
     """Corrections in their order; of several bends the furthest first, for each was put on what is nearer to zero."""
     return sorted(corrections, key=lambda c: -(c.beyond or 0.0))
 
@@ -242,74 +231,3 @@ _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {
     Action.SLIP: _slip,
     Action.AIR: _air,
 }
-
-
-# -- live samples
-class SampleCorrector:
-    """Takes a model's corrections out of one sample after the other; `crane` is the crane as corrected.
-
-    What a running node cannot take out (a delay, a gas that cools) is refused with `InputError`, by name, if it may be
-    there from `since` on (s, the samples' clock now; not known: whenever it may be there at all), unless `refuse` is
-    False: then `uncorrected` names it, together with what the latest sample lacked the channel for. What was over by
-    then is `past`, with the end of its last window; a clock that is set back into such a window makes it `standing`.
-    """
-
-    def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True, since: float = -math.inf) -> None:
-        self.crane = corrected_crane(crane, model.corrections)
-        foreign = [c for c in model.corrections if not c.declared.live]
-        self._over = [c for c in foreign if c.ends < since]
-        self.impossible = tuple(dict.fromkeys(c.name for c in foreign if not c.ends < since))
-        if refuse and self.impossible:
-            raise InputError(
-                f"model '{model.name}': a running node cannot take out {', '.join(self.impossible)}; "
-                "mend it at its source and take it out of the model's corrections, or end its windows ('during')"
-            )
-        self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
-        live = [c for c in _in_turn(model.corrections) if c.declared.live]
-        self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
-        self._lacking: tuple[str, ...] = ()
-        self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
-
-    @property
-    def uncorrected(self) -> tuple[str, ...]:
-        """Names of corrections that the latest sample went without."""
-        return self.impossible + self._lacking
-
-    def standing(self, time: float) -> tuple[str, ...]:
-        """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
-        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
-
-    def __call__(self, sample: Sample) -> Sample:
-        """The sample without its errors; the given one is left as it is."""
-        if not self._signals:
-            return sample
-        groups = {name: replace(member) for name, member in sample.groups.items()}
-        out = replace(sample, groups=groups)
-        self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
-        return out
-
-
-def past_corrections(corrector: SampleCorrector) -> str:
-    """What a model says of a time that is over, and is not taken out of what comes now: for diagnostics."""
-    return ", ".join(f"{name} until {end:.0f} s" for name, end in corrector.past.items())
-
-
-def _correct(sample: Sample, c: Correction) -> bool:
-    """Correct a sample in place; False where it lacks what that takes."""
-    if c.declared.action is Action.MASS:
-        length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
-        if length == length:
-            sample.hook_load += float(c.error(sample.time, None)) * length
-        return length == length or sample.hook_load != sample.hook_load
-    error = float(c.error(sample.time, sample.oil_temperature))
-    if error != error:
-        return False
-    for name, member in sample.groups.items():
-        if not c.groups or name in c.groups:
-            _correct_group(member, c, error)
-    return True
-
-
-def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
-    for channel in c.declared.channels:
-        setattr(member, channel, float(_true(getattr(member, channel), c, error)))

@@ -12,7 +12,8 @@ from typing import Any
 from winch_friction.physics.channels import dimension_of, factor_to_si, product
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
-from winch_friction.physics.friction.correction import Correction, declared_correction
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import declared_correction
 from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 from winch_friction.physics.friction.term import Scope, Term
 from winch_friction.records.strict_yaml import Section, as_quantity, finite

@@ -4,7 +4,8 @@ import numpy as np
 
 from winch_friction.physics.corrections import affected, corrected_crane
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction.correction import Action, Correction
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import Action
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.scenario import Scenario

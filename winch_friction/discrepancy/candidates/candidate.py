@@ -5,7 +5,6 @@ where it shows, how large it may be, and how it goes into the repaired model.
 """
 
 import itertools
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -18,7 +17,8 @@ from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Scope
-from winch_friction.physics.friction.correction import DECLARED, Correction
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.physics.friction.term import Parameter, Term
 from winch_friction.physics.winch import Crane
 
@@ -27,7 +27,7 @@ Columns = Callable[[PreparedRun, Values], FloatArray]
 Blind = Callable[[Sequence[PreparedRun]], "tuple[str, str] | None"]
 Merge = Callable[[Values, Values], Mapping[str, float]]
 # the winch for which typical sizes are stated: m^3/rad, motors, rad of the motor per m of wire, kg m^2
-REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * math.pi), 11, 220.0, 1.54
+REFERENCE_MOTOR, REFERENCE_MOTORS, REFERENCE_LIFT, REFERENCE_INERTIA = 215e-6 / (2.0 * np.pi), 11, 220.0, 1.54
 REFERENCE_PRESSURE, REFERENCE_GEAR = 300e5, 250.0  # Pa that its motors work at, and their turns per one of the drum
 OF_DRUM = "drum_torque"  # of which each motor loses a share: a larger one where fewer share it, or turn slower
 OF_WINCH = ("torque_offset", "direction_asymmetry")  # torques that grow with the number of motors as well

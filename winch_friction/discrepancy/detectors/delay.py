@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values
-from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, SMALL, SPEED, late_by, tau
+from winch_friction.discrepancy.candidates.signals import CLOCKED, DELAY, PRESSURES, SPEED, late_by, tau
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
@@ -23,23 +23,9 @@ from winch_friction.physics.friction.correction import Correction
 AROUND = (0.7, 0.85, 1.0, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
 COARSELY = (0.8, 1.0, 1.25)  # the same of a clock that drifts, and of a filter
 FILTERED = (1.0, 0.5)  # shares of what is late that a filter of first order makes, alone or behind a scan or a bus
-PRESSES = 0.95  # of the longest small one, from which on it may be a longer one
 REACH = 1.1  # times a delay: half way to the next one
 
 Key = tuple[str, frozenset[tuple[str, float]]]  # a run's name and the values of a shape
-
-
-def suspected(slots: Sequence[Slot], cross: CrossFit, fitted: Explanation) -> Slot | None:
-    """The first delay among these that is no small one: of the longer ones that are tried, or as long as a small one,
-    of which its first derivative says all, may be."""
-    for slot in slots:
-        if slot.name != DELAY or slot.law:
-            continue
-        shape: Shape = slot.origin[1]
-        small = 0.0 not in (shape.values["ahead"], shape.values["behind"])
-        if not small or slot in fitted.slots and abs(_fitted(slot, cross, fitted)) >= PRESSES * SMALL * tau.typical:
-            return slot
-    return None
 
 
 def without_delay(
@@ -99,13 +85,8 @@ def _size(slot: Slot, cross: CrossFit, fitted: Explanation, half: float) -> floa
     values = slot.origin[1].values
     size = values["ahead"] - values["behind"]
     if slot in fitted.slots:
-        size = _fitted(slot, cross, fitted)
+        size = cross.size(fitted, slot)
     return size * half / CLOCKED if "by_time" in values else size
-
-
-def _fitted(slot: Slot, cross: CrossFit, fitted: Explanation) -> float:
-    at = cross.problem.columns(fitted.slots).index(slot.columns[0])
-    return float(fitted.beta[at] * cross.problem.layout.scales[slot.columns[0]])
 
 
 def _shape(delay: float, late: float, **how: float) -> Shape:

@@ -33,7 +33,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import fluid
 from winch_friction.physics.channels import GROUP_CHANNELS
 from winch_friction.physics.fluid import LEAKAGE_LAWS, air_compressed, leakage_per_coefficient, path_of_high_side
-from winch_friction.physics.friction.correction import DECLARED
+from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.physics.signals import FloatArray, Run
 
 REFERENCE = "speed_reference"

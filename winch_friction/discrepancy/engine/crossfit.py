@@ -126,6 +126,11 @@ class CrossFit:
         sizes = [abs(explanation.beta[columns.index(c)]) for c in slot.columns]
         return any(size >= AT_BOUND * limit for size, limit in zip(sizes, most, strict=True))
 
+    def size(self, explanation: Explanation, slot: Slot) -> float:
+        """How large the first of an effect's amplitudes is in an explanation that has it, in its own unit."""
+        at = list(self.problem.columns(explanation.slots)).index(slot.columns[0])
+        return float(explanation.beta[at] * self.problem.layout.scales[slot.columns[0]])
+
     def covariance(self, explanation: Explanation) -> FloatArray:
         """Covariance of an explanation's coefficients, data and prior."""
         return self.problem.covariance(self.total_g, self.problem.columns(explanation.slots))

@@ -1,0 +1,82 @@
+"""Corrections taken out of what a running node reads, one sample after the other."""
+
+import math
+from dataclasses import replace
+
+from winch_friction.physics.corrections import SIGNAL_ORDER, corrected_crane, in_turn, true_value
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.declared_correction import Action
+from winch_friction.physics.friction.model import FrictionModel
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.crane import Crane
+
+
+class SampleCorrector:
+    """Takes a model's corrections out of one sample after the other; `crane` is the crane as corrected.
+
+    What a running node cannot take out (a delay, a gas that cools) is refused with `InputError`, by name, if it may be
+    there from `since` on (s, the samples' clock now; not known: whenever it may be there at all), unless `refuse` is
+    False: then `uncorrected` names it, together with what the latest sample lacked the channel for. What was over by
+    then is `past`, with the end of its last window; a clock that is set back into such a window makes it `standing`.
+    """
+
+    def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True, since: float = -math.inf) -> None:
+        self.crane = corrected_crane(crane, model.corrections)
+        foreign = [c for c in model.corrections if not c.declared.live]
+        self._over = [c for c in foreign if c.ends < since]
+        self.impossible = tuple(dict.fromkeys(c.name for c in foreign if not c.ends < since))
+        if refuse and self.impossible:
+            raise InputError(
+                f"model '{model.name}': a running node cannot take out {', '.join(self.impossible)}; "
+                "mend it at its source and take it out of the model's corrections, or end its windows ('during')"
+            )
+        self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
+        live = [c for c in in_turn(model.corrections) if c.declared.live]
+        self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
+        self._lacking: tuple[str, ...] = ()
+        self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
+
+    @property
+    def uncorrected(self) -> tuple[str, ...]:
+        """Names of corrections that the latest sample went without."""
+        return self.impossible + self._lacking
+
+    def standing(self, time: float) -> tuple[str, ...]:
+        """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
+        return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
+
+    def __call__(self, sample: Sample) -> Sample:
+        """The sample without its errors; the given one is left as it is."""
+        if not self._signals:
+            return sample
+        groups = {name: replace(member) for name, member in sample.groups.items()}
+        out = replace(sample, groups=groups)
+        self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
+        return out
+
+
+def past_corrections(corrector: SampleCorrector) -> str:
+    """What a model says of a time that is over, and is not taken out of what comes now: for diagnostics."""
+    return ", ".join(f"{name} until {end:.0f} s" for name, end in corrector.past.items())
+
+
+def _correct(sample: Sample, c: Correction) -> bool:
+    """Correct a sample in place; False where it lacks what that takes."""
+    if c.declared.action is Action.MASS:
+        length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
+        if length == length:
+            sample.hook_load += float(c.error(sample.time, None)) * length
+        return length == length or sample.hook_load != sample.hook_load
+    error = float(c.error(sample.time, sample.oil_temperature))
+    if error != error:
+        return False
+    for name, member in sample.groups.items():
+        if not c.groups or name in c.groups:
+            _correct_group(member, c, error)
+    return True
+
+
+def _correct_group(member: GroupSample, c: Correction, error: float) -> None:
+    for channel in c.declared.channels:
+        setattr(member, channel, float(true_value(getattr(member, channel), c, error)))

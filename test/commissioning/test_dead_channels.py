@@ -1,6 +1,7 @@
 """A channel that nobody measured is named as that, not explained away by a unit, and proves nothing."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import winch_friction as wf
 from winch_friction.commissioning.channels import first_contradiction
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
+from winch_friction.commissioning.mistakes import _negative
 from winch_friction.commissioning.summaries import channel_findings
 
 CRANE = wf.load_crane("crane_150t")
@@ -135,3 +137,13 @@ def test_a_motor_group_that_nobody_logged_is_named_before_a_load_that_would_make
     said = [each.sentence for each in quick_check([without("active")], CRANE, MODEL) if each.cause == "groups"]
     assert len(said) == 1
     assert "8 of 11 motors; no columns of active" in said[0]
+
+
+@pytest.mark.parametrize(
+    ("displacement", "negative"), [([], False), ([np.nan, np.nan], False), ([-1.0, np.nan], True), ([-1.0, 1.0], False)]
+)
+def test_a_displacement_that_nobody_measured_is_no_negative_one(displacement, negative):
+    """A channel without a number has no largest one."""
+    view = SimpleNamespace(groups={"main": SimpleNamespace(displacement=np.array(displacement))})
+    assert _negative(view, "main") is negative
+    assert not _negative(view, "active")

@@ -117,7 +117,7 @@ def test_the_runs_that_swing_most_say_whether_a_heavy_wire_swings_along(telling,
     assert [own is not was for own, was in zip(after, before, strict=True)] == [along] * 8
 
 
-@pytest.mark.parametrize(("still", "along"), [(STILL, True), (0.0, False), (0.3, False)])
+@pytest.mark.parametrize(("still", "along"), [(STILL, True), (0.0, False), (0.4, False)])
 def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(still, along):
     """Each run's own frequency makes up for the mass that is wrong, so that none swings less by another one; but of a
     25 t winch at 10 Hz the longest wires then gave all runs a stiffness 7 % too large, and a null kept 9 of 2 N m."""

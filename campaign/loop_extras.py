@@ -74,12 +74,12 @@ def extras(truth: FrictionModel, learned: Iterable[Learned], quick: bool) -> str
 
 CONSISTENCY = """The squared error of all ten parameters in their stated covariance (NEES), whose mean over honest
 filters is 10 (bar: 8 ... 12) where truths are drawn from the prior, and sensor errors from what is considered
-(displacements 1 %, the speed's lateness 0.15 of a sample). Here the truth is the same in every case, and so are the
-sensors, if they have errors at all. An honest filter's mean is another one then, which the next column says: less,
-because the covariance holds room for sensor errors, and because a truth that differs from the seed as a whole is
-what the data tell best. A mean below that column's is room that this plant does not use: for a torque of 10 N m that
-no term explains, and for a load that moves by itself. And the share of all parameters within three stated sigma of
-the truth (bar: 90 %), which is about ten of the seed's own sigmas away."""
+(displacements 1 %, the speed's lateness 0.15 of a sample). In the last row they are. In the others the truth is the
+same in every case, and so are the sensors, if they have errors at all. An honest filter's mean is another one then,
+which the next column says: less, because the covariance holds room for sensor errors, and because a truth that
+differs from the seed as a whole is what the data tell best. A mean below that column's is room that this plant does
+not use: for a torque of 10 N m that no term explains, and for a load that moves by itself. And the share of all
+parameters within three stated sigma of the truth (bar: 90 %), which is about ten of the seed's own sigmas away."""
 TRANSFER = """One load tells the sum of constant and load-dependent losses and not their shares, so that what is learned
 at one is off at another. Reduction of the position error's RMS in JONSWAP Hs 1 m: since the feedforward is scaled by
 0.9, too much friction by 5 % looks better here than the truth, and too little worse."""

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from statistics import mean
 from typing import Any
 
+import numpy as np
+
 from campaign.loop_cases import (
     CRANE,
     DRIVES,
@@ -16,6 +18,7 @@ from campaign.loop_cases import (
     SEAS,
     SEED,
     Learned,
+    Sea,
     closed_loop,
     compensator,
     friction_errors,
@@ -29,6 +32,7 @@ from winch_friction.simulation.scenario import Scenario
 
 SEA = SEAS[3]  # JONSWAP, Hs 1 m
 BOTH = ("active", "passive")
+DRAWN_FROM = 20  # of the random numbers
 ERRORS: dict[str, dict[str, Any]] = {
     "none": {},
     "displacements read 1 % high": {"sensors.displacement_scale": {f"{g}.displacement": 1.01 for g in BOTH}},
@@ -60,14 +64,16 @@ def learning_errors(truth: FrictionModel, quick: bool) -> list[list[str]]:
 
 
 def consistency(learned: Iterable[Learned], truth: FrictionModel, quick: bool) -> list[list[str]]:
-    """NEES and the share of parameters within three stated sigma: in the cases of the study, and with displacements
-    that read 1 % too much or too little."""
+    """NEES and the share of parameters within three stated sigma: in the cases of the study, with displacements that
+    read 1 % too much or too little, and with truth and displacements drawn."""
+    cases = [(drive, load, sea) for drive in DRIVES for load in LOADS for sea in SEAS][: 2 if quick else None]
     rows = {"none": list(learned)}
     for scale in (1.01, 0.99):
-        error = {"sensors.displacement_scale": {f"{group}.displacement": scale for group in BOTH}}
-        cases = [(drive, load, sea) for drive in DRIVES for load in LOADS for sea in SEAS][: 2 if quick else None]
-        off = {"displacement_scale": scale - 1.0}
-        rows[f"displacements x {scale:g}"] = [learn(*case, truth, off, **error) for case in cases]
+        rows[f"displacements x {scale:g}"] = [_learn_with(scale, truth, case) for case in cases]
+    rng = np.random.default_rng(DRAWN_FROM)
+    rows["drawn by 1 %, truth drawn from the seed"] = [
+        _learn_with(1.0 + 0.01 * rng.standard_normal(), _drawn(rng), case) for case in cases
+    ]
     lines = []
     for name, each in rows.items():
         nees, within = [one.nees for one in each], [one.within for one in each]
@@ -75,6 +81,18 @@ def consistency(learned: Iterable[Learned], truth: FrictionModel, quick: bool) -
         honest = f"{mean(one.honest for one in each):.1f}"
         lines.append([name, str(len(each)), f"{mean(nees):.1f}", honest, f"{100.0 * mean(within):.0f} %", worst])
     return lines
+
+
+def _learn_with(scale: float, truth: FrictionModel, case: tuple[str, float, Sea]) -> Learned:
+    error = {"sensors.displacement_scale": {f"{group}.displacement": scale for group in BOTH}}
+    return learn(*case, truth, {"displacement_scale": scale - 1.0}, **error)
+
+
+def _drawn(rng: np.random.Generator) -> FrictionModel:
+    """A truth of which the seed is an honest belief: as far from it as it says, inside its parameters' bounds."""
+    bounds = np.array([SEED.bounds_of(name) for name in SEED.parameter_names])
+    values = np.array(SEED.values) + np.linalg.cholesky(SEED.covariance) @ rng.standard_normal(len(SEED.values))
+    return SEED.with_values(list(np.clip(values, bounds[:, 0], bounds[:, 1])))
 
 
 def transfer(truth: FrictionModel, seeds: Sequence[int]) -> list[list[str]]:

@@ -67,6 +67,8 @@ def test_numbers_of_messages_within_messages_are_signals(tmp_path):
     assert log.column("/winch/twist:twist.linear.x").unit == "m/s"
     assert log.column("/winch/twist:twist.angular.x").values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert not [each.name for each in log.columns if "stamp" in each.name]
+    assert not [each.name for each in log.columns if each.name.endswith((".y", ".z"))]
+    assert any("zero throughout" in each and "/winch/twist:twist.angular.y" in each for each in log.notes)
 
 
 def test_a_sensor_that_falls_silent_is_said(tmp_path):

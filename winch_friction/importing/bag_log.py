@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.importing.log import listed
 from winch_friction.importing.one_clock import Signal
 from winch_friction.importing.signal_logs import Found
 from winch_friction.records.bag_file import open_reader
@@ -51,7 +52,10 @@ def bag_signals(path: Path) -> Found:
                 units[name] = _unit(connection.msgtype, field)
     said = [each.removeprefix(f"{path.name}: ") for each in said]
     said += [f"topic '{topic}': {count} messages cannot be read" for topic, count in broken.items()]
-    return Found([_ordered(name, times[name], values[name], units[name]) for name in values], notes=tuple(said))
+    unset = [name for name in values if "." in name.rpartition(":")[2] and not any(values[name])]
+    said += [f"zero throughout, so taken for never set and left out: {listed(unset)}"] if unset else []
+    kept = [name for name in values if name not in unset]
+    return Found([_ordered(name, times[name], values[name], units[name]) for name in kept], notes=tuple(said))
 
 
 def _ordered(name: str, times: list[float], values: list[float], unit: str) -> Signal:

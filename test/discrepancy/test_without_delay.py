@@ -101,7 +101,7 @@ def test_a_filter_may_make_all_or_half_of_what_is_late(monkeypatch):
     assert sums == pytest.approx([0.8, 1.25, 0.8, 1.25])
     shapes = found.shapes([])
     assert [each.label for each in shapes[8:]] == [
-        f"speed late by {size} ms by a filter{more}" for more in ("", " and a delay") for size in (80, 100, 125)
+        f"speed late by a filter{more}, looked at with {size} ms" for more in ("", " and a delay") for size in (80, 100, 125)
     ]
     assert len({each.label for each in shapes}) == len(shapes)
     for each in shapes:
@@ -121,7 +121,7 @@ def test_what_is_suspected_of_a_clock_that_drifts_is_its_delay_in_the_middle(lat
     assert delay._size(suspect, None, SimpleNamespace(slots=()), half=60.0) == pytest.approx(sign * 0.3 * 0.6)
     (one,) = delay._without(shape, FrictionModel("m", (), ())).corrections
     assert (one.name, one.value) == ("signal_clock" if late == SPEED else "pressure_clock", pytest.approx(0.003))
-    assert "late by 300 ms after 100 s" in shape.label
+    assert "late, looked at with 300 ms after 100 s" in shape.label
 
 
 @pytest.mark.parametrize(("value", "long"), [(0.039, True), (-0.04, True), (0.03, False)])

@@ -93,12 +93,14 @@ def _shape(delay: float, late: float, **how: float) -> Shape:
     """One of `delay` s, or that has grown to it `CLOCKED` s after a run began, or of which a filter makes a share."""
     values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay, **how}
     reach = sorted((delay / REACH / tau.typical, delay * REACH / tau.typical))
-    signal, more = "pressures" if late == PRESSURES else "speed", ""
+    signal, by, when = "pressures" if late == PRESSURES else "speed", "", ""
     if "by_time" in how:
-        more = f" after {CLOCKED:g} s"
+        when = f" after {CLOCKED:g} s"
     elif "filtered" in how:
-        more = " by a filter" if how["filtered"] == 1.0 else " by a filter and a delay"
-    return Shape(f"{signal} late by {1e3 * abs(delay):.0f} ms{more}", values, (reach[0], reach[1]))
+        by = " by a filter" if how["filtered"] == 1.0 else " by a filter and a delay"
+    # the estimate is its own; this is the size at which it was looked at
+    label = f"{signal} late{by}, looked at with {1e3 * abs(delay):.0f} ms{when}"
+    return Shape(label, values, (reach[0], reach[1]))
 
 
 def _without(shape: Shape, model: FrictionModel) -> FrictionModel:

@@ -101,7 +101,9 @@ def test_a_filter_may_make_all_or_half_of_what_is_late(monkeypatch):
     assert sums == pytest.approx([0.8, 1.25, 0.8, 1.25])
     shapes = found.shapes([])
     assert [each.label for each in shapes[8:]] == [
-        f"speed late by a filter{more}, looked at with {size} ms" for more in ("", " and a delay") for size in (80, 100, 125)
+        f"speed late by a filter{more}, looked at with {size} ms"
+        for more in ("", " and a delay")
+        for size in (80, 100, 125)
     ]
     assert len({each.label for each in shapes}) == len(shapes)
     for each in shapes:

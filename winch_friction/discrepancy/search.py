@@ -38,7 +38,7 @@ from winch_friction.physics.winch import Crane
 
 LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
-PRESSES = 0.95  # of the longest small delay, from which on it may be a longer one
+PRESSES = 0.5  # of the longest small delay: of a filter of 60 ms the first derivative told 33
 
 # -- just after reversals
 SIGNIFICANCE_AFTER_REVERSALS = 0.005

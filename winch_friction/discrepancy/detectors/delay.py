@@ -48,11 +48,13 @@ def without_delay(
 
 
 def _ways(size: float, late: float, half: float) -> list[list[Shape]]:
-    """Shapes of what may be late by about `size` s, those of one kind together, each with one of that very size."""
+    """Shapes of what may be late by about `size` s, those of one kind together, each with one of that very size; of
+    what seems early the other side as late, which its first derivative does not tell apart."""
     delays = [_shape(size * factor, late) for factor in AROUND]
     clocks = [_shape(size * factor * CLOCKED / half, late, by_time=1.0) for factor in COARSELY]
-    if (size > 0.0) != (late == SPEED):
-        return [delays + clocks]
+    behind = SPEED if size > 0.0 else PRESSURES
+    if late != behind:
+        return [delays + clocks, *_ways(size, behind, half)]
     return [delays + clocks, *([_shape(size * f, late, filtered=share) for f in COARSELY] for share in FILTERED)]
 
 
@@ -94,12 +96,13 @@ def _shape(delay: float, late: float, **how: float) -> Shape:
     values = {"ahead": max(delay, 0.0), "behind": max(-delay, 0.0), "late": late, "delay": delay, **how}
     reach = sorted((delay / REACH / tau.typical, delay * REACH / tau.typical))
     signal, by, when = "pressures" if late == PRESSURES else "speed", "", ""
+    how_late = "late" if (delay > 0.0) == (late == SPEED) else "early"
     if "by_time" in how:
         when = f" after {CLOCKED:g} s"
     elif "filtered" in how:
         by = " by a filter" if how["filtered"] == 1.0 else " by a filter and a delay"
     # the estimate is its own; this is the size at which it was looked at
-    label = f"{signal} late{by}, looked at with {1e3 * abs(delay):.0f} ms{when}"
+    label = f"{signal} {how_late}{by}, looked at with {1e3 * abs(delay):.0f} ms{when}"
     return Shape(label, values, (reach[0], reach[1]))
 
 

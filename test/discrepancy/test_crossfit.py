@@ -38,6 +38,15 @@ def p_value(problem):
     return cross.jackknife_p_value(cross.explain((EFFECT,)))
 
 
+def test_a_size_is_in_the_effects_own_unit():
+    problem = problem_with(np.full(RUNS, 1.0))
+    scaled = replace(problem, layout=replace(problem.layout, scales=np.array([1.0, 0.05])))  # a delay's 50 ms
+    cross = CrossFit(scaled)
+    found = cross.explain((EFFECT,))
+    assert cross.size(found, EFFECT) == pytest.approx(0.05 * found.beta[1])
+    assert found.beta[1] == pytest.approx(1.0, abs=0.3)
+
+
 def test_the_same_size_in_every_run_is_sure():
     assert p_value(problem_with(np.full(RUNS, 1.0))) < 1e-4
 

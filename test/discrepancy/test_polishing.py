@@ -1,11 +1,13 @@
 """The last fit of a repaired model, along the path by which its file will be read."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from gap_rig import runs_with
 
+from winch_friction.discrepancy import repair
 from winch_friction.discrepancy.repair import Repair, _as_found, polished
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
@@ -21,6 +23,27 @@ def test_a_delay_is_all_of_what_the_signals_are_out_of_step_by():
     drafted = Repair(replace(seed, corrections=(late,)), {"signal_delay": {}})
     found = polished(drafted, seed, runs, [run.name for run in runs[:3] + runs[9:]], crane).model.corrections
     assert found[0].value == pytest.approx(0.050, abs=5e-4)
+
+
+@pytest.mark.parametrize(("corrections", "held"), [
+    ((), False), (("pressure_offset",), False), (("signal_delay",), True), (("pressure_filter",), True),
+])  # fmt: skip
+def test_beside_what_makes_a_signal_late_the_tolerance_of_times_is_held(monkeypatch, corrections, held):
+    asked = []
+
+    class Asked(Exception):
+        """What is held is known; the fit is not wanted."""
+
+    def base_of(*arguments, held):
+        asked.append(held)
+        raise Asked
+
+    monkeypatch.setattr(repair, "base_of", base_of)
+    seed = FrictionModel("m", (term_named("coulomb"),), (50.0,), covariance=np.eye(1))
+    model = replace(seed, corrections=tuple(Correction(name, 0.03) for name in corrections))
+    with pytest.raises(Asked):
+        repair._step(SimpleNamespace(model=model), seed, {})
+    assert asked == [("timing",) if held else ()]
 
 
 @pytest.mark.parametrize(("after", "said"), [(9.95, 0.995), (5.0, 5.0), (0.2, 0.2)])

@@ -11,7 +11,7 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
-from winch_friction.discrepancy.preparation.suspended_load import STILL, swinging_mass
+from winch_friction.discrepancy.preparation.suspended_load import STILL, heavy_by_tune, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, Mode
 from winch_friction.discrepancy.preparation.wires import ASKED, ringing_damping, swinging_along
 from winch_friction.discrepancy.workflow import find_gap
@@ -137,6 +137,17 @@ def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(
     assert changed == [along] * 5
     few = runs[:3]
     assert swinging_along(few, crane, lambda k, _: ringing(900.0, 25e3)) == few
+
+
+@pytest.mark.parametrize(("astray", "along"), [(0.03, True), (0.015, False)])
+def test_loads_that_are_in_tune_already_ask_for_no_other_mass(astray, along):
+    """By less than a load is followed for, a third of the wire is no news, however well it fits."""
+    heavier = 1.5 * (1.0 - np.exp(-2.0 * astray))
+    length, hanging, wire = np.full(2, 1000.0), np.full(2, 10e3), np.array([0.0, heavier * 10e3])
+    swinging = np.array(list(map(swinging_mass, hanging, wire)))
+    frequency = np.sqrt(1e8 / length / swinging)
+    assert np.std(np.log(frequency**2 * length * hanging)) == pytest.approx(astray, rel=1e-6)
+    assert heavy_by_tune(frequency, length, hanging, wire) == along
 
 
 def test_runs_that_follow_no_mode_do_not_say_whether_it_is_one_damper_or_one_ratio():

@@ -205,27 +205,40 @@ def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(kind, seed):
     assert wrong.considered_covariance - wrong.phi_covariance == pytest.approx(root.T @ root, rel=1e-6, abs=1e-12)
 
 
+def from_the_prior(filters, seed):
+    """Both at rest, and of the parameters no more certain than their prior."""
+    start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
+    for each in filters:
+        covariance = start.copy()
+        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each.parameters.prior
+        each.state = np.zeros((each.size, 1)), covariance
+
+
+def taught(filters, seed, step, count):
+    """The same samples for all of them, of which each sees its own friction; yields after every one."""
+    rng = np.random.default_rng(6)
+    for k in range(count):
+        gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
+        step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
+        for each in filters:
+            each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
+            innovation, variance = each.innovation(0.01 * k)
+            each.correct(innovation, variance, True)
+        yield k
+
+
 def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
     """Two filters on the same data: one begins with the wide prior, the other takes it later."""
     config = EstimatorConfig(forgetting_time=1e12)
     early, late = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
     _, step = some_filter(seed, kind=kind)
-    rng = np.random.default_rng(6)
-    start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
     for each in (early, late):
         unbounded(each)
-        covariance = start.copy()
-        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each.parameters.prior
-        each.state = np.zeros((each.size, 1)), covariance
+    from_the_prior((early, late), seed)
     early.change_prior(lambda: early.parameters.widen([1, 2, 8]))
     assert early.phi_covariance == pytest.approx(early.parameters.prior, rel=1e-9, abs=1e-12)
-    for k in range(300):
-        gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
-        step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
-        for each in (early, late):
-            each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
-            innovation, variance = each.innovation(0.01 * k)
-            each.correct(innovation, variance, True)
+    for _ in taught((early, late), seed, step, 300):
+        pass
     late.change_prior(lambda: late.parameters.widen([1, 2, 8]))
     assert late.parameters.widened_names == tuple(seed.parameter_names[k] for k in (1, 2, 8))
     assert late.phi == pytest.approx(early.phi, rel=1e-6, abs=1e-8)
@@ -239,23 +252,11 @@ def test_another_prior_takes_back_what_the_range_had_moved(kind, seed):
     config = EstimatorConfig(forgetting_time=1e12)
     free, held = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
     _, step = some_filter(seed, kind=kind)
-    rng, at_edge = np.random.default_rng(6), 0
-    start = np.diag([1e-2, 1e-6, 1e-2, 100.0, 100.0, 1e-2, 1e-2] + [0.0] * len(seed.values))
-    for each in (free, held):
-        covariance = start.copy()
-        covariance[FIRST_PARAMETER:, FIRST_PARAMETER:] = each.parameters.prior
-        each.state = np.zeros((each.size, 1)), covariance
+    from_the_prior((free, held), seed)
     unbounded(free)
     held.parameters.lower[:], held.parameters.upper[:] = -0.02, 0.02
     held.parameters.contains = lambda phi: bool(np.all(np.abs(phi) <= 0.02))
-    for k in range(200):
-        gradient = rng.normal(size=len(seed.values)) * 0.1 / seed.std
-        step = step._replace(by_parameters=gradient.tolist(), by_sensors=(rng.normal(), 1e-5))
-        for each in (free, held):
-            each.predict_step(step._replace(friction=float(np.dot(gradient, seed.std * each.phi))), True, False)
-            innovation, variance = each.innovation(0.01 * k)
-            each.correct(innovation, variance, True)
-        at_edge += np.any(np.abs(held.phi) >= 0.02)
+    at_edge = sum(np.any(np.abs(held.phi) >= 0.02) for _ in taught((free, held), seed, step, 200))
     assert at_edge > 10
     assert np.abs(held.phi - free.phi).max() > 0.01
     unbounded(held)

@@ -396,6 +396,17 @@ def test_what_a_running_node_cannot_take_out_is_accepted_once_it_is_over(truth, 
                 SampleCorrector(crane_150t, model, since=now)
 
 
+def test_a_filter_is_behind_what_bends_a_signal(truth, crane_150t, crane2_model):
+    """A transducer bends, and what it says is filtered: the filter comes out first."""
+    bend, late = Correction("pressure_curvature", 1e-9), Correction("pressure_filter", 0.3)
+    logged = truth
+    for each in (bend, late):
+        logged = spoiled(logged, each)
+    run, _ = corrected(logged, crane_150t, replace(crane2_model, corrections=(bend, late)))
+    off = np.abs(run["active.pressure_a"] - truth["active.pressure_a"])[100:-100]
+    assert off.max() < 100.0  # Pa; straightened before the filter is out it is off by 570
+
+
 def test_several_bends_are_taken_out_in_turn(truth, crane_150t, crane2_model):
     """Each is put on what those nearer to zero have made of the signal, whatever their order in the file."""
     bends = [(180.0 * BAR, 0.04), (215.0 * BAR, -0.06), (235.0 * BAR, 0.05)]

@@ -11,8 +11,8 @@ from winch_friction.physics.winch.crane import Crane
 from winch_friction.simulation.scenario import Scenario
 from winch_friction.simulation.sensors.channels import MOST_BENDS, Channels
 
-# what the plant makes by itself, and the hidden effect to ask it for
-_OF_THE_PLANT = {
+# what the simulated sensors cannot show, and the hidden effect to ask for instead
+_HIDDEN_INSTEAD = {
     Action.WARMTH: "accumulator_thermal",
     Action.HEAT: "accumulator_thermal",
     Action.SLIP: "slip_leakage",
@@ -25,16 +25,16 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
     """Change plant and channel settings, in place, so that the model's corrections give the truth back.
 
     The crane file is what the log is read with: its radius and inertia are wrong, the plant's are right. Raises
-    `InputError` by name for what the plant makes by itself. What was wrong for a time is put into runs that start then.
+    `InputError` by name for what the sensors cannot show. What was wrong for a time is put into runs that start then.
     """
     for each in model.corrections:
         if not each.holds(scenario.start_time):
             continue
         action = each.declared.action
-        if action in _OF_THE_PLANT or each.declared.by_time:
+        if action in _HIDDEN_INSTEAD or each.declared.by_time:
             raise InputError(
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
-                f"of the model and use --hide {_OF_THE_PLANT.get(action, 'signal_delay')}"
+                f"of the model and use --hide {_HIDDEN_INSTEAD.get(action, 'signal_delay')}"
             )
         if action in (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY):
             _put_signal(each, scenario, channels)

@@ -145,8 +145,8 @@ class Study:
 
 
 def long_delay(slots: Sequence[Slot], cross: CrossFit, fitted: Explanation) -> Slot | None:
-    """The first delay among these that is no small one: of the longer ones that are tried, or as long as a small one,
-    of which its first derivative says all, may be."""
+    """The first delay among these that its first derivative does not tell: of the longer ones that are tried, or a
+    small one that was fitted so large that it may be longer."""
     for slot in slots:
         if slot.name != DELAY or slot.law:
             continue

@@ -216,4 +216,3 @@ _READERS = {
     ".mdf": _mdf,
     ".dat": _mdf,
 }
-ENDINGS = tuple(_READERS)

@@ -36,7 +36,7 @@ test:
 	$(MAKE) --no-print-directory -j 3 --output-sync=recurse lint test-nodes test-computing
 
 # where tests start nodes; to look through all the others takes each worker ten seconds
-ROS_TESTS := test/ros test/nodes test/campaign_faults test/docs/test_reference.py
+ROS_TESTS := test/ros test/nodes test/campaign_faults test/bench/test_benchmarks.py test/docs/test_reference.py
 
 test-nodes: $(READY)
 	$(BIN)/python -m pytest $(ROS_TESTS) -m "ros and slow" -n 2 --dist loadfile

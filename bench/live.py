@@ -124,7 +124,10 @@ class Driver:
             sent: set[tuple[int, int]] = set()
             answered: dict[str, set[tuple[int, int]]] = {name: set() for name in NODES}
             pace = Pace(RATE)
-            for step in range(int(duration * RATE)):
+            for step in range(int(max(duration, STARTING) * RATE)):
+                # a machine that is busy answers later: what is measured over seconds waits for one answer of each
+                if step >= int(duration * RATE) and all(answered.values()):
+                    break
                 due = pace.next()
                 if (wait := due - time.time()) > 0.0:
                     time.sleep(wait)

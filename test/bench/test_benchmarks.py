@@ -19,8 +19,13 @@ def own_environment():
     os.environ.update(before)
 
 
+WITH_NODES = {"live", "dds"}  # beside the other tests of nodes: what only computes would keep them waiting
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", bench.NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.ros) if each in WITH_NODES else each for each in bench.NAMES]
+)
 def test_every_benchmark_gives_numbers(name, capsys):
     assert main.run(["bench", name, "--smoke", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)

@@ -24,7 +24,8 @@ def dragging(run, crane, since):
     return replace(run, columns={**run.columns, **more})
 
 
-@pytest.mark.parametrize("before", [pytest.param(True, marks=pytest.mark.long), False])
+@pytest.mark.long
+@pytest.mark.parametrize("before", [True, False])
 def test_a_locked_run_between_tells_on_which_side_of_a_change_it_lies(before, crane_150t, crane2_model):
     runs = runs_with(4407, "quiet", length=0.3)
     by_name = sorted(runs, key=lambda run: run.name)

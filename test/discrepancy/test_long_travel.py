@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy.answer import GapOptions
@@ -31,6 +32,7 @@ def _bristle(run, travel):
     return found
 
 
+@pytest.mark.long
 def test_contacts_that_turn_over_within_a_radian_are_presliding(crane_150t, crane2_model):
     runs = [turning_over(run, crane_150t) for run in runs_with(4409, "quiet", length=0.3)]
     result = find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False, proposals=False))

@@ -36,13 +36,11 @@ def test_a_mixture_of_two_laws_of_a_cause_is_one_name():
     assert len(found.effects[0].parameters) > 1  # the step of the layers, and what the load does
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "flavour", "passive", "driving"),
-    [(4408, "quiet", 4.0, 1.0), *(
-        pytest.param(*each, marks=pytest.mark.long)
-        for each in ((4408, "quiet", -2.5, 2.0), (4408, "quiet", 5.0, 2.0), (4411, "paper", -2.5, 2.0))
-    )],
-)  # fmt: skip
+    [(4408, "quiet", 4.0, 1.0), (4408, "quiet", -2.5, 2.0), (4408, "quiet", 5.0, 2.0), (4411, "paper", -2.5, 2.0)],
+)
 def test_two_feedbacks_with_a_zero_each_are_one_cause_and_two_numbers(
     seed, flavour, passive, driving, crane_150t, crane2_model
 ):

@@ -55,6 +55,7 @@ def test_running_the_proposed_scenarios_resolves_the_ambiguity():
     assert [effect.name for effect in result.effects] == ["pressure_offset"]
 
 
+@pytest.mark.long
 def test_a_single_run_without_an_effect_is_no_discovery():
     """Both halves of one voyage are told the same of its wire, so a refit to the first does not go astray: it moves no
     parameter by half of its deviation, and the other half is none the worse."""

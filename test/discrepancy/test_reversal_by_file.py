@@ -29,7 +29,8 @@ class Stands:
 
 
 @pytest.mark.parametrize(
-    ("hidden", "kept"), [((("presliding", 1.0),), True), ((), False), ((("churning", 1.0),), False)]
+    ("hidden", "kept"),
+    [((("presliding", 1.0),), True), ((("churning", 1.0),), False), pytest.param((), False, marks=pytest.mark.long)],
 )
 def test_bristles_stand_beside_names_where_their_file_leaves_something_of_bristles(
     hidden, kept, crane_150t, crane2_model

@@ -140,7 +140,7 @@ def test_runs_around_a_point_are_prepared_once_as_long_as_somebody_holds_them(cr
     assert not given.around
 
 
-@pytest.mark.parametrize("names", [(), ("tare_load",)])
+@pytest.mark.parametrize("names", [(), pytest.param(("tare_load",), marks=pytest.mark.long)])
 def test_a_file_that_was_put_to_the_runs_before_is_not_fitted_again(names, monkeypatch, crane_150t, crane2_model):
     """What chance draws is drawn again, so that nothing after it hangs on whether a file was known."""
     runs = runs_with(917, "quiet", *((name, 1.0) for name in names), length=0.3)

@@ -19,6 +19,7 @@ from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import Run
 
 
+@pytest.mark.long
 def test_a_model_is_fitted_to_a_load_that_swings_as_all_runs_say_it_does(crane_150t, crane2_model):
     """Three of six runs tell a swing, of the four to learn from one: fitted to a rigid wire the model would be wrong by
     six times the noise."""

@@ -61,6 +61,7 @@ def test_two_effects_at_once():
     assert len(found) == 2
 
 
+@pytest.mark.long
 def test_what_no_catalogue_knows_stays_unexplained_and_points_at_its_signal():
     """`test_proposals` holds it for a drag that grows with the wire paid out."""
     result = gap_of(4030, "rough", ("acceleration_loss", 1.0), length=LONGER)

@@ -47,7 +47,7 @@ CASES = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scale", [1.0, 1.01])
+@pytest.mark.parametrize("scale", [pytest.param(1.0, marks=pytest.mark.long), 1.01])
 def test_a_right_seed_is_kept_and_its_errors_are_as_stated(crane, seed, scale):
     squares, kept = [], 0
     for place, (drive, load, height, _) in enumerate(CASES * 2):

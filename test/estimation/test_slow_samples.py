@@ -52,6 +52,7 @@ def test_at_10_hz_the_sigmas_are_not_half_of_what_they_should_be(crane, seed):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_nor_on_a_pump_whose_pressure_swings_between_the_samples(crane, seed):
     """The mean of the drive's torque taken on a straight line was 2.0 squared sigmas off."""
     off, rejected = apart(PUMP, crane, seed)

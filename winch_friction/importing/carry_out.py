@@ -87,12 +87,17 @@ def _is_kind(path: Path, kind: str) -> bool:
     return (path.suffix.lower() in WORKBOOK) == (kind == "workbook")
 
 
-def convert(log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True) -> Converted:
-    """All columns of a map in SI; problems are collected, not raised."""
+def convert(
+    log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True, times: dict[Any, FloatArray] | None = None
+) -> Converted:
+    """All columns of a map in SI; problems are collected, not raised.
+
+    `times` keeps this log's times for the next map that reads them in the same way.
+    """
     columns: dict[str, FloatArray] = {}
     said: list[str] = []
     problems: list[str] = []
-    for name, step in _steps(log, log_map, crane, said, problems, strict):
+    for name, step in _steps(log, log_map, crane, said, problems, strict, {} if times is None else times):
         try:
             columns[name] = step()
         except InputError as error:
@@ -105,9 +110,10 @@ def convert(log: Log, log_map: LogMap, crane: Crane | None, strict: bool = True)
     return Converted(columns, tuple(said), tuple(problems))
 
 
-def _steps(log: Log, log_map: LogMap, crane: Crane | None, said: list[str], problems: list[str], strict: bool) -> Any:
+def _steps(log: Log, log_map: LogMap, crane: Crane | None, said: list[str], problems: list[str], strict: bool,
+           times: dict[Any, FloatArray]) -> Any:  # fmt: skip
     if log_map.time_from:
-        yield "time", lambda: _time(log, log_map)
+        yield "time", lambda: _time(log, log_map, times)
     for name, entry in log_map.columns.items():
         channel = name.rpartition(".")[2]
         if channel not in CHANNEL_UNITS:
@@ -121,16 +127,22 @@ def _steps(log: Log, log_map: LogMap, crane: Crane | None, said: list[str], prob
             )
             problems.append(f"columns: '{name}' is {wanted}")
             continue
-        yield name, lambda n=name, e=entry, c=channel: _values(log, n, c, e, log_map, crane, said, problems, strict)
+        yield (
+            name,
+            lambda n=name, e=entry, c=channel: _values(log, n, c, e, log_map, crane, said, problems, strict, times),
+        )
 
 
-def _time(log: Log, log_map: LogMap) -> FloatArray:
-    columns = [log.column(name) for name in log_map.time_from]
-    return to_seconds(columns, log_map.time, "time", log.place)
+def _time(log: Log, log_map: LogMap, times: dict[Any, FloatArray]) -> FloatArray:
+    read_as = (tuple(log_map.time_from), log_map.time)
+    if read_as not in times:
+        columns = [log.column(name) for name in log_map.time_from]
+        times[read_as] = to_seconds(columns, log_map.time, "time", log.place)
+    return times[read_as].copy()
 
 
 def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, crane: Crane | None, said: list[str],
-            problems: list[str], strict: bool) -> FloatArray:  # fmt: skip
+            problems: list[str], strict: bool, times: dict[Any, FloatArray]) -> FloatArray:  # fmt: skip
     if entry.constant:
         return np.full(len(log), constant_in_si(name, channel, entry, crane))
     column = log.column(entry.source)
@@ -142,7 +154,7 @@ def _values(log: Log, name: str, channel: str, entry: Entry, log_map: LogMap, cr
     scale, offset = scale_and_offset(name, channel, entry, crane)
     values = _held(name, column, said if strict else []) * scale + offset
     if entry.differentiate:
-        values = _rate(name, values, _time(log, log_map), entry.differentiate)
+        values = _rate(name, values, _time(log, log_map, times), entry.differentiate)
     kept = (said, problems) if strict else ([], [])
     return _within_limits(log, name, channel, column, values, *kept)
 

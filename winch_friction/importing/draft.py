@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from winch_friction.importing.carry_out import Converted, convert
 from winch_friction.importing.log import Log
 from winch_friction.importing.mapping import LogMap, with_settings
+from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
 
@@ -19,6 +21,7 @@ class Draft:
     questions: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    _times: dict[int, dict[Any, FloatArray]] = field(default_factory=dict, repr=False)  # of the log of this number
 
     def change(self, name: str, confidence: float | None = None, because: str = "", **fields: object) -> None:
         """Change a channel's entry, adding to its reason."""
@@ -35,4 +38,7 @@ class Draft:
 
     def converted(self) -> list[Converted]:
         """Every log in SI as the map stands."""
-        return [convert(log, self.log_map, self.crane, strict=False) for log in self.logs]
+        return [
+            convert(log, self.log_map, self.crane, strict=False, times=self._times.setdefault(k, {}))
+            for k, log in enumerate(self.logs)
+        ]

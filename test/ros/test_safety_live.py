@@ -93,7 +93,8 @@ def test_hostile_models_neither_end_nor_hold_up_the_node(fed: tuple[Bench, list]
         bench.drive(0.3)
     assert alive(bench)
     stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in torque[before:]]
-    assert max(b - a for a, b in zip(stamps[:-1], stamps[1:], strict=True)) < 0.3  # 2.5 s when they were parsed in line
+    # 2.5 s when they were parsed in line; 0.05 s on a quiet machine, 0.6 s on one that has much else to do
+    assert max(b - a for a, b in zip(stamps[:-1], stamps[1:], strict=True)) < 1.2
     assert "model refused" in bench.log("compensator")
 
 

@@ -1,9 +1,14 @@
 """Forms of a log's time, each on a few cells: what a number counts, what a text says, what is left open."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from winch_friction.importing.log import LogColumn
+from winch_friction.importing.draft import Draft
+from winch_friction.importing.log import Log, LogColumn
+from winch_friction.importing.mapping import LogMap
 from winch_friction.importing.ticks import fraction_unit, spread_ticks
 from winch_friction.importing.time_base import TimeBase, guess_time, to_seconds
 from winch_friction.importing.time_text import clock_seconds, time_parts, zone_seconds
@@ -145,3 +150,32 @@ def test_a_count_since_1970_is_told_by_its_size_and_none_of_another_century_is(f
     assert (told.form, told.unit) == ("unix", unit)
     late = guess_time([numbers(factor * (2.0 * NOON + 0.1 * np.arange(9)))], "")
     assert late is None or (late.base.form, late.base.unit) != ("unix", unit)
+
+
+@pytest.mark.parametrize(
+    ("base", "cells"),
+    [
+        (TimeBase("datetime", order="ymd"), ["2026-03-01T10:00:01.5", "2026-03-01T10:00:02", "2026-03-01T10:00:03,25",
+                                             "2026-03-01 10:01", "2026-03-01T10:01:04", "2026-03-02T10:01:04"]),
+        (TimeBase("datetime", order="ymd"), ["2026-03-01T10:00:01+02:00", "2026-03-01T10:00:01+03:00",
+                                             "2026-03-01T10:00:01"]),
+        (TimeBase("datetime", order="ymd"), ["2026-03-01T10:00:30+05:30", "2026-03-01T10:00:30+05:45"]),
+        (TimeBase("datetime", order="dmy", zone="Europe/Oslo"), ["01.07.2026 10:00:01", "01.07.2026 10:00:02 pm",
+                                                                 "01.07.2026 10:00:03", "02.07.2026 10:00:03"]),
+        (TimeBase("clock"), ["12:05.5", "12:05", "12:06.5", "12:06:30", "12:06:31", " 12:06:32", "12:06:33 "]),
+        (TimeBase("clock"), ["10:00:05:07", "10:00:05:08", "10:00:05:17"]),
+    ],
+)  # fmt: skip
+def test_a_cell_is_read_the_same_whatever_stands_above_it(base, cells):
+    """A cell whose text before its seconds was read above is not taken apart again."""
+    alone = [seconds(base, texts(cell))[0] for cell in cells]
+    assert seconds(base, texts(*cells)).tolist() == alone
+
+
+def test_a_draft_reads_the_times_anew_where_they_are_read_in_another_way():
+    log = Log(Path("log.csv"), (numbers([0.0, 20.0, 40.0]),), {}, str)
+    draft = Draft([log], None, LogMap({}, ("t",), TimeBase("seconds", "s")))
+    assert draft.converted()[0].columns["time"].tolist() == [0.0, 20.0, 40.0]
+    draft.log_map = replace(draft.log_map, time=TimeBase("seconds", "ms"))
+    for _ in range(2):
+        assert draft.converted()[0].columns["time"] == pytest.approx([0.0, 0.02, 0.04])

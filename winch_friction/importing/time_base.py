@@ -18,7 +18,16 @@ from winch_friction.importing.log import LogColumn, Place
 from winch_friction.importing.summer_time import change_asked, from_utc, hour_back
 from winch_friction.importing.ticks import rows_of_one_tick, spread_ticks
 from winch_friction.importing.time_numbers import clock_of_numbers, is_clock, seconds_of_one
-from winch_friction.importing.time_text import clock_seconds, days_since_1970, time_parts, zone_seconds
+from winch_friction.importing.time_text import (
+    before_second,
+    clock_seconds,
+    counts_milliseconds,
+    days_since_1970,
+    first_text,
+    time_parts,
+    with_zeros,
+    zone_seconds,
+)
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.records.unit_names import conversion_to_si
@@ -28,7 +37,6 @@ ORDERS = ("ymd", "dmy", "mdy")
 _DAY = 86_400.0
 _EXCEL_EPOCH, _MATLAB_EPOCH = 25_569.0, 719_529.0  # days from 1899-12-30 and from year 0 to 1970-01-01
 _TICK = 1e-7  # s
-_MILLI = 3  # digits of a count of ms
 _EPOCHS = {"filetime": 11_644_473_600.0, "dotnet": 62_135_596_800.0}  # s from their origin to 1970
 _TICK_YEARS = (9.4e8, 2.6e9)  # s: 2000 to 2052; before that nobody's log counts so
 _UNIX_YEARS = (6.3e8, 2.6e9)  # s: 1990 to 2052
@@ -79,7 +87,7 @@ def guess_time(columns: Sequence[LogColumn], unit: str) -> TimeGuess | None:
     if len(finite) < 2 or (not back and (finite[-1] <= finite[0] or np.mean(np.diff(finite) < 0.0) > 0.02)):
         return None
     if guess.base.zone and not guess.question:
-        guess = replace(guess, question=change_asked(finite, _first(_joined(columns))))
+        guess = replace(guess, question=change_asked(finite, first_text(_joined(columns))))
     ticks = rows_of_one_tick(finite)
     if ticks > 1.5:
         return replace(
@@ -137,17 +145,17 @@ def _guess_text(columns: Sequence[LogColumn]) -> TimeGuess | None:
         return None
     dated = sum(p[0] is not None for p in parts) > len(parts) / 2
     if not dated:
-        return TimeGuess(TimeBase("clock"), 0.9, f"times of day such as '{_first(cells)}', from midnight")
+        return TimeGuess(TimeBase("clock"), 0.9, f"times of day such as '{first_text(cells)}', from midnight")
     if any(isinstance(c, (datetime, np.datetime64)) for c in _sample(cells)):
         return TimeGuess(TimeBase("datetime", order="ymd", zone="UTC"), 0.95, "dates; no zone is given, taken for UTC")
     order, sure = _order_of(parts)
     zoned = any(p[7] for p in parts)
     zone = "with its zone" if zoned else "no zone is given, taken for UTC (it only dates the run)"
     days = len({p[:3] for p in parts})
-    because = f"dates such as '{_first(cells)}', order {order}, {zone}"
+    because = f"dates such as '{first_text(cells)}', order {order}, {zone}"
     question = ""
     if not sure and days > 1:
-        question = f"is '{_first(cells)}' day or month first? set time.order to dmy or mdy"
+        question = f"is '{first_text(cells)}' day or month first? set time.order to dmy or mdy"
     elif not sure:
         because += "; day or month first is open, which dates the run but changes no duration"
     return TimeGuess(
@@ -222,40 +230,35 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
     if isinstance(columns[0].text, np.ndarray) and np.issubdtype(columns[0].text.dtype, np.datetime64):
         stamps = columns[0].text.astype("datetime64[ns]")
         return np.where(np.isnat(stamps), np.nan, stamps.astype(np.int64) * 1e-9)
-    zone, counted = _zone(base, where), _counts_milliseconds(cells)
+    zone, counted = _zone(base, where), counts_milliseconds(cells)
     offsets = np.zeros(len(cells))  # s from UTC that the cells say themselves
     unzoned = np.zeros(len(cells), bool)
     known: dict[tuple[Any, ...], float] = {}
+    minutes: dict[Any, tuple[float, float]] = {}  # what stands before a cell's seconds -> its day and its minute, s
     seconds = np.full(len(cells), np.nan)
     for row, cell in enumerate(cells):
+        before, second = before_second(cell)
+        if before in minutes:
+            day, minute = minutes[before]
+            seconds[row], unzoned[row] = day + (minute + float(second.replace(",", "."))), True
+            continue
         parts = time_parts(cell)
         if parts is None or (base.form == "datetime" and parts[0] is None):
             if strict and cell is not None and str(cell).strip():
                 raise InputError(f"{where}: {place(row)}: '{str(cell)[:40]}' is no time of the form '{base.form}'")
             continue
         if counted:
-            parts = (*parts[:5], _with_zeros(parts[5]), *parts[6:])
+            parts = (*parts[:5], with_zeros(parts[5]), *parts[6:])
         key = parts[:3]
         if key not in known:
             known[key] = days_since_1970(key, base.order or "ymd", where) * _DAY if parts[0] is not None else 0.0
         seconds[row] = known[key] + clock_seconds(parts)
+        if second and parts[5:8] == (second, None, None):
+            minutes[before] = known[key], clock_seconds((*parts[:5], None, None))
         offsets[row], unzoned[row] = zone_seconds(parts[7]) if parts[7] else 0.0, not parts[7]
     if zone is not None:
         offsets[unzoned] = from_utc(seconds[unzoned], zone)
     return _over_midnight(seconds - offsets) if base.form == "clock" else seconds - offsets
-
-
-def _counts_milliseconds(cells: Any) -> bool:
-    """Whether what stands behind a third colon is a count without zeros before it: 12:00:05:7 is 7 ms behind 5 s."""
-    if str(_first(cells)).count(":") != 3:
-        return False
-    behind = {len(str(cell).strip().rpartition(":")[2]) for cell in cells if str(cell).count(":") == 3}
-    return len(behind) > 1 and max(behind) == _MILLI
-
-
-def _with_zeros(second: Any) -> Any:
-    whole, colon, count = str(second).partition(":")
-    return f"{whole}:{count:0>{_MILLI}}" if colon else second
 
 
 def _over_midnight(seconds: FloatArray) -> FloatArray:
@@ -276,10 +279,6 @@ def _joined(columns: Sequence[LogColumn]) -> Any:
 def _sample(cells: Any) -> list[Any]:
     step = max(1, len(cells) // 200)
     return [cell for cell in list(cells[::step]) if cell is not None and str(cell).strip()]
-
-
-def _first(cells: Any) -> str:
-    return str(next((cell for cell in cells if cell is not None and str(cell).strip()), ""))[:40]
 
 
 def _zone(base: TimeBase, where: str) -> ZoneInfo | None:

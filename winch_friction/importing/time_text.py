@@ -21,11 +21,13 @@ _STAMP = re.compile(
 )
 _COMPACT = re.compile(r"^(\d{4})(\d\d)(\d\d)[T _-](\d\d):?(\d\d):?(\d\d)")
 
+_SECOND = re.compile(r"\d\d([.,]\d+)?")
 _MINUTES = re.compile(r"^(\d{1,3}):(\d{2}[.,]\d+)$")  # what a spreadsheet shows of a short time
 _IEC = re.compile(
     r"^(?:T|TIME|LT)#(?:([\d.]+)d_?)?(?:([\d.]+)h_?)?(?:([\d.]+)m_?)?(?:([\d.]+)s_?)?(?:([\d.]+)ms_?)?(?:([\d.]+)us)?$",
     re.IGNORECASE,
 )  # a controller's T#1m2s345ms
+_MILLI = 3  # digits of a count of ms
 _SHORT_YEAR, _THIS_CENTURY = 2, 70  # digits; years of so few digits below it are after 2000
 _IEC_SECONDS = (86_400.0, 3600.0, 60.0, 1.0, 1e-3, 1e-6)
 
@@ -51,6 +53,14 @@ def time_parts(cell: Any) -> tuple[Any, ...] | None:
         return None
     mark = text[len(match[1])] if match[1] and len(match[1]) < len(text) else ""
     return (*match.groups(), mark)
+
+
+def before_second(cell: Any) -> tuple[tuple[str, bool] | None, str]:
+    """What stands before the last colon of a text and how the second behind it is written, and the second; else
+    (None, ''). Cells that are alike in the first have the same day and minute where `time_parts` finds that second."""
+    head, _, second = cell.rpartition(":") if isinstance(cell, str) else ("", "", "")
+    plain = _SECOND.fullmatch(second)
+    return ((head, plain[1] is None), second) if plain else (None, "")
 
 
 def clock_seconds(parts: tuple[Any, ...]) -> float:
@@ -82,3 +92,22 @@ def zone_seconds(zone: str) -> float:
         return 0.0
     digits = zone[1:].replace(":", "")
     return (1.0 if zone[0] == "+" else -1.0) * (int(digits[:2]) * 3600.0 + int(digits[2:]) * 60.0)
+
+
+def first_text(cells: Any) -> str:
+    """The first cell that holds anything, as text, cut short for a message."""
+    return str(next((cell for cell in cells if cell is not None and str(cell).strip()), ""))[:40]
+
+
+def counts_milliseconds(cells: Any) -> bool:
+    """Whether what stands behind a third colon is a count without zeros before it: 12:00:05:7 is 7 ms behind 5 s."""
+    if first_text(cells).count(":") != 3:
+        return False
+    behind = {len(str(cell).strip().rpartition(":")[2]) for cell in cells if str(cell).count(":") == 3}
+    return len(behind) > 1 and max(behind) == _MILLI
+
+
+def with_zeros(second: Any) -> Any:
+    """A second whose count of ms, behind a colon, has its zeros."""
+    whole, colon, count = str(second).partition(":")
+    return f"{whole}:{count:0>{_MILLI}}" if colon else second

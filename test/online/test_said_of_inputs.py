@@ -56,14 +56,21 @@ def test_a_stamp_that_fell_back_is_told_from_a_message_that_shows_nothing(fed: F
     assert fed.service.inputs.arrivals[PRESSURE].reason == "stamp before that of the last message"
     assert fed.service.inputs.arrivals[SPEED].reason == "stamp far behind"
 
-    def without_its_joint(sample: object) -> None:
-        sample.groups["active"].displacement = float("nan")
 
-    source = fed.service.inputs.topics.inputs["winch/active/displacement"]
-    (message,) = (each for topic, each in fed.messages(_now(fed)) if topic == source.topic)
+@pytest.mark.parametrize(("topic", "joint"), [("winch/active/displacement", "active_swash"), (SPEED, "winch_motor")])
+def test_a_message_without_its_joint_is_told_by_the_joints_name(fed: Fed, topic: str, joint: str) -> None:
+    """Of the speed it was said that it is `no number`, which sends whoever reads it to the encoder."""
+    source = fed.service.inputs.topics.inputs[topic]
+    (message,) = (each for name, each in fed.messages(_now(fed)) if name == topic)
     message.name = ["another"]
-    fed.service.take(source, message, fed.now, fed.now)
-    assert fed.service.inputs.arrivals[source.topic].reason == "without the joint that it should show"
+    for names in (["another"], [joint, joint]):
+        message.header.stamp.nanosec += 1_000_000
+        message.name = names
+        assert fed.service.take(source, message, fed.now, fed.now) is None
+        reason = fed.service.inputs.arrivals[topic].reason
+        assert reason.startswith(
+            f"joint '{joint}' stands in it twice" if joint in names else f"without the joint '{joint}'"
+        )
 
 
 @pytest.mark.parametrize(("topic", "said"), [

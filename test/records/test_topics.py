@@ -96,6 +96,21 @@ def test_joints_are_picked_by_name_and_short_arrays_are_nan():
     assert math.isnan(values["shaft_angle"])
 
 
+@pytest.mark.parametrize("topic", ["winch/joint_states", "winch/reference", "winch/active/displacement"])
+def test_a_joint_that_a_message_names_twice_is_not_guessed(topic):
+    """The first entry was obeyed: of two speeds of opposite signs one would turn the torque against the motion."""
+    source = TopicMap(groups=("active",), max_displacement=3.4e-5).inputs[topic]
+    joint = source.joints[0]
+    values = {"position": [0.3, 0.9, 0.1], "velocity": [5.0, -5.0, 1.0], "effort": [1.0, 2.0, 3.0]}
+    message = SimpleNamespace(name=[joint, joint, "other"], **values)
+    assert source.decode(message) == {}
+    assert source.illegible(message).startswith(f"joint '{joint}' stands in it twice")
+    message.name = ["other", joint, "another"]
+    assert set(source.decode(message)) == set(source.channels)
+    message.name = ["other", "a", "b"]
+    assert source.illegible(message) == f"without the joint '{joint}' that it should show"
+
+
 def test_plain_floats_take_the_place_of_a_message():
     topics = TopicMap(groups=(), float64_channels=("motor_speed",), speed_joint="winch_drum", gear_ratio=250.0)
     speed = topics.inputs["winch/joint_states"]

@@ -74,7 +74,7 @@ SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed com
 TWO_VOICES = "two values under one stamp"
 MOTION = "motor_speed", "speed_reference"
 TWO_MOTIONS = "two motions in turn: does a recording or a simulator send beside the machine?"
-UNREADABLE, LATE = "without the joint that it should show", "stamp before that of the last message"
+LATE = "stamp before that of the last message"
 
 
 @dataclass
@@ -146,7 +146,7 @@ class InputGate:
             arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS and stamp != arrivals.stamp
             arrivals.stamp = stamp
         else:
-            self._refuse(arrivals, self._refusal or (LATE if source.decode(message) else UNREADABLE))
+            self._refuse(arrivals, self._refusal or (LATE if source.decode(message) else source.illegible(message)))
         return None
 
     def _unstamped_refusal(self, source: Input, message: Any, now: float) -> str:
@@ -186,7 +186,7 @@ class InputGate:
             self.hold.drop_after(stamp + self._window)
         sample = self._stream.take_speed(source, message, stamp, receipt if sent is None else sent)
         if sample is None:
-            self._refuse(arrivals, self._refusal or UNREADABLE)
+            self._refuse(arrivals, self._refusal or source.illegible(message))
             return None
         if self._refusal.startswith(self._torque):
             self._refuse(arrivals, self._refusal)

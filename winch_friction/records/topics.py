@@ -31,10 +31,17 @@ class Input:
     type_name: str
     channels: tuple[str, ...]
     decode: Callable[[Any], Readings]
+    joints: tuple[str, ...] = ()  # of which a message must name one
     stamped: bool = field(init=False, compare=False)  # whether its messages say when they were measured
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stamped", self.type_name != FLOAT64)
+
+    def illegible(self, message: Any) -> str:
+        """Why a message of joints shows nothing, in a few words."""
+        if twice := [joint for joint in self.joints if message.name.count(joint) > 1]:
+            return f"joint '{twice[0]}' stands in it twice; nobody knows which of the two is meant"
+        return f"without the joint '{self.joints[0]}' that it should show" if self.joints else ""
 
 
 class MessageFactory(Protocol):
@@ -93,7 +100,8 @@ class TopicMap:
         ratio = self.gear_ratio if self.speed_joint == self.drum_joint else 1.0
 
         def decode(message: Any) -> Readings:
-            index = _joint_index(message, self.speed_joint)
+            if (index := _joint_index(message, self.speed_joint)) < 0:
+                return {}
             speed = _entry(message.velocity, index) * ratio
             return {
                 "motor_speed": speed,
@@ -101,19 +109,19 @@ class TopicMap:
                 "motor_torque": _entry(message.effort, index) / ratio,
             }
 
-        return Input(self.speed_topic, JOINT_STATE, ("motor_speed", "shaft_angle", "motor_torque"), decode)
+        channels = "motor_speed", "shaft_angle", "motor_torque"
+        return Input(self.speed_topic, JOINT_STATE, channels, decode, (self.speed_joint,))
 
     def _reference(self) -> Input:
         names = {self.motor_joint: 1.0, self.drum_joint: self.gear_ratio}
 
         def decode(message: Any) -> Readings:
             for joint, ratio in names.items():
-                index = _joint_index(message, joint)
-                if index >= 0:
+                if (index := _joint_index(message, joint)) >= 0:
                     return {"speed_reference": _entry(message.velocity, index) * ratio}
             return {}
 
-        return Input(f"{self.prefix}/reference", JOINT_STATE, ("speed_reference",), decode)
+        return Input(f"{self.prefix}/reference", JOINT_STATE, ("speed_reference",), decode, tuple(names))
 
     def _group_inputs(self) -> list[Input]:
         return [each for group in self.groups for each in (*self._pressures(group), self._displacement(group))]
@@ -137,7 +145,7 @@ class TopicMap:
             index = _joint_index(message, joint)
             return {channel: _entry(message.position, index) * factor} if index >= 0 else {}
 
-        return Input(f"{self.prefix}/{group}/displacement", JOINT_STATE, (channel,), decode)
+        return Input(f"{self.prefix}/{group}/displacement", JOINT_STATE, (channel,), decode, (joint,))
 
     @property
     def _plain_scalars(self) -> tuple[str, ...]:
@@ -277,9 +285,9 @@ def stamp_time(message: Any) -> float:
 
 
 def _joint_index(message: Any, joint: str) -> int:
-    """Position of a joint by name, -1 without it."""
+    """Position of a joint by name; -1 without it, and where it is named more than once: either entry may be meant."""
     names = message.name
-    return names.index(joint) if joint in names else -1
+    return names.index(joint) if names.count(joint) == 1 else -1
 
 
 def _entry(values: Any, index: int) -> float:

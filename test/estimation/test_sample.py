@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.estimation import EstimatorConfig
-from winch_friction.estimation.sample import HangingLoad, SensorErrors, saturated, torque_variance
+from winch_friction.estimation.sample import HangingLoad, saturated, torque_variance
+from winch_friction.estimation.sensor_errors import SensorErrors
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import GroupSample, Sample
 

@@ -1,6 +1,7 @@
 """What the estimator's small parts keep apart: a load that nobody shows, a status that flickers, a torque of errors."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +10,12 @@ from winch_friction.estimation.answers import ParameterStatus
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.interval import FrictionFunctions, Intervals, mean_direction
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.sample import LEAST_LOAD, PICKED_UP, HangingLoad, SensorErrors, saturated, usable
+from winch_friction.estimation.sample import LEAST_LOAD, PICKED_UP, HangingLoad, accepted, saturated, usable
+from winch_friction.estimation.sensor_errors import SensorErrors
 from winch_friction.estimation.trust import Excitation, VarianceFactor
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges, sample_operating_point
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
@@ -42,16 +44,50 @@ def test_an_electric_drive_is_at_its_limit_braking_as_well_as_driving(way):
     assert not saturated(under, electric, CONFIG)
 
 
-def test_errors_of_displacement_and_pressure_add_up_and_scale_the_torque_that_is_measured():
-    """T = n D dp: either gain makes the same of it; an offset of the port is a torque of its own."""
+def two_groups(displacement=1.0, pressure=1.0, offset=0.0):
+    """What drives the shaft, N m: the drive torque less the friction, where the sensors show so many times what they
+    do, and port A of the driving group so much more, Pa."""
+    shown = {"active": (150e5, 25e5, 1.0), "passive": (300e5, 25e5, 0.4)}
+    groups = {
+        name: GroupSample(pressure * a, pressure * b, displacement * share * CRANE.max_displacement)
+        for name, (a, b, share) in shown.items()
+    }
+    groups["active"].pressure_a += offset
+    return Sample(0.02, 180.0, groups=groups)
+
+
+def driving(intervals, taken):
+    last, now = accepted(replace(taken, time=0.0, motor_speed=178.0), CRANE), accepted(taken, CRANE)
+    step, _ = intervals.between(last, now, taken, SEED.values, 0.0)
+    return step.torque - step.friction, step.by_sensors
+
+
+@pytest.mark.parametrize(
+    ("config", "true"),
+    [
+        ({"displacement_scale_std": 0.01}, {"displacement": 1.0 - 1e-5}),
+        ({"displacement_scale_std": 0.0, "pressure_scale_std": 0.01}, {"pressure": 1.0 - 1e-5}),
+        ({"displacement_scale_std": 0.0, "pressure_offset_std": 1e5}, {"offset": -1.0}),
+    ],
+)
+def test_what_an_error_of_a_sensor_does_to_the_friction_is_considered_as_well(config, true):
+    """Only the drive torque counted: the loss that goes with D^3 seemed 1 % larger of a displacement 1 % too large,
+    where it is learned 2 % too small. Of 36 truths the worst had a squared error of 47 where ten are right."""
+    own = EstimatorConfig(**config)
+    intervals = Intervals(CRANE, own, load(50e3), FrictionFunctions(SEED), SensorErrors(CRANE, SEED, own))
+    (measured, found), (really, _) = (driving(intervals, two_groups(**each)) for each in ({}, true))
+    (how_far,) = (abs(1.0 - each) if each > 0.0 else 1.0 for each in true.values())
+    assert found[1] == pytest.approx((really - measured) / how_far, rel=0.004)
+    assert found[0] == 0.0  # of a speed that is late, where the torque does not change
+
+
+def test_two_gains_and_an_offset_are_considered_one_by_one():
     errors = SensorErrors(CRANE, SEED, EstimatorConfig(pressure_offset_std=1e5, pressure_scale_std=0.02))
-    assert errors.std[0] == CONFIG.speed_delay_std
-    assert errors.std[1] == pytest.approx(math.hypot(CONFIG.displacement_scale_std, 0.02))
-    assert errors.std[2] == 1e5
-    by_lateness, by_gain, by_offset = errors.by(sample(), 700.0, 40.0)
-    assert by_lateness == -40.0
-    assert by_gain == -700.0
-    assert by_offset == pytest.approx(-CRANE.motor_count("active") * CRANE.max_displacement)
+    assert errors.std == (CONFIG.speed_delay_std, CONFIG.displacement_scale_std, 0.02, 1e5)
+    point = sample_operating_point(sample(), CRANE, drum_torque=0.0, speed=50.0)
+    found = errors.by(sample(), 700.0, 40.0, point, 30.0, lambda _: 30.0)  # a friction that reads none of them
+    assert found == (-40.0, -700.0, -700.0, -CRANE.motor_count("active") * CRANE.max_displacement)
+    assert not SensorErrors(load_crane("emps"), SEED, CONFIG).std[1:]
 
 
 # -- the load

@@ -11,7 +11,7 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
-VERSION = 4
+VERSION = 5
 
 
 @dataclass(frozen=True)

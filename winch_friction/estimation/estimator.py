@@ -18,7 +18,8 @@ from winch_friction.estimation.conflict import SeedConflict
 from winch_friction.estimation.dynamics import FIRST_PARAMETER, fresh_motion
 from winch_friction.estimation.interval import FrictionFunctions, Intervals
 from winch_friction.estimation.parameters import ScaledParameters
-from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, accepted, saturated, usable
+from winch_friction.estimation.sample import Accepted, HangingLoad, accepted, saturated, usable
+from winch_friction.estimation.sensor_errors import SensorErrors
 from winch_friction.estimation.trust import Consistency, Excitation, InnovationGate
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.model import completed, with_stated_std
@@ -92,9 +93,8 @@ class FrictionEstimator:
         self.consistency = Consistency(self.config.nis_window)
         self._statuses = ParameterStatuses(self.config, self._parameters)
         self._conflict = SeedConflict(self.config, self._parameters)
-        self._gate = InnovationGate(self.config)
+        self._gate, self._begun = InnovationGate(self.config), False
         self._last: Accepted | None = None
-        self._begun = False
         self.counts = {"accepted": 0, "rejected": 0, "restarted": 0, "learned_from": 0}
         self._state = "waiting"
 

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.dynamics import STICK_IGNORANCE, Step, Wire, wire_step
-from winch_friction.estimation.sample import Accepted, HangingLoad, SensorErrors, torque_variance
+from winch_friction.estimation.sample import Accepted, HangingLoad, torque_variance
+from winch_friction.estimation.sensor_errors import Point, SensorErrors
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all
 from winch_friction.physics.signals import Sample
@@ -19,8 +20,6 @@ WITHIN = 1.0 / 3.0
 # plus and minus half of the second difference, of which squared: a pump's pressure swings against the oil and the load
 # faster than a slow PLC looks
 BENT = 1.0 / 12.0
-
-Point = tuple[float, ...]  # an operating point in the order of `compiled.layout`
 
 
 class FrictionFunctions:
@@ -106,7 +105,10 @@ class Intervals:
         elif abs(now.speed - last.speed) > config.stick_speed:
             unknown = WITHIN * self._change(point, last.speed, now.speed, theta, len(sample.groups)) ** 2
         unknown += BENT * last.bend(now) ** 2
-        errors = self._errors.by(sample, drive, now.drive - last.drive)
+        groups = len(sample.groups)
+        errors = self._errors.by(
+            sample, drive, now.drive - last.drive, point, friction, lambda x: self._friction.torque(x, theta, groups)
+        )
         step = Step(
             drive - measured_load, torque_variance(sample, self._crane, config), unknown, friction, gradient, errors,
             self._wire(sample, extra, duration), heave, duration, stick, self._load.doubted,

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.physics.channels import GRAVITY
-from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
-from winch_friction.physics.winch.crane import Crane, driving_group, sample_drive_torque, sample_load
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
 # steps of lengths within this factor of each other tell how a torque bends from one to the next
@@ -106,44 +105,6 @@ def torque_variance(sample: Sample, crane: Crane, config: EstimatorConfig) -> fl
 
 LEAST_LOAD = 0.01  # of the rated one: a load cell's class; a share of less than that would be one of its zero error
 PICKED_UP = 0.1  # a relative change of the measured mass beyond this is another load, not noise
-
-
-class SensorErrors:
-    """Constant errors of pressures and displacements, which the filter considers and never estimates.
-
-    The drive torque is n D dp, so that a relative error of the displacements and one of the pressures are the same
-    thing, which friction cannot be told from; an offset between the two pressure lines of the driving group is a
-    constant torque. A speed that is late sees the torque of before, by a share of what it changes by from one sample to
-    the next. `std`: standard deviations of what there is, relative, Pa and of a sample: from the seed's corrections
-    where it has them, else from the configuration.
-    """
-
-    def __init__(self, crane: Crane, seed: FrictionModel, config: EstimatorConfig) -> None:
-        self._crane = crane
-        known: dict[str, float] = {}
-        for each in seed.corrections:
-            if each.std is None:
-                continue
-            known[each.name] = max(each.std, known.get(each.name, 0.0))
-        scale = math.hypot(
-            known.get("displacement_scale", config.displacement_scale_std),
-            known.get("pressure_scale", config.pressure_scale_std),
-        )
-        offset = known.get("pressure_offset", config.pressure_offset_std)
-        self._scale, self._offset = (scale, offset) if crane.drive.hydraulic else (0.0, 0.0)
-        self._late = config.speed_delay_std
-        self.std: Sequence[float] = tuple(each for each in (self._late, self._scale, self._offset) if each > 0.0)
-
-    def by(self, sample: Sample, drive: float, change: float = 0.0) -> Sequence[float]:
-        """Derivatives of the true drive torque by the errors, where `drive` N m is measured, `change` N m more than at
-        the sample before."""
-        found: tuple[float, ...] = (-change,) if self._late else ()
-        if self._scale:
-            found += (-drive,)
-        if self._offset:
-            name = driving_group(tuple(sample.groups))
-            found += (-self._crane.motor_count(name) * sample.groups[name].displacement,)
-        return found
 
 
 class HangingLoad:

@@ -45,6 +45,24 @@ def test_speeds_near_standstill_heal_no_doubt():
     assert not [doubted(4.0 + 0.05 * k, fast, fast) for k in range(30)][-1]
 
 
+@pytest.mark.parametrize(("share", "heals"), [(1.0, True), (0.8, True), (9.55, False), (0.105, False), (-1.0, False)])
+def test_a_sea_that_calms_lets_a_command_that_agrees_again_heal_its_doubt(share, heals):
+    """Below a tenth of the largest speed nothing was to be seen: one hang in a high sea, or a wrong unit that was put
+    right, and nothing was fed forward in a low one for good."""
+    ranges = ChannelRanges(CRANE, GROUPS)
+    each, slow = Agreement(CRANE, ranges), 0.009 * ranges.speed  # 9.55 times that is no contradiction by itself
+    said = "speed_reference contradicts motor_speed"
+    for k in range(20):
+        each.contradictions(Sample(0.05 * k, 0.5 * ranges.speed, speed_reference=0.1 * ranges.speed))
+    found = [
+        each.contradictions(Sample(1.0 + 0.05 * k, speed, speed_reference=share * speed))
+        for k in range(160)
+        for speed in (slow * math.sin(2.0 * math.pi * 0.05 * k / 6.0),)
+    ]
+    assert said in found[4]
+    assert (said in found[-1]) is not heals
+
+
 @pytest.mark.parametrize("apart", [0.3, -0.3])
 def test_a_load_cell_that_shows_too_much_is_doubted_as_one_that_shows_too_little(apart):
     balance = LoadBalance()

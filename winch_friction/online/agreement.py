@@ -278,7 +278,9 @@ class Agreement:
         command, speed = sample.speed_reference, sample.motor_speed
         large = max(abs(command), abs(speed))
         if not large > SPEED_APART * self._ranges.speed:  # true for NaN
-            return None
+            # too slow to contradict each other; but a doubt of before may be over, and no faster sea come for days
+            moves = large > AGAINST_SPEED * self._crane.speed_scale
+            return False if self._speeds.stands and moves and abs(command - speed) <= SPEED_SHARE * large else None
         return abs(command - speed) > SPEED_SHARE * large + SPEED_APART * self._ranges.speed
 
     def _chatters(self, sample: Sample) -> bool:

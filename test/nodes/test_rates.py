@@ -13,7 +13,7 @@ from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
-from winch_friction.records.topics import crane_topics
+from winch_friction.records.topics import crane_topics, stamp_header
 
 CRANE = load_crane("crane_150t")
 TOPICS = crane_topics(CRANE)
@@ -29,12 +29,22 @@ class Heard:
         none = SimpleNamespace(subscriptions=dict, late=0)
         self.health = InputHealth(self.gate, none, lambda: {SPEED, PRESSURE}, lambda: self.now, patience=0.1)
 
-    def hear(self, seconds: float, period: float = 0.02, without: tuple[str, ...] = (), pressure: float = 1e7) -> None:
+    def hear(
+        self,
+        seconds: float,
+        period: float = 0.02,
+        without: tuple[str, ...] = (),
+        pressure: float = 1e7,
+        ahead: float = 0.0,
+    ) -> None:
+        """Messages for a while; the clock of whoever sends the pressure is `ahead` s of the speed's."""
         for _ in range(round(seconds / period)):
             self.now += period
             groups = {name: GroupSample(pressure, 25e5, CRANE.max_displacement) for name in ("active", "passive")}
             sample = Sample(self.now, motor_speed=50.0, speed_reference=50.0, hook_load=55e3, groups=groups)
             for topic, message in TOPICS.encode(sample, MESSAGES):
+                if topic == PRESSURE:
+                    message.header = stamp_header(self.now + ahead, MESSAGES)
                 if topic not in without:
                     self.gate.take(TOPICS.inputs[topic], message, self.now, self.now)
 
@@ -95,6 +105,23 @@ def test_a_message_that_is_overtaken_now_and_then_is_no_wrong_order(heard: Heard
     heard.hear(1.0)  # fifty messages
     heard.gate.arrivals[PRESSURE].after += after
     assert ("comes after the speed" in heard.health.report().summary) is said
+
+
+@pytest.mark.parametrize(("ahead", "said"), [(0.3, True), (0.08, False)])
+def test_a_clock_that_is_ahead_of_the_speeds_is_said(heard: Heard, ahead: float, said: bool) -> None:
+    """Its values are taken as late as its stamps say: a command turned the torque against the speed at each reversal,
+    the feedforward faded every time, and `inputs arrive`."""
+    heard.hear(1.0)
+    heard.health.report()
+    heard.hear(0.5, ahead=ahead)
+    words = f"{PRESSURE}: its stamps are 0.3 s ahead of the speed's"
+    assert (words in heard.health.report().summary) is said
+    heard.now += 0.09  # what comes while the next speed is waited for is ahead of the last one
+    assert (words in heard.health.report().summary) is said
+    heard.hear(0.5)  # stamps that are set back are refused until they are where they were
+    heard.health.report()
+    heard.hear(0.5)
+    assert heard.health.report().summary == "inputs arrive"
 
 
 def test_a_needed_input_is_silent_from_its_age_limit_on(heard: Heard) -> None:

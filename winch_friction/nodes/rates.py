@@ -81,6 +81,8 @@ class InputHealth:
             problems.append((ERROR if needed else WARN, f"{topic}: {refused} refused, {arrivals.reason}"))
         elif lag := self._lag(topic):
             problems.append((ERROR if needed else WARN, f"{topic}: its stamps are {lag:.1f} s behind the speed's"))
+        elif ahead := self._ahead(topic, arrivals.arrived):
+            problems.append((WARN, f"{topic}: its stamps are {ahead:.1f} s ahead of the speed's: set the clocks"))
         if publishers > 1:
             problems.append((ERROR if needed else WARN, f"{topic}: {publishers} publishers"))
         return problems
@@ -100,6 +102,16 @@ class InputHealth:
         hold, ages = self._gate.hold, self._gate.ages()
         columns = [each for each in self._gate.topics.inputs[topic].channels if ages.get(each, 0.0) > hold.limit(each)]
         return max((ages[each] for each in columns), default=0.0)
+
+    def _ahead(self, topic: str, arrived: float) -> float:
+        """s by which the latest stamps of a topic were ahead of the speed's when it arrived, where that is more than
+        its age limit: its values are taken so much later than they come."""
+        hold, passed = self._gate.hold, max(arrived - self._gate.last_arrival, 0.0)
+        found = [
+            (hold.stamp(each, math.inf) - self._gate.last_stamp - passed, hold.limit(each))
+            for each in self._gate.topics.inputs[topic].channels
+        ]
+        return max((ahead for ahead, limit in found if limit < ahead < math.inf), default=0.0)
 
     def _gate_was_heard(self) -> bool:
         return math.isfinite(self._gate.last_arrival)

@@ -210,6 +210,7 @@ def learn(
     own = {
         "speed_delay": estimator.config.speed_delay_std,
         "displacement_scale": estimator.config.displacement_scale_std,
+        "wire_damping": estimator.config.wire_damping_std,
     }
     sigmas = [considered.get(name, 0.0) / std for name, std in own.items()]
     inner = estimator._filter

@@ -55,7 +55,7 @@ def test_a_lateness_that_is_told_biases_nothing(crane, seed):
 @pytest.mark.long
 def test_a_lateness_that_nobody_told_is_part_of_the_sigmas(crane, seed):
     assert squared_error(crane, seed) < 3.0
-    assert squared_error(crane, seed, speed_delay_std=0.0) > 4.0  # what it is about
+    assert squared_error(crane, seed, speed_delay_std=0.0, wire_damping_std=0.0) > 4.0  # what it is about
 
 
 def test_what_acted_while_a_late_speed_changed_is_that_much_earlier():

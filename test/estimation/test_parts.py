@@ -13,12 +13,15 @@ from winch_friction.estimation import EstimatorConfig, chi_squared
 from winch_friction.estimation.answers import ParameterStatus
 from winch_friction.estimation.compiled_filter import CompiledFilter
 from winch_friction.estimation.dynamics import (
+    ACTING,
+    DAMPING,
     DISTURBANCE,
     ENCODER,
     ENCODER_CHANGE,
     FIRST_PARAMETER,
     LOAD,
     SPEED,
+    STRETCH,
     Propagation,
     Step,
     noise_variances,
@@ -59,7 +62,7 @@ def some_filter(model, config=None, seed=1, kind=StateFilter):
     root = rng.normal(size=(each.size, each.size)) * 0.1
     each.state = 0.1 * rng.normal(size=(each.size, 1)), root @ root.T
     gradient = (rng.normal(size=len(model.values)) / model.std).tolist()
-    wire = rng.normal(size=(3, 5)) * 0.1 + np.eye(3, 5)
+    wire = rng.normal(size=(3, 6)) * 0.1 + np.eye(3, 6)
     return each, Step(100.0, 4.0, 0.0, 30.0, gradient, (-600.0, -1e-3), wire, 0.5, 0.02, False)
 
 
@@ -88,7 +91,15 @@ def test_without_a_load_the_shaft_is_alone(crane):
     step = np.array(wire_step(crane, 0.0, 6, 50.0, 1e5, 0.02))
     assert step[0, 3] == pytest.approx(0.02 / crane.inertia)
     assert np.array_equal(step[:, :3], np.eye(3))
-    assert not step[:, 4].any()
+    assert not step[:, 4:].any()
+
+
+@pytest.mark.parametrize("mass", [4e3, 55e3])
+def test_what_a_wires_damping_may_be_off_by_moves_shaft_and_load_as_another_damping_would(crane, mass):
+    motion, more = np.array([40.0, 3e-3, 0.2, 500.0, -0.3]), 1e-6
+    one, other = (np.array(wire_step(crane, mass, 6, 50.0, 1.5e5 * each, 0.02)) for each in (1.0, 1.0 + more))
+    opened = (one[:, :5] @ motion)[STRETCH] - motion[STRETCH]
+    assert one[:, DAMPING] * opened == pytest.approx((other - one)[:, :5] @ motion / more, rel=1e-4)
 
 
 def test_the_matrix_is_the_jacobian_of_the_propagation(seed):
@@ -123,7 +134,7 @@ def moved(x, step, config):
     """The states one step on: load torque and parameters stay, the disturbance fades, the rounding becomes a change."""
     out = x.copy()
     torque = step.torque - x[LOAD] - x[DISTURBANCE] - step.friction
-    out[:3] = np.array(step.wire) @ [*x[:3], torque, step.heave]
+    out[:3] = np.array(step.wire)[:, :DAMPING] @ [*x[:3], torque, step.heave]
     out[DISTURBANCE] *= math.exp(-step.duration / config.disturbance_time)
     out[ENCODER], out[ENCODER_CHANGE] = 0.0, -x[ENCODER]
     return out
@@ -184,7 +195,7 @@ def test_what_is_considered_keeps_value_and_variance_and_the_rest_is_josephs(kin
 
 
 def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(kind, seed):
-    config = EstimatorConfig(forgetting_time=1e12)
+    config = EstimatorConfig(forgetting_time=1e12, wire_damping_std=0.0)
     wrong, right = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
     error = np.array([0.004, 3e4])
     rng = np.random.default_rng(4)
@@ -203,6 +214,32 @@ def test_the_sensitivity_is_what_a_sensor_error_does_to_the_state(kind, seed):
     assert (right.x - wrong.x)[:, 0] == pytest.approx(error @ wrong.sensitivity, rel=1e-6, abs=1e-9)
     root = wrong.sensitivity[:, FIRST_PARAMETER:] * np.array(SENSORS)[:, None]
     assert wrong.considered_covariance - wrong.phi_covariance == pytest.approx(root.T @ root, rel=1e-6, abs=1e-12)
+
+
+def test_the_sensitivity_is_what_another_damping_of_the_wire_does_to_the_state(seed):
+    """The compiled filter is held to this one below."""
+    wrong, right = some_filter(seed)[0], some_filter(seed)[0]
+    more, rng = 1e-6, np.random.default_rng(4)
+    for each in (wrong, right):
+        unbounded(each)
+    _, step = some_filter(seed)
+    for k in range(30):
+        wire = rng.normal(size=(3, ACTING)) * 0.1 + np.eye(3, ACTING)
+        opening = wire[STRETCH, :DAMPING] - np.eye(1, DAMPING, STRETCH)[0]
+        other = wire.copy()
+        other[:, :DAMPING] += more * np.outer(wire[:, DAMPING], opening)
+        for each, acting in ((wrong, wire), (right, other)):
+            friction = float(np.dot(step.by_parameters, seed.std * each.phi))
+            own = step._replace(wire=acting, friction=friction, by_sensors=(0.0, 0.0))
+            own = own._replace(torque=float(np.sin(k)))
+            each.predict_step(own, True, False)
+            if each is wrong:
+                gain = each._ahead_P.copy()
+            each._ahead_P[:] = gain  # that of a filter that does not know
+            innovation, variance = each.innovation(0.1 * k)
+            each.correct(innovation, variance, True)
+    found = (right.x - wrong.x)[:, 0] / more
+    assert wrong.sensitivity[-1] == pytest.approx(found, rel=1e-3, abs=1e-4 * np.abs(found).max())
 
 
 def from_the_prior(filters, seed):
@@ -229,7 +266,7 @@ def taught(filters, seed, step, count):
 
 def test_another_prior_is_as_if_it_had_been_there_from_the_start(kind, seed):
     """Two filters on the same data: one begins with the wide prior, the other takes it later."""
-    config = EstimatorConfig(forgetting_time=1e12)
+    config = EstimatorConfig(forgetting_time=1e12, wire_damping_std=0.0)
     early, late = some_filter(seed, config, kind=kind)[0], some_filter(seed, config, kind=kind)[0]
     _, step = some_filter(seed, kind=kind)
     for each in (early, late):

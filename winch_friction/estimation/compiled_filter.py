@@ -36,7 +36,16 @@ class CompiledFilter(StateFilter):
             *step.by_parameters, *step.by_sensors, 0.0,  # nothing acts on what the range has moved
         )  # fmt: skip
         self._kernel_ahead(
-            self._now, self._ahead, self._seen, self._wire, self._given, self._free, self._scale, self._by, self._rows
+            self._now,
+            self._ahead,
+            self._seen,
+            self._wire,
+            self._given,
+            self._free,
+            self._scale,
+            self._damping,
+            self._by,
+            self._rows,
         )
 
     def _see(self) -> tuple[float, float]:

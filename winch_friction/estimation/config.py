@@ -41,6 +41,7 @@ class EstimatorConfig:
     speed_delay_std: float = option(
         0.15, lower=0.0, upper=2.0, doc="what speed_delay may be off by, as a share of the time between two samples"
     )
+    wire_damping_std: float = option(0.3, lower=0.0, upper=2.0, doc="relative error of wire_damping, considered")
     # what the model does not know
     disturbance_std: float = option(10.0, lower=0.0, upper=1e5, unit="N*m", doc="torque that no term explains")
     disturbance_time: float = option(0.3, lower=0.001, upper=100.0, unit="s", doc="how long such a torque lasts")

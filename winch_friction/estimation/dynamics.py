@@ -24,8 +24,9 @@ from winch_friction.physics.winch.crane import Crane
 
 # the states; behind them stand the scaled parameters
 SPEED, STRETCH, LOAD_SPEED, LOAD, DISTURBANCE, ENCODER, ENCODER_CHANGE, FIRST_PARAMETER = range(8)
-# what drives shaft and wire over a step: their own three states, the torque at the shaft, the heave velocity
-TORQUE, HEAVE, ACTING = 3, 4, 5
+# what drives shaft and wire over a step: their own three states, the torque at the shaft, the heave velocity; and the
+# wire's damping, were it larger by its whole, for each metre that the wire opens meanwhile
+TORQUE, HEAVE, DAMPING, ACTING = 3, 4, 5, 6
 # the noises of a step, behind the states
 TORQUE_NOISE, HEAVE_NOISE, LOAD_SPEED_NOISE, LOAD_NOISE, DISTURBANCE_NOISE, ROUNDING_NOISE, NOISES = range(7)
 
@@ -36,7 +37,7 @@ UNKNOWN_LOAD_SPEED = 0.02  # m/s, of the load on it
 STIFFEST = 40.0  # rad/s; a wire of unknown stiffness is taken as this stiff against the hanging mass
 
 FreshState = tuple[int, float, float]  # which state, its value, its variance
-Wire = Sequence[Sequence[float]]  # (3, 5) in plain floats: half of its use is one number at a time
+Wire = Sequence[Sequence[float]]  # (3, 6) in plain floats: half of its use is one number at a time
 
 
 class Step(NamedTuple):
@@ -62,15 +63,16 @@ class Step(NamedTuple):
 
 
 def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: float, dt: float) -> Wire:
-    """What [omega, stretch, v_load, torque, heave velocity] make of the first three after `dt` s, (3, 5).
+    """What [omega, stretch, v_load, torque, heave velocity, opening] make of the first three after `dt` s, (3, 6).
 
     For a hanging mass in kg on `length` m of wire, damped by `damping` N s/m; without a mass the shaft is alone. The
     trapezoidal rule is the mid-point rule here: the force in the wire at mid-step follows from the states at its
-    start, and everything else from that force.
+    start, and everything else from that force. The last column is what a damping that is larger by its whole does to
+    first order, per m that the wire opens in this step.
     """
     inertia = crane.inertia
     if mass <= 0.0:
-        return (1.0, 0.0, 0.0, dt / inertia, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0)
+        return (1.0, 0.0, 0.0, dt / inertia, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     r = crane.drum.radius(layer) / crane.gear_ratio
     k = min(crane.wire_stiffness / length, mass * STIFFEST**2)
     half = 0.5 * dt
@@ -81,11 +83,11 @@ def wire_step(crane: Crane, mass: float, layer: float, length: float, damping: f
     pull = rate * stiff  # N s of force per m/s
     push = r * half / inertia  # m/s per N m
     at_shaft, at_load, spring = r / inertia, 1.0 / mass, dt * whole * k
-    shaft, load = at_shaft * pull, at_load * pull
+    shaft, load, more = at_shaft * pull, at_load * pull, whole * damping
     return (
-        (1.0 - shaft * r, -at_shaft * spring, shaft, dt / inertia - shaft * push, -shaft),
-        (rate * r, 1.0 - spring * soft, -rate, rate * push, rate),
-        (load * r, at_load * spring, 1.0 - load, load * push, load),
+        (1.0 - shaft * r, -at_shaft * spring, shaft, dt / inertia - shaft * push, -shaft, -at_shaft * more),
+        (rate * r, 1.0 - spring * soft, -rate, rate * push, rate, -soft * more),
+        (load * r, at_load * spring, 1.0 - load, load * push, load, at_load * more),
     )
 
 

@@ -15,12 +15,14 @@ import numpy as np
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.estimation.considered import ConsideredErrors
 from winch_friction.estimation.dynamics import (
+    DAMPING,
     ENCODER_CHANGE,
     FIRST_PARAMETER,
     HEAVE_NOISE,
     LOAD,
     NOISES,
     SPEED,
+    STRETCH,
     TORQUE_NOISE,
     FreshState,
     Propagation,
@@ -56,6 +58,7 @@ class StateFilter:
         self._factor = VarianceFactor(config.adaptation_time)
         self._phi = slice(FIRST_PARAMETER, size)
         self._sensors = np.array(sensors, float)
+        self._damping = len(sensors) - 1 if sensors and config.wire_damping_std > 0.0 else -1  # which of them
         self.considered = ConsideredErrors(self._sensors.tolist(), config.speed_delay_std > 0.0)
         # rows that go through the same linear steps: P with W on the diagonal behind it, the sensitivities, what the
         # parameters' range has moved, x; a sensor error and what is known to act enter where the noises do
@@ -149,6 +152,9 @@ class StateFilter:
         self._now.dot(matrix.T, out=self._half)
         matrix.dot(self._half_of_P, out=self._ahead_P)
         self._ahead_carried[:] = self._half_carried
+        if self._damping >= 0:
+            opened = self._ahead_carried.item(-1, STRETCH) - self._flat.item(STRETCH)
+            self._ahead_carried[self._damping, :LOAD] += [row[DAMPING] * opened for row in step.wire]
 
     def innovation(self, measured: float) -> tuple[float, float]:
         """Difference between a measured speed and the predicted one, rad/s, and its variance.

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from winch_friction.estimation.dynamics import (
+    DAMPING,
     DISTURBANCE,
     DISTURBANCE_NOISE,
     ENCODER,
@@ -24,6 +25,7 @@ from winch_friction.estimation.dynamics import (
     NOISES,
     ROUNDING_NOISE,
     SPEED,
+    STRETCH,
     TORQUE,
     TORQUE_NOISE,
 )
@@ -34,10 +36,11 @@ GIVEN_TORQUE, GIVEN_HEAVE, GIVEN_FADING, GIVEN_NOISES = range(4)
 GIVEN_GRADIENT = GIVEN_NOISES + NOISES
 
 
-def look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
+def look_ahead(now, ahead, seen, wire, given, free, scale, damping, by, half):
     """P, sensitivities and state one step on, into `ahead`; what the measured speed shows of each row, into `seen`.
 
-    `now`, `ahead`, `seen` as in `filter.StateFilter`; `wire` (3, 5); `given` as named above; `free` (m,), `scale` (m,);
+    `now`, `ahead`, `seen` as in `filter.StateFilter`; `wire` (3, 6); `given` as named above; `free` (m,), `scale` (m,);
+    which of the considered errors is the wire's `damping`, -1 for none;
     room for the torque's derivatives by the states, `by` (n,), and for three rows of F P, `half` (3, n).
     """
     n, parameters = ahead.shape[1], len(scale)
@@ -107,6 +110,10 @@ def look_ahead(now, ahead, seen, wire, given, free, scale, by, half):
             ahead[row, k] = carried[k]
         ahead[row, DISTURBANCE] *= fading
         ahead[row, ENCODER], ahead[row, ENCODER_CHANGE] = 0.0, -carried[ENCODER]
+    if damping >= 0:
+        opened = ahead[n + sensors, STRETCH] - now[NOISES + n + sensors, STRETCH]
+        for i in range(LOAD):
+            ahead[n + damping, i] += wire[i, DAMPING] * opened
     for row in range(n + sensors + 1):
         seen[row] = ahead[row, SPEED] + ahead[row, ENCODER_CHANGE]
 
@@ -146,6 +153,7 @@ def kernels() -> tuple[Any, Any]:
     Raises `ImportError` without numba, `RuntimeError` or `OSError` where nothing can be kept.
     """
     directory = str(cache_root() / f"filter_{source_digest(sorted(Path(__file__).parent.glob('*.py')))}")
-    ahead = f"void({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, int64[::1], {_VECTOR}, {_VECTOR}, {_MATRIX})"
-    taken = f"boolean({_MATRIX}, {_MATRIX}, {_VECTOR}, float64, float64, boolean, boolean, {_VECTOR}, {_VECTOR})"
+    rows, room = f"{_MATRIX}, {_MATRIX}, {_VECTOR}", f"{_VECTOR}, {_MATRIX}"
+    ahead = f"void({rows}, {_MATRIX}, {_VECTOR}, int64[::1], {_VECTOR}, int64, {room})"
+    taken = f"boolean({rows}, float64, float64, boolean, boolean, {_VECTOR}, {_VECTOR})"
     return compiled_in(directory, look_ahead, ahead), compiled_in(directory, take_in, taken)

@@ -1,4 +1,5 @@
-"""What constant errors of the sensors do to the torque that is left for friction to explain."""
+"""What constant errors of the sensors do to the torque that is left for friction to explain; and which of them, beside
+what a wire is not damped by as it is said to be, the filter considers."""
 
 from collections.abc import Callable, Sequence
 
@@ -25,7 +26,8 @@ class SensorErrors:
     three times a displacement's error. An offset between the two pressure lines of the driving group is a constant
     torque. A speed that is late sees the torque of before, by a share of what it changes by from one sample to the
     next. `std`: standard deviations of what there is, of a sample, relative (twice) and Pa: from the seed's corrections
-    where it has them, else from the configuration.
+    where it has them, else from the configuration; and the wire's damping, relative, which is no sensor's and acts
+    where the wire opens (`dynamics.DAMPING`).
     """
 
     def __init__(self, crane: Crane, seed: FrictionModel, config: EstimatorConfig) -> None:
@@ -38,9 +40,9 @@ class SensorErrors:
         for name in known:
             stated = [each.std for each in seed.corrections if each.name == name and each.std is not None]
             known[name] = max(stated, default=known[name]) if crane.drive.hydraulic else 0.0
-        self._late = config.speed_delay_std
+        self._late, self._damping = config.speed_delay_std, config.wire_damping_std
         self._displacement, self._pressure, self._offset = known.values()
-        self.std: Sequence[float] = tuple(each for each in (self._late, *known.values()) if each > 0.0)
+        self.std: Sequence[float] = tuple(each for each in (self._late, *known.values(), self._damping) if each > 0.0)
 
     def by(
         self, sample: Sample, drive: float, change: float, point: Point, friction: float, at: Callable[[Point], float]
@@ -58,6 +60,8 @@ class SensorErrors:
             found += (-drive - (at(_shifted(point, PRESSURE, self._pressure)) - friction) / self._pressure,)
         if self._offset:
             found += (self._by_offset(sample, point, friction, at),)
+        if self._damping:
+            found += (0.0,)
         return found
 
     def _by_offset(self, sample: Sample, point: Point, friction: float, at: Callable[[Point], float]) -> float:

@@ -1,6 +1,7 @@
 """Each small doubt of an input by itself: stamps, voices, a command that jumps, loads beside torques, what is held."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from sea import CRANE, TOPICS, swell
@@ -22,6 +23,7 @@ from winch_friction.online.doubt import LEAST_KNOWN, LONGEST_SPAN, MEMORY, Doubt
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES
+from winch_friction.records.crane_file import load_crane
 
 PERIOD = 0.02  # s
 RANGES = ChannelRanges(CRANE, TOPICS.groups)
@@ -171,6 +173,23 @@ def test_the_middle_of_both_ways_tells_a_load_cell_that_is_off(shown, doubted):
     said = hoisting_and_lowering([shown], 1.0)
     assert bool(said[-1]) is doubted
     assert not any(said[: round(1.6 * LEAST_KNOWN / PERIOD)]), "one way alone is no middle"
+
+
+@pytest.mark.parametrize("wrong", [1e3, -1e3])
+def test_a_torque_of_a_wrong_unit_is_doubted_as_long_as_it_is_wrong(wrong):
+    """An electric motor's torque has no range of its own: its mean of four seconds outweighed the right ones for
+    minutes, and nothing was fed forward meanwhile."""
+    crane = replace(load_crane("worm_drive"), rated_load=0.2)
+    own, held = LoadAgainstDrive(crane, ChannelRanges(crane, ())), crane.drum_torque(0.1) / crane.gear_ratio
+    found = []
+    for k in range(190):
+        time = 0.1 * k
+        factor = wrong if 12.0 <= time < 16.0 else 1.0
+        sample = Sample(time, 100.0 * (-1.0) ** (k // 30), motor_torque=factor * held, hook_load=0.1)
+        found.append(bool(own.contradiction(sample, 0.1)))
+    assert not any(found[:125])
+    assert all(found[135:160])
+    assert not any(found[175:])
 
 
 def test_on_an_inner_layer_the_load_is_compared_at_its_own_radius():

@@ -221,6 +221,7 @@ class LoadAgainstDrive:
     def __init__(self, crane: Crane, ranges: ChannelRanges, assumed: float = math.nan) -> None:
         self._crane, self.assumed = crane, assumed
         self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
+        self._largest = ranges.load + MOST_FRICTION * self._rated  # kg
         self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
         self._hoisting, self._lowering = _Way(), _Way()
         self._by = ""  # what showed the load last
@@ -254,9 +255,11 @@ class LoadAgainstDrive:
         if not math.isfinite(drive - load):
             return None, None
         by_friction = (drive - load) * sample.motor_speed > 0.0
-        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
         # a worm that holds its load by itself leaves an electric motor nothing of it lowering; its middle is the load
         at_once = self._differ(load, drive, lever, by_friction) if self._crane.drive.hydraulic else None
+        if abs(drive) > lever * self._largest:  # no load asks for it: a wrong unit, which a mean keeps for minutes
+            return at_once, True
+        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
         return at_once, self._middles_differ(sample, lever)
 
     def _tells(self, sample: Sample) -> bool:

@@ -14,7 +14,7 @@ _TAGS = ("MotorSpeed", "PressureA", "PressureB", "Displacement", "HookLoad", "Wi
 def kinds() -> list[Kind]:
     """Every program."""
     return [
-        Kind("WinCC archive, a row per value", wincc, ("row per value",)),
+        Kind("WinCC archive, a row per value", wincc),
         Kind("TIA Portal trace", tia_trace),
         Kind("TwinCAT Scope", twincat),
         Kind("DASYLab", dasylab),
@@ -23,7 +23,7 @@ def kinds() -> list[Kind]:
         Kind("spreadsheet with two header rows and serial dates", merged),
         Kind("Unicode text of a spreadsheet", lambda run, folder: put([row + "\t" for row in lines(comma(table(run, EN)), "\t")], folder / "log.txt", "utf-16", "\r\n")),
         Kind("spreadsheet of texts", xlsx_of_texts),
-        Kind("InfluxDB annotated", influx, ("row per value",)),
+        Kind("InfluxDB annotated", influx),
         Kind("Grafana with units in cells", grafana),
         Kind("PlotJuggler", lambda run, folder: put(lines([("__time", [f"{1772359200.0 + t:.6f}" for t in run.time]), *((f"/winch/{h}", c) for h, c in table(run, EN)[1:])]), folder / "log.csv")),
         Kind("HTML under another name", html, ("HTML",)),
@@ -41,8 +41,8 @@ def wincc(run: Run, folder: Path) -> list[Path]:
     rows = ["VarName;TimeString;VarValue;Validity;Time_ms"]
     columns = table(run, EN)
     for k, time in enumerate(run.time):
-        when, ms = f"{stamp(time):%d.%m.%Y %H:%M:%S}", 46082.416 + time / 86400.0
-        rows += [f'"{tag}";"{when}";{cells[k].replace(".", ",")};1;{1e6 * ms:.6f}'.replace(".0;", ";") for tag, (_, cells) in zip(_TAGS, columns[1:], strict=False)]  # fmt: skip
+        when, ms = f"{stamp(time):%d.%m.%Y %H:%M:%S}", f"{1e6 * (46082.416 + time / 86400.0):.6f}".replace(".", ",")
+        rows += [f'"{tag}";"{when}";{cells[k].replace(".", ",")};1;{ms}' for tag, (_, cells) in zip(_TAGS, columns[1:], strict=False)]  # fmt: skip
     return put([*rows, '"$RT_COUNT$";12;;;'], folder / "log.csv")
 
 

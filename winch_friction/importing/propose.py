@@ -16,12 +16,12 @@ from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.own_clocks import CLOCKS
 from winch_friction.importing.reading import read_log
+from winch_friction.importing.rows_of_values import names_of_signals
 from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.time_columns import settle_time
 from winch_friction.importing.twins import ask_twins
 from winch_friction.importing.unit_guess import settle_units
 from winch_friction.importing.units import (
-    CHANNEL_UNITS,
     ambiguity,
     fitting_si_unit,
     header_readings,
@@ -35,7 +35,7 @@ from winch_friction.records.run_checks import SPARSE, rows_between
 
 _CLOCKS_SAID = "log.clocks="
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
-_SIGNALS, _NAMED = 500, 0.5  # names of one archive; how well a name must fit a channel
+_NAMED = 0.5  # how well a name must fit a channel
 _POOLED = 20_000  # values of each log that are looked at together
 
 
@@ -133,17 +133,12 @@ def _refuse_different_names(draft: Draft) -> None:
 def _refuse_rows_of_values(draft: Draft) -> None:
     """A controller's archive or a database that writes a row per value, with the signal's name beside it."""
     log = draft.logs[0]
-    for column in log.columns:
-        cells = [str(each).strip() for each in column.text] if column.text is not None else []
-        names = dict.fromkeys(cells)
-        if not 2 <= len(names) <= min(_SIGNALS, len(cells) // 5):
-            continue
-        spoken = [c for name in names if (c := name_concepts(name))]
-        if sum(any(name_score(ch, c) > _NAMED for ch in CHANNEL_UNITS if ch != "time") for c in spoken) >= 2:
-            draft.problems.append(
-                f"{log.path.name} has a row per value, of the signals that '{column.name}' names "
-                f"({listed(list(names)[:5])}): export or pivot it to a column per signal"
-            )
+    found = names_of_signals(log)
+    if found is not None:
+        draft.problems.append(
+            f"{log.path.name} has a row per value, of the signals that '{found[0].name}' names "
+            f"({listed(found[1][:5])}), and no surely told times and values: export or pivot it to a column per signal"
+        )
 
 
 def _pooled(logs: Sequence[Log]) -> Log:

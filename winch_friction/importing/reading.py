@@ -6,6 +6,7 @@ from typing import Any
 
 from winch_friction.importing.log import Log, without_bad_values
 from winch_friction.importing.own_clocks import with_own_clocks
+from winch_friction.importing.rows_of_values import with_column_per_signal
 from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import BAG_SUFFIXES, is_bag
 
@@ -26,13 +27,15 @@ _INSTEAD = {
 
 
 def read_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
-    """A log of any kind, without the values that it calls bad itself, on one clock.
+    """A log of any kind, without the values that it calls bad itself, a column per signal, on one clock.
 
-    Raises `InputError` in one line for what is missing, empty or of no known kind. Without
-    `settings` it is found out whether its columns have clocks of their own.
+    Raises `InputError` in one line for what is missing, empty or of no known kind. Without `settings` it is found out
+    whether its signals have clocks of their own.
     """
+    clocks = "" if settings is None else str(settings.get("clocks", "one"))
     log = without_bad_values(_read(path, settings))
-    return with_own_clocks(log, "" if settings is None else str(settings.get("clocks", "one")))
+    by_signal = with_column_per_signal(log, clocks)
+    return with_own_clocks(log, clocks) if by_signal is log else by_signal
 
 
 def _read(path: Path, settings: Mapping[str, Any] | None) -> Log:

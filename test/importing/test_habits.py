@@ -1,5 +1,7 @@
 """Single habits of strangers' logs: each of these was once refused, read wrongly, or ended in a traceback."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from importing.logs import write_workbook
@@ -10,6 +12,7 @@ from winch_friction.importing.carry_out import import_log, open_with_map
 from winch_friction.importing.cells import is_number
 from winch_friction.importing.mapping import Entry, LogMap
 from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.orientation import _settle_load
 from winch_friction.importing.text_log import read_text_log
 from winch_friction.importing.units import header_readings
 from winch_friction.importing.workbook_log import read_workbook_log
@@ -159,3 +162,27 @@ def test_a_frozen_pressure_is_told_only_of_the_port_that_holds_the_load(crane_15
     ]
     assert not stuck({})  # a boost pressure that a simulation holds
     assert stuck({"main.pressure_a": 150e5 * steady})[0].channel == "main.pressure_a"
+
+
+@pytest.mark.parametrize(("empty", "turned"), [(-20.0, []), (-60e3, [-1])])
+def test_a_load_is_turned_where_it_is_negative_throughout(empty, turned):
+    """A cell whose zero is a bit low shows less than nothing while nothing hangs."""
+    loads, signs = np.repeat([empty, 55e3 if not turned else -55e3], 500), []
+    draft = SimpleNamespace(
+        converted=lambda: [SimpleNamespace(columns={"hook_load": loads})],
+        change=lambda _, **to: signs.append(to["sign"]),
+    )
+    _settle_load(draft)
+    assert signs == turned
+
+
+@pytest.mark.parametrize("properties", [(), ("Length", "Minimum", "Maximum", "Offset", "Factor", "Mean:")])
+def test_labelled_properties_of_columns_are_no_values(properties, tmp_path):
+    """Of `Length; 3000` in the column of the time it was said that the time goes back by 3000 s."""
+    head = ["Name;Zeit;Drehzahl;pA", "Unit;s;1/min;bar", *(f"{each};3000;3000;3000" for each in properties)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([*head, *(f"{'brake off' * (k == 0)};{k},5;7,5;100,5" for k in range(50))]) + "\n")
+    columns = read_text_log(path).columns[1:]
+    assert [(each.name, each.unit, each.values[0], len(each.values)) for each in columns] == [
+        ("Zeit", "s", 0.5, 50), ("Drehzahl", "1/min", 7.5, 50), ("pA", "bar", 100.5, 50)
+    ]  # fmt: skip

@@ -18,6 +18,22 @@ _TYPES = frozenset({
     "int", "int16", "int32", "int64", "dint", "uint", "word", "dword", "l", "long", "s", "str", "string", "text",
     "b", "bool", "boolean",
 })  # fmt: skip  # how programs say what kind of value a column holds
+STATISTICS = frozenset({
+    "mittelwert", "mittel", "minimum", "maximum", "min", "max", "mean", "average", "avg", "std", "stdev", "stddev",
+    "sum", "total", "summe", "standardabweichung", "median", "gjennomsnitt", "middelverdi", "snitt", "standardavvik",
+    "rms", "count", "anzahl",
+})  # fmt: skip  # what a row of its columns' statistics begins with
+_PROPERTIES = STATISTICS | {
+    "length",
+    "länge",
+    "lengde",
+    "offset",
+    "factor",
+    "faktor",
+    "scale",
+    "startwert",
+    "start value",
+}
 _ABOVE = 5  # rows above the values among which names and units are looked for
 
 Row = Sequence[Any]
@@ -54,7 +70,10 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
     marks = decimal, thousands
     while first + run < len(seen) and _labels_values(seen[first], seen[first + 1 : first + 1 + run], *marks):
         first += 1
-    above = [k for k in range(max(0, first - _ABOVE), first) if _is_heading(seen[k], width, *marks, len(seen[first]))]
+    top = first
+    while first + 1 < len(seen) and _is_property(seen[first], seen[-1]):
+        first += 1
+    above = [k for k in range(max(0, top - _ABOVE), first) if _is_heading(seen[k], width, *marks, len(seen[first]))]
     units = next((k for k in reversed(above) if _is_unit_row(seen[k])), -1)
     if units < 0:  # a program's head: a property a row, each behind its label
         head = range(max(0, first - _HEAD), first)
@@ -76,6 +95,12 @@ def _labels_values(row: Row, below: Sequence[Row], decimal: str, thousands: str)
         if not is_missing(cell) and not is_value(cell) and all(k < len(b) and is_value(b[k]) for b in below)
     ]  # fmt: skip
     return len(words) > 1 and len(words) >= _LABELS * len(row)
+
+
+def _is_property(row: Row, last: Row) -> bool:
+    """Whether a row is a property of each column behind its label (`Length; 3000; 3000`), where rows of values have
+    none: their first cell is empty."""
+    return str(row[0] or "").strip().casefold().rstrip(" :.=") in _PROPERTIES and is_missing(last[0])
 
 
 def _is_time_alone(row: Row, decimal: str, thousands: str) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from winch_friction.importing.cells import NO_VALUE, as_column, is_number, is_time, plain_numbers
 from winch_friction.importing.group_names import with_groups
-from winch_friction.importing.layout import Layout
+from winch_friction.importing.layout import STATISTICS, Layout
 from winch_friction.importing.log import LogColumn, unique_names
 from winch_friction.importing.text_rows import TextRows
 from winch_friction.importing.units import bare_unit, looks_like_unit
@@ -17,11 +17,6 @@ from winch_friction.physics.signals import FloatArray
 
 _BLOCK = 4096  # rows cut at once: a few MB of cells
 FEW = 0.5  # of the columns: what has more cells is a row, whatever its first one says
-_SUMMARY = frozenset({
-    "mittelwert", "mittel", "minimum", "maximum", "min", "max", "mean", "average", "avg", "std", "stdev", "stddev",
-    "sum", "total", "summe", "standardabweichung", "median", "gjennomsnitt", "middelverdi", "snitt", "standardavvik",
-    "rms", "count", "anzahl",
-})  # fmt: skip  # what a row of its columns' statistics begins with
 _TOGETHER = 4  # columns of other cells than plain numbers that are kept whole at a time
 
 
@@ -59,7 +54,7 @@ class Body:
         if not self._valued or not first or first[0].isdigit() or first.lower() in NO_VALUE:
             return False
         few = sum(bool(cell.strip()) for cell in row) <= FEW * self.width
-        return (few or first.casefold().rstrip(" :.=") in _SUMMARY) and not _is_value(first, self._marks)
+        return (few or first.casefold().rstrip(" :.=") in STATISTICS) and not _is_value(first, self._marks)
 
     def blocks(self) -> Iterator[list[list[str]]]:
         """The rows, all of one width, a block at a time."""

@@ -37,7 +37,7 @@ def test_shipped_models_name_their_crane():
     [
         ({"name": "crane_50t"}, "made for crane 'crane_150t'"),
         ({"gear_ratio": 180.0}, "gear ratio is 250, the crane's 180"),
-        ({"max_displacement": 170 * CM3_PER_REV}, "largest displacement is 3.4218e-05 m"),
+        ({"max_displacement": 170 * CM3_PER_REV}, "largest displacement is 215 cm^3/rev, the crane's 170"),
         ({"drive": Drive("electric")}, "need pressures, the crane's drive is electric"),
     ],
 )

@@ -222,8 +222,12 @@ def test_all_numbers_that_no_winch_has_are_said_at_once():
     assert len(caught.value.problems) == 2
 
 
-def test_unknown_name_lists_what_is_shipped():
-    with pytest.raises(InputError, match="shipped: crane_150t, emps"):
+def test_unknown_name_lists_what_is_shipped(tmp_path, monkeypatch):
+    with pytest.raises(InputError, match="did you mean crane_150t.* shipped: crane_150t, emps"):
+        load_crane("crane_15t")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "crane_15t.yaml").write_text("")
+    with pytest.raises(InputError, match=r"did you mean the file crane_15t\.yaml\? shipped"):
         load_crane("crane_15t")
 
 

@@ -268,7 +268,6 @@ def shipped(kind: str, name: str | Path, suffix: str = ".yaml") -> Path:
     candidate = folder / f"{name}{suffix}"
     if candidate.is_file():
         return candidate
-    known = sorted(each.stem for each in folder.glob(f"*{suffix}"))
-    raise InputError(
-        f"'{name}' is neither a file nor a shipped name in {kind};{meant(str(name), known)} shipped: {', '.join(known)}"
-    )
+    known, own = sorted(each.stem for each in folder.glob(f"*{suffix}")), Path(f"{name}{suffix}")
+    near = f" did you mean the file {own}?" if own.is_file() else meant(str(name), known)
+    raise InputError(f"'{name}' is neither a file nor a shipped name in {kind};{near} shipped: {', '.join(known)}")

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all, compiled
 from winch_friction.physics.friction.correction import Correction, check_corrections
@@ -264,12 +265,13 @@ def contradictions(model: FrictionModel, crane: Crane) -> list[str]:
     found = []
     if model.crane and crane.name and model.crane != crane.name:
         found.append(f"it was made for crane '{model.crane}'")
-    names = {"gear_ratio": ("gear ratio", ""), "max_displacement": ("largest displacement", " m^3/rad")}
+    names = {"gear_ratio": ("gear ratio", "", 1.0),
+             "max_displacement": ("largest displacement", " cm^3/rev", CM3_PER_REV)}  # fmt: skip
     for name, value in _of_machine(crane).items():
         said = model.constants.get(name, value)
         if abs(said - value) > SAME * value:
-            words, unit = names[name]
-            found.append(f"its {words} is {said:.5g}{unit}, the crane's {value:.5g}{unit}")
+            words, unit, size = names[name]
+            found.append(f"its {words} is {said / size:.5g}{unit}, the crane's {value / size:.5g}{unit}")
     hydraulic = [term.name for term in model.terms if term.reads_groups]
     if hydraulic and not crane.drive.hydraulic:
         found.append(f"its terms {', '.join(hydraulic)} need pressures, the crane's drive is {crane.drive.kind}")

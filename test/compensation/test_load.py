@@ -46,11 +46,12 @@ def test_a_measured_rope_force_is_the_load_where_no_hook_load_is(crane_150t):
     assert each.value(both) == pytest.approx(crane_150t.drum_torque(20e3, 6.0))
 
 
-def test_a_rope_force_that_this_crane_cannot_hold_is_no_input(crane_150t):
+@pytest.mark.parametrize(("channel", "usual"), [("rope_force", 30e3 * GRAVITY), ("hook_load", 30e3)])
+def test_a_load_that_this_crane_cannot_hold_is_no_input(crane_150t, channel, usual):
     needs = Needs(ChannelRanges(crane_150t), {"drum_torque"}, "measured", load_known=False)
     sample = balanced(crane_150t, 30e3, 0.0, 0.0)
-    assert needs.missing(replace(sample, rope_force=30e3 * GRAVITY)) == ()
-    assert needs.missing(replace(sample, rope_force=1e8)) == ("rope_force",)
+    assert needs.missing(replace(sample, **{channel: usual})) == ()
+    assert needs.missing(replace(sample, **{channel: 1e8})) == (channel,)
 
 
 def test_a_load_cell_comes_first_then_the_setting(crane_150t):

@@ -300,6 +300,8 @@ def test_another_prior_takes_back_what_the_range_had_moved(kind, seed):
     for each in (free, held):
         each.change_prior(lambda each=each: each.parameters.widen(range(each.parameters.size)))
     assert held.x == pytest.approx(free.x, rel=1e-6, abs=1e-8)
+    held.change_prior(lambda: None)
+    assert held.x == pytest.approx(free.x, rel=1e-6, abs=1e-8)  # and once is enough
 
 
 def test_what_is_taken_anew_was_moved_by_no_range(kind, seed):

@@ -50,12 +50,13 @@ def test_a_foreign_recording_is_proposed_and_imported(tmp_path, crane_150t):
     assert same(back, run, ["motor_speed", "main.pressure_a", "main.pressure_b", "main.displacement", "hook_load"])
 
 
-def test_numbers_of_messages_within_messages_are_signals(tmp_path):
-    """A speed in a TwistStamped was not read, and not said to be left out."""
+@pytest.mark.parametrize(("stamped", "taken"), [(99.9, 99.9), (0.0, 100.0)])
+def test_numbers_of_messages_within_messages_are_signals(stamped, taken, tmp_path):
+    """A speed in a TwistStamped was not read, and not said to be left out. A stamp far off dates nothing."""
     kind = "geometry_msgs/msg/TwistStamped"
     with BagWriter(tmp_path / "bag") as bag:
         for k in range(5):
-            header = stamp_header(100.0 + 0.02 * k, MESSAGES)
+            header = stamp_header(stamped + 0.02 * k, MESSAGES)
             vectors = {
                 each: MESSAGES.make("geometry_msgs/msg/Vector3", x=1.0 * k, y=0.0, z=0.0)
                 for each in ("linear", "angular")
@@ -66,6 +67,7 @@ def test_numbers_of_messages_within_messages_are_signals(tmp_path):
     assert log.column("/winch/twist:twist.angular.x").unit == "rad/s"
     assert log.column("/winch/twist:twist.linear.x").unit == "m/s"
     assert log.column("/winch/twist:twist.angular.x").values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert log.column("time").values == pytest.approx(taken + 0.02 * np.arange(5))
     assert not [each.name for each in log.columns if "stamp" in each.name]
     assert not [each.name for each in log.columns if each.name.endswith((".y", ".z"))]
     assert any("zero throughout" in each and "/winch/twist:twist.angular.y" in each for each in log.notes)

@@ -8,8 +8,11 @@ import pytest
 from importing.logs import example, write_workbook
 
 from winch_friction.importing.carry_out import import_log
+from winch_friction.importing.log import Log, number_column
 from winch_friction.importing.map_text import map_text
 from winch_friction.importing.mapping import load_map
+from winch_friction.importing.one_clock import Signal, on_one_clock
+from winch_friction.importing.own_clocks import with_own_clocks
 from winch_friction.importing.propose import propose
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
@@ -256,3 +259,41 @@ def test_what_the_map_says_of_clocks_is_held_against_the_log(tmp_path, crane_150
         import_log(plain, found.log_map, crane_150t)
     with pytest.raises(InputError, match=r"'log\.clocks=two': write one of one, held, lines"):
         propose([log], crane_150t, "crane_150t", ("log.clocks=two",))
+
+
+def two_clocks(times, values) -> Log:
+    """A speed every 0.1 s, and a pressure at these times, with a value each."""
+    fill = np.full(100 - len(times), np.nan)
+    cells = {
+        "Speed Time [s]": 0.1 * np.arange(100), "Speed [rpm]": np.arange(100.0),
+        "Pressure Time [s]": np.append(times, fill), "Pressure [bar]": np.append(values, fill),
+    }  # fmt: skip
+    return Log(Path("log.csv"), tuple(number_column(*each) for each in cells.items()), {}, str)
+
+
+def test_rows_of_a_clock_that_stand_out_of_order_are_sorted():
+    times, values = 0.1 * np.arange(90.0), np.arange(90.0) ** 2
+    turned = np.arange(90)
+    turned[40:42] = 41, 40
+    ordered, sorted_ = (
+        with_own_clocks(two_clocks(times[order], values[order])).column("Pressure [bar]").values
+        for order in (np.arange(90), turned)
+    )
+    assert sorted_.tolist() == ordered.tolist()
+
+
+def test_clocks_that_share_no_time_are_not_put_on_one():
+    """A second recording below or beside the first; what is between them nobody knows."""
+    times = 0.1 * np.arange(90.0)
+    assert len(with_own_clocks(two_clocks(times + 5.0, times)).columns) == 3
+    apart = two_clocks(times + 50.0, times)
+    assert with_own_clocks(apart) is apart
+
+
+@pytest.mark.parametrize("lines", [False, True])
+def test_nothing_is_known_before_a_signals_first_value(lines):
+    signals = [
+        Signal(name, np.arange(9.0), times=first + 0.1 * np.arange(9)) for name, first in (("a", 0.0), ("b", 0.3))
+    ]
+    (_, _, late), _ = on_one_clock(signals, lines)
+    assert late.values == pytest.approx([np.nan] * 3 + [*range(6)], nan_ok=True)

@@ -8,6 +8,7 @@ from importing.logs import GERMAN, example, rows_of, write_text
 
 from winch_friction.cli.main import run
 from winch_friction.importing.balance import opposes_motion
+from winch_friction.importing.kinematics import Ratio, rope_over_motor
 
 
 @pytest.fixture
@@ -86,3 +87,13 @@ def test_a_row_without_a_time_hides_no_friction(crane_150t):
     told = opposes_motion(columns, crane_150t)
     columns["time"][100] = np.nan
     assert opposes_motion(columns, crane_150t) == pytest.approx(told, rel=0.1)
+
+
+def test_a_heave_that_the_winch_follows_tells_sign_and_size_of_its_speed(crane_150t):
+    """Up goes the tip, out goes the wire."""
+    time = 0.1 * np.arange(600)
+    heave = 0.8 * np.sin(time)
+    speed = -heave * crane_150t.gear_ratio / crane_150t.drum.layer_radii[-1]
+    for sign in (1.0, -1.0):
+        found = rope_over_motor({"time": time, "motor_speed": sign * speed, "heave_velocity": heave}, crane_150t)
+        assert found == Ratio(pytest.approx(sign), "heave_velocity")

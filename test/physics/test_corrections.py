@@ -391,6 +391,8 @@ def test_what_a_running_node_cannot_take_out_is_accepted_once_it_is_over(truth, 
             assert corrector.past == {"signal_delay": 999.0}
             assert corrector.standing(now) == ()
             assert corrector.standing(5.0) == ("signal_delay",)
+            apart = tuple(Correction("signal_delay", 0.05, during=(each,)) for each in windows)
+            assert SampleCorrector(crane_150t, replace(model, corrections=apart), since=now).past == corrector.past
         else:
             with pytest.raises(InputError, match="signal_delay"):
                 SampleCorrector(crane_150t, model, since=now)

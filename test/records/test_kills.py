@@ -66,6 +66,28 @@ def test_files_that_belong_together_come_at_once(tmp_path: Path) -> None:
     assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"a.json": "new", "b.yaml": "new"}
 
 
+def test_of_files_that_belong_together_the_mark_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that is killed between them has said whose the folder is."""
+    moved, replaced = list[str](), os.replace
+    monkeypatch.setattr(os, "replace", lambda one, two: (moved.append(Path(two).name), replaced(one, two)))
+    with together(tmp_path, "gap.json") as place:
+        for name in ("addition.csv", "gap.json", "model.yaml"):
+            (place / name).write_text("new")
+    assert moved == ["gap.json", "addition.csv", "model.yaml"]
+
+
+def test_others_may_read_what_the_writer_s_mask_lets_them(tmp_path: Path) -> None:
+    """A node of another user loads the model; its temporary file was nobody's but the writer's."""
+    before = os.umask(0o027)
+    try:
+        with atomic_path(tmp_path / "run.parquet") as temporary:
+            temporary.write_bytes(b"new")
+        write_text(tmp_path / "model.yaml", "new")
+    finally:
+        os.umask(before)
+    assert {each.stat().st_mode & 0o777 for each in tmp_path.iterdir()} == {0o640}
+
+
 def test_an_error_leaves_the_old_file_alone(tmp_path: Path) -> None:
     path = write_text(tmp_path / "a.txt", "old")
 

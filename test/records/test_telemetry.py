@@ -27,6 +27,13 @@ def test_points_are_spaced_and_in_the_units_that_people_read():
     assert telemetry.frame()["points"] == {}
 
 
+def test_a_clock_that_is_set_back_silences_no_signal():
+    telemetry = Telemetry()
+    for time in (100.0, 10.0, 10.01, 10.06):
+        telemetry.take("winch/joint_states", joint(time, velocity=[1.0]))
+    assert [time for time, _ in telemetry.frame()["points"]["speed"]] == [100.0, 10.0, 10.06]
+
+
 def test_a_plain_number_of_a_bridge_is_dated_by_its_receipt():
     telemetry = Telemetry()
     telemetry.take("winch/joint_states", Message(data=104.7198), 7.0)

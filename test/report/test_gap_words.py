@@ -1,5 +1,6 @@
 """What the page of `gap` says in sentences: each is to be understood without the others, and says what to do."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,15 @@ from own_term_files import TERM, forgotten, own_terms
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import load_file
-from winch_friction.report.gap_words import amount_in_units, next_steps, shape_in_words, verdict_sentence
+from winch_friction.report import gap as page
+from winch_friction.report.gap_words import (
+    amount_in_units,
+    how_sure,
+    next_steps,
+    shape_in_words,
+    top_speed_change,
+    verdict_sentence,
+)
 
 LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
 
@@ -101,3 +110,40 @@ def test_names_that_no_scenario_tells_apart_are_said_to_be_so():
     """The terminal said it, the page did not."""
     first, *_ = next_steps(result("ambiguous", effects=[effect("gear_asymmetry", "layer_radius")]))
     assert first == "No scenario at hand tells these names apart: measure what only one of them changes."
+
+
+def test_the_weakest_effect_says_how_sure_all_are():
+    effects = [SimpleNamespace(p_value=p, selection_frequency=f) for p, f in ((1e-5, 0.99), (0.03, 0.61), (1e-4, 0.9))]
+    assert how_sure(SimpleNamespace(effects=effects)) == "chance finding p = 0.03; named first in 61 % of redrawn data"
+
+
+def side(name, speed, change, before=(2.0, (1.5, 2.5)), after=(0.5, (0.25, 0.75))):
+    """Runs of one side, blocks at these speeds in rad/s of which the repair takes `change` bar off."""
+    blocks = SimpleNamespace(run=np.zeros(len(speed), int), features={"motor_speed": speed}, y=speed)
+    sizes = {key: SimpleNamespace(value=value, interval=interval)
+             for key, (value, interval) in (("size_before", before), ("size_after", after))}  # fmt: skip
+    return SimpleNamespace(runs=[SimpleNamespace(name=name, unit_torque=10.0)], blocks=blocks, before=change,
+                           after=0.0 * change, noise_floor=0.2, **sizes)  # fmt: skip
+
+
+def test_the_change_at_top_speed_is_that_of_the_fastest_blocks():
+    speed = np.linspace(1.0, 100.0, 100)
+    found = SimpleNamespace(unit="bar", train=side("a", speed, np.where(speed > 85.0, 4.0, 1.0)),
+                            holdout=side("b", speed, np.where(speed > 85.0, -4.0, 1.0)))  # fmt: skip
+    assert top_speed_change(found).startswith("40 N·m = 4 bar above 86")
+
+
+def test_the_proof_names_the_locked_runs_and_says_what_each_file_leaves(monkeypatch):
+    speed = np.ones(3)
+    found = SimpleNamespace(
+        unit="bar", train=side("learned.csv", speed, speed), holdout=side("locked.csv", speed, speed)
+    )
+    for name in ("speed_plot", "plot_html", "_runs"):
+        monkeypatch.setattr(page, name, lambda *_: "")
+    said = page._proof(found)
+    assert "Locked before anything else was looked at: locked.csv." in said
+    assert re.findall(r">([^<>]+)</t[dh]>", said)[-9:] == [
+        "model as given", "2", "1.5 … 2.5",
+        "model.yaml, read back", "0.5", "0.25 … 0.75",
+        "independent noise", "0.2", "–",
+    ]  # fmt: skip

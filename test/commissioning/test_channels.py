@@ -147,3 +147,13 @@ def test_an_angle_that_stands_with_the_winch_is_not_stuck(during, stuck, crane_1
     angle = np.cumsum(np.where(rest, 0.0, speed)) * 0.02
     found = channel_findings(Run("r", {"time": time, "motor_speed": speed, "shaft_angle": angle}))
     assert [each.channel for each in found if each.cause == "stuck" and each.channel == "shaft_angle"] == stuck
+
+
+@pytest.mark.parametrize(("digit", "coarse"), [(0.0, False), (1e-4, False), (0.05, True), (0.1465, True)])
+def test_a_channel_has_steps_where_its_changes_share_one_and_noise_has_none(digit, coarse):
+    """Of white noise of 0.2 bar `check` said that it has steps of 0.0175 bar, 82 over its range."""
+    values = 20.0 + np.random.default_rng(7).normal(0.0, 0.2, 5000)
+    values = np.round(np.round(values / digit) * digit, 4) if digit else values
+    run = Run("r", {"time": 0.02 * np.arange(5000), "main.pressure_b": 1e5 * values})
+    notes = [each.sentence for each in channel_findings(run) if each.cause == "quantisation"]
+    assert [each.partition(" has steps of ")[2].partition(" bar")[0] for each in notes] == [f"{digit:.4g}"] * coarse

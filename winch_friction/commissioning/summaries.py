@@ -14,6 +14,9 @@ from winch_friction.physics.channels import LIMITS
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 
 COARSE = 200.0  # steps over a channel's range; fewer are coarse
+# of the changes, those that are the smallest one, of a digit: a twentieth and more, for so it is found; of noise a
+# twenty-fifth of that is as near. Relative: what a file rounds a digit to
+IN_STEPS, ROUNDED = 0.03, 0.02
 SATURATED = 0.02  # of the samples at one extreme value of a moving channel
 STUCK = 3.0  # s without any change in a channel that otherwise changes at every sample
 MAY_SATURATE = ("pressure_a", "pressure_b", "motor_speed", "motor_torque", "motor_current")
@@ -81,7 +84,7 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
     if each.longest_still > STUCK and _changes_always(values) and not _rests(run, each):
         said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"
         yield Finding("warning", "stuck", said, each.channel, (run.name,), {"seconds": each.longest_still})
-    if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS:
+    if each.step > 0.0 and span / each.step < COARSE and kind in LIMITS and _in_steps(values, each.step):
         steps = f"steps of {read_as(each.channel, each.step, of_size=True)}, {span / each.step:.0f} over its range"
         said = f"{run.name}: {each.channel} has {steps}"
         yield Finding("note", "quantisation", said, each.channel, (run.name,), {"step": each.step})
@@ -91,6 +94,12 @@ def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Findin
             often = f"in {100 * share:.1f} % of the samples: saturated?"
             said = f"{run.name}: {each.channel} is at {read_as(each.channel, extreme)} {often}"
             yield Finding("warning", "saturation", said, each.channel, (run.name,), {"share": share})
+
+
+def _in_steps(values: FloatArray, step: float) -> bool:
+    """Whether this smallest change is a digit, which many changes are, and not one of noise, of which no two are."""
+    changes = np.abs(np.diff(values[np.isfinite(values)]))
+    return float(np.mean(np.abs(changes[changes > 0.0] - step) <= ROUNDED * step)) > IN_STEPS
 
 
 def _rests(run: Run, each: ChannelSummary) -> bool:

@@ -67,6 +67,16 @@ def test_every_cell_that_is_no_number_is_named_up_to_three_a_column(tmp_path):
     assert "57 more like it in this column" in found[3]
 
 
+def test_a_time_that_is_no_number_is_said_once(tmp_path):
+    """A second line said of it that it is no time, with another advice."""
+    (cell,) = problems_of(table(tmp_path / "run.csv", cells={(50, 0): "abc"}))
+    assert cell.endswith("line 50, column 'time [s]': 'abc' is not a number; fill it in or remove the row")
+    whole = problems_of(table(tmp_path / "run.csv", cells={(line, 0): f"{line} s" for line in range(2, 202)}))
+    assert all("import reads other ways of writing" in each for each in whole)
+    found = problems_of(table(tmp_path / "run.csv", cells={(50, 0): "abc", (90, 0): "0.1", (70, 0): ""}))
+    assert sorted(int(re.search(r"line (\d+)", each)[1]) for each in found) == [50, 70]
+
+
 def test_lines_of_another_width_are_named_up_to_three(tmp_path):
     found = problems_of(table(tmp_path / "run.csv", cut=(5, 7, 9, 11, 13)))
     assert [re.search(r"line (\d+)", each)[1] for each in found] == ["5", "7", "9"]

@@ -263,6 +263,10 @@ def _numbers(path: Path, header: Header, cells: _Cells, place: Place, problems: 
         at = [f"{path}: {place(row)}, column '{header.text}': '{text.strip()[:40]}'" for row, text in bad[:_SHOWN]]
         foreign = len(bad) == len(numbers) or _number(bad[0][1].replace(",", ".")) is not None
         advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
+        if header.name == "time":  # which no row is without; between its neighbours, for what else is wrong with it
+            advice = advice if foreign else "fill it in or remove the row"
+            rows, lost = np.arange(len(numbers)), [row for row, _ in bad]
+            numbers[lost] = np.interp(lost, np.delete(rows, lost), np.delete(numbers, lost)) if not foreign else lost
         if all(_number(text.replace("_", "")) is not None for _, text in bad[:_SHOWN]):
             advice = "write it without '_'"
         said = [f"{each} is not a number; {advice}" for each in at]

@@ -36,6 +36,20 @@ def test_a_speed_of_the_drum_is_turned_by_the_gear_and_one_of_the_motor_by_its_i
         assert told[words].undo(view).speed == pytest.approx(factor * view.speed)
 
 
+@pytest.mark.parametrize(
+    ("rates", "names"),
+    [(("wire_out",), None), (("shaft_angle",), "motor_speed and shaft_angle"),
+     (("speed_reference", "shaft_angle"), "motor_speed, speed_reference and shaft_angle")],
+)  # fmt: skip
+def test_a_sign_of_several_channels_is_that_of_those_that_are_there(rates, names, crane_150t):
+    """Of a log without a command or an angle `check` said that it was hardly to be told from these being turned too."""
+    view = seen(np.linspace(1.0, 2.0, 50), rates={name: np.ones(50) for name in rates})
+    said = [
+        m.words.partition("the sign of ")[2].partition(" is flipped")[0] for m in fixed_mistakes([view], crane_150t, {})
+    ]
+    assert [each for each in said if each.startswith("motor_speed")] == ["motor_speed", *([names] if names else [])]
+
+
 def test_a_channel_in_numbers_says_what_share_of_it_is_missing():
     values = np.array([1.0, np.nan, 3.0, np.nan])
     (said,) = summaries(Run("r", {"time": np.arange(4.0), "wire_out": values}))

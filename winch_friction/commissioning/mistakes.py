@@ -47,6 +47,7 @@ SPEED_UNITS = (
     (1.0 / 60.0, "rpm under [1/s]"),
     (_TURN / 360.0, "deg/s under [rad/s]"), (1.0 / 6.0, "deg/s under [rpm]"),
 )  # fmt: skip
+SHAFT = ("speed_reference", "shaft_angle", "drum_speed")  # what one logger turns with the motor's speed
 DISPLACEMENT_UNITS = (
     (_TURN, "cm^3/rad under [cm^3/rev]"), (1.0 / _TURN, "cm^3/rev under [cm^3/rad]"), (1e3, "l/rev under [cm^3/rev]"),
     (1e-6, "cm^3/rad under [m^3/rad]"), (CM3_PER_REV, "cm^3/rev under [m^3/rad]"), (1e-3, "mm^3/rev under [cm^3/rev]"),
@@ -140,10 +141,10 @@ def _displacement_table(crane: Crane) -> tuple[tuple[float, str], ...]:
 def _signs(views: Sequence[RunView], groups: tuple[str, ...], crane: Crane) -> Iterator[Mistake]:
     said = "the sign of motor_speed is flipped: positive must mean hoisting"
     yield Mistake("sign", "motor_speed", said, SIGN, speed_times(-1.0), -1.0)
-    if any(view.rates for view in views):
-        said = "the sign of motor_speed, speed_reference and shaft_angle is flipped: positive must mean hoisting"
-        undo = speeds_times(-1.0, "speed_reference", "shaft_angle", "drum_speed")
-        yield Mistake("sign", "motor_speed", said, SIGN + 1.0, undo, -1.0)
+    if also := [name for name in SHAFT if any(name in view.rates for view in views)]:
+        names = " and ".join(", ".join(("motor_speed", *also)).rsplit(", ", 1))
+        said = f"the sign of {names} is flipped: positive must mean hoisting"
+        yield Mistake("sign", "motor_speed", said, SIGN + 1.0, speeds_times(-1.0, *also), -1.0)
     if any(_told_direction(view) is not None for view in views):
         said = "motor_speed has no sign: lowering must be negative"
         yield Mistake("sign", "motor_speed", said, SIGN, _signed)

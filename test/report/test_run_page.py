@@ -28,6 +28,19 @@ def test_range_mean_and_missing_samples_of_every_channel():
     assert [rows["hook_load"][key] for key in shown] == ["t", *map(pytest.approx, (5.0, 7.0, 6.0)), 2]
 
 
+@pytest.mark.parametrize(("begin", "unit", "least"), [(0.0, "s", 0.0), (7.5, "s", 7.5), (1.7e9, None, 0.0)])
+def test_a_time_has_no_mean_and_counts_from_its_date(begin, unit, least):
+    """`plot` said 1.7e+09 s of the least, the largest and the mean; and -3e-16 rpm of a winch that goes to and fro."""
+    swing = np.sin(np.pi * np.arange(200) / 100.0)
+    time, speed = channel_rows(Run("r", {"time": begin + np.arange(200.0), "motor_speed": swing}))
+    assert time["unit"] == (unit or "s from 2023-11-14 22:13 UTC")
+    assert (time["least"], time["largest"], np.isnan(time["mean"])) == (least, least + 199.0, True)
+    assert swing.mean() != 0.0
+    assert speed["mean"] == 0.0
+    rope = Run("r", {"time": np.arange(200.0), "motor_speed": swing + 1e-3})
+    assert channel_rows(rope)[1]["mean"] == pytest.approx(1e-3 * 30.0 / np.pi)
+
+
 def test_what_is_drawn_is_in_the_unit_of_its_label():
     columns = run_plot(RUN).frames[0].columns
     assert columns["main.pressure_a [bar]"][:3] == pytest.approx([100.0, 200.0, 300.0])

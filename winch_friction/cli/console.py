@@ -58,4 +58,6 @@ def _plain(value: Any) -> str:
 
 
 def _cell(value: Any) -> str:
+    if isinstance(value, float) and value != value:
+        return "–"  # as on the pages: there is none
     return f"{value:.4g}" if isinstance(value, float) else escape(str(value))  # [s] is a unit, no markup

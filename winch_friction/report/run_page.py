@@ -14,7 +14,9 @@ from winch_friction.physics.winch.crane import run_drum_torque
 from winch_friction.physics.winch.operating_point import run_operating_points
 from winch_friction.report.base import TextSection, write_report
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
-from winch_friction.report.tables import for_people, table_html, value_for_people
+from winch_friction.report.tables import estimate_for_people, for_people, table_html, value_for_people
+
+ROUNDING = 1e-12  # of a channel's range: a mean of less is what is left of its sum
 
 
 # a broken sensor's 1e300 is shown as it stands; what is made of it may leave the range of numbers, in silence
@@ -31,23 +33,28 @@ def write_run_page(path: Path, runs: Sequence[Run], crane: Crane | None, model: 
 
 
 def channel_rows(run: Run) -> list[dict[str, Any]]:
-    """Range, mean and missing samples of every channel, in the units people read."""
+    """Range, mean and missing samples of every channel, in the units people read; a Unix time from its date on."""
     rows = []
     for name, values in run.columns.items():
         good = np.asarray(values, float)
         good = good[np.isfinite(good)].astype(np.longdouble)  # whose sum has room
         unit = run.units[name]
+        said, begin = for_people(unit), 0.0
+        if name == "time" and good.size:
+            dated = estimate_for_people(float(good[0]), 0.0, unit)[0]
+            said, begin = (f"{said} from {dated}", good[0]) if isinstance(dated, str) else (said, begin)
         least, most, mean = (
-            value_for_people(float(f(good)), unit) if good.size else float("nan") for f in (np.min, np.max, np.mean)
+            value_for_people(float(f(good - begin)), unit) if good.size else float("nan")
+            for f in (np.min, np.max, np.mean)
         )
         rows.append(
             {
                 "run": run.name,
                 "channel": name,
-                "unit": for_people(unit),
+                "unit": said,
                 "least": least,
                 "largest": most,
-                "mean": mean,
+                "mean": float("nan") if name == "time" else 0.0 if abs(mean) < ROUNDING * (most - least) else mean,
                 "missing [samples]": len(run) - len(good),
             }
         )

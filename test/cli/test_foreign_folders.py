@@ -126,7 +126,8 @@ def test_what_a_killed_search_has_left_is_its_own(tmp_path):
     died = subprocess.run([sys.executable, "-c", DYING, str(tmp_path), *words], capture_output=True, check=False)
     assert died.returncode == -signal.SIGKILL
     assert [each.name for each in tmp_path.iterdir() if each.name[0] != "."] == ["gap.json"]
-    (tmp_path / "proposal_7.py").write_text("of an earlier call")
+    for old in ("proposal_7.py", "proposal_7.yaml", "report.html", "addition.csv"):
+        (tmp_path / old).write_text("of an earlier call")
     assert run([*words, "--overwrite"]) == 0
     found = json.loads((tmp_path / "gap.json").read_text())["next_experiment"]
     assert {each.name for each in tmp_path.iterdir()} == {"gap.json", "model.yaml", found["scenario"]}

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-import shutil
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -72,21 +72,11 @@ def test_the_repaired_model_is_a_model_file(folder):
     assert model.provenance["repaired_by"] == "winch-friction gap"
 
 
-@pytest.mark.browser
-def test_the_report_opens_offline_without_console_errors(folder):
-    browser = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
-    if browser is None:
-        pytest.skip("no Chromium is installed")
-    page = folder / "out" / "report.html"
-    text = page.read_text(encoding="utf-8")
-    assert "http://" not in text.replace("http://www.w3.org", "") or 'src="http' not in text
-    opened = subprocess.run(
-        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--v=0",
-         f"--user-data-dir={folder / 'profile'}", "--dump-dom", page.as_uri()],
-        capture_output=True, text=True, timeout=120, check=True,
-    )  # fmt: skip
-    assert "Proof on locked runs" in opened.stdout
-    assert "CONSOLE" not in opened.stderr
+def test_the_page_holds_all_that_it_needs(folder):
+    """It is opened without a network in test/browser; this says what it would ask for."""
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Proof on locked runs" in page
+    assert re.findall(r"""(?:src|href)=["']?(?:https?:|//)[^"'> ]*|url\(["']?(?:https?:|//)|@import""", page) == []
 
 
 def test_a_users_own_effect_needs_one_declaration(tmp_path):

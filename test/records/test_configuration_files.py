@@ -112,7 +112,6 @@ def test_a_wrong_model_is_one_clear_line(change, message):
     with pytest.raises(InputError, match=message) as caught:
         model_from_text(edited(change), "model.yaml")
     assert "\n" not in str(caught.value)
-    assert "model" in str(caught.value) or "friktion" in str(caught.value)
 
 
 @pytest.mark.parametrize("text", ["{", "- 1", "", "\t x: 1", "a: *b"])
@@ -151,18 +150,15 @@ def test_a_key_that_stands_in_a_merged_mapping_too_overrules_it():
 
 
 def test_repetitions_that_make_a_billion_entries_are_refused_and_others_taken(monkeypatch):
-    assert strict_yaml.MOST_UNFOLDED == 100_000
-    monkeypatch.setattr(strict_yaml, "MOST_UNFOLDED", 20_000)  # to read a hundred thousand takes seconds
-    lists = "a: &a0 [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
-        f"b{k}: &a{k} [{','.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 4)
-    )
-    assert len(parse_yaml(lists, "here")["b3"]) == 10
-    more = lists + "b4: &a4 [*a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3, *a3]\n"
-    with pytest.raises(InputError, match="here: its repetitions .* more than 20000 entries"):
+    monkeypatch.setattr(strict_yaml, "MOST_UNFOLDED", 1000)  # a hundredth of them, in a hundredth of the time
+    lists = "a: &a0 [1,1,1,1,1,1,1,1,1,1]\nb1: &a1 [*a0, *a0, *a0, *a0, *a0, *a0, *a0, *a0, *a0, *a0]\n"
+    assert len(parse_yaml(lists, "here")["b1"]) == 10
+    more = lists + "b2: &a2 [*a1, *a1, *a1, *a1, *a1, *a1, *a1, *a1, *a1, *a1]\n"
+    with pytest.raises(InputError, match="here: its repetitions .* more than 1000 entries"):
         parse_yaml(more, "here")
     with pytest.raises(InputError, match="here: its repetitions"):
         parse_yaml("a: &a {b: *a}", "here")
-    assert len(parse_yaml(f"a: [{'1,' * 20_001}]", "here")["a"]) == 20_001  # long, and nothing repeated
+    assert len(parse_yaml(f"a: [{'1,' * 1001}]", "here")["a"]) == 1001  # long, and nothing repeated
 
 
 @pytest.mark.parametrize(

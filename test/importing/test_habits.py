@@ -176,6 +176,17 @@ def test_a_load_is_turned_where_it_is_negative_throughout(empty, turned):
     assert signs == turned
 
 
+@pytest.mark.parametrize("head", [(), ("crane 7", "logged by Kim, at sea")])
+def test_commas_between_marks_that_cut_every_line_are_of_decimals(head, tmp_path):
+    """Of one value a row, `;N;-461,8` was cut at the comma: half of the cells were numbers then, and a third before."""
+    rows = [f"2026-05-13 08:00:{k % 60:02d}.{k:03d};N;-461,{k}" for k in range(100)]
+    (tmp_path / "log.csv").write_text("\n".join([*head, "Zeit;Signal;Wert", *rows]) + "\n")
+    time, _, value = read_text_log(tmp_path / "log.csv").columns
+    assert (time.name, value.name, value.values[7]) == ("Zeit", "Wert", -461.7)
+    (tmp_path / "log.csv").write_text("\n".join(["t,n,p", *(f"{k},{k % 7},150;" for k in range(100))]) + "\n")
+    assert [each.name for each in read_text_log(tmp_path / "log.csv").columns] == ["t", "n", "p"]
+
+
 @pytest.mark.parametrize("properties", [(), ("Length", "Minimum", "Maximum", "Offset", "Factor", "Mean:")])
 def test_labelled_properties_of_columns_are_no_values(properties, tmp_path):
     """Of `Length; 3000` in the column of the time it was said that the time goes back by 3000 s."""

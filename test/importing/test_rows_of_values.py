@@ -61,6 +61,7 @@ def test_each_signal_becomes_a_column_at_its_own_times(kind):
     assert pressure[5] == pytest.approx(0.5)
     assert log.settings["clocks"] == "held"
     assert any("a row per value, of the 2 signals that 'Tag' names" in each for each in log.notes)
+    assert any("UTC where no zone is given" in each for each in log.notes) is kind.startswith("dates")
 
 
 def test_a_whole_columns_unit_is_each_signals_where_no_other_is_said():

@@ -12,7 +12,7 @@ import numpy as np
 from winch_friction.importing.log import Log, LogColumn
 from winch_friction.importing.names import name_concepts, name_score
 from winch_friction.importing.one_clock import Signal, draws_lines, on_one_clock
-from winch_friction.importing.time_base import guess_form, to_seconds
+from winch_friction.importing.time_base import TimeBase, guess_form, to_seconds
 from winch_friction.importing.time_names import is_clock_of
 from winch_friction.importing.units import CHANNEL_UNITS
 from winch_friction.physics.errors import counted
@@ -56,9 +56,10 @@ def with_column_per_signal(log: Log, said: str = "") -> Log:
     cells, units = _words(column), [_words(c) for c in log.columns if c.text is not None and _UNIT.match(c.name)]
     rows = {name: np.flatnonzero((cells == name) & np.isfinite(value.values)) for name in names if name}
     rows = {name: at for name, at in rows.items() if len(at) > 1}
-    seconds = _seconds(log, value, list(rows.values()))
-    if seconds is None or len(rows) < 2:
+    told = _seconds(log, value, list(rows.values()))
+    if told is None or len(rows) < 2:
         return log
+    seconds, base = told
     signals = []
     for name, at in rows.items():
         at = at[np.argsort(seconds[at], kind="stable")]
@@ -70,6 +71,8 @@ def with_column_per_signal(log: Log, said: str = "") -> Log:
         row, cell = value.bad[0]
         many = counted(len(value.bad), "cell is no number", "cells are no numbers")
         notes.append(f"column '{value.name}': {many}, first {log.place(row)} '{cell}': left out")
+    if base.zone:
+        notes.append(f"dates of the order {base.order}, {base.zone} where no zone is given")
     notes.append(f"a row per value, of the {len(rows)} signals that '{column.name}' names: a column for each")
     return replace(
         log, columns=tuple(columns), settings={**log.settings, "clocks": "lines" if lines else "held"},
@@ -88,8 +91,9 @@ def _value(log: Log) -> LogColumn | None:
     return left[0] if len(left) == 1 and left[0].numeric else None
 
 
-def _seconds(log: Log, value: LogColumn, rows: Sequence[np.ndarray]) -> FloatArray | None:
-    """The time of every row, s, NaN where it has none; None where no clock tells the rows (of each signal) apart."""
+def _seconds(log: Log, value: LogColumn, rows: Sequence[np.ndarray]) -> tuple[FloatArray, TimeBase] | None:
+    """The time of every row, s, NaN where it has none, and how it is told; None where no clock tells the rows (of each
+    signal) apart."""
     clocks = [each for each in log.columns if each is not value and is_clock_of(each)[0]]
     for clock in sorted(clocks, key=lambda each: each.numeric):  # dates first: they have no unit to be mistaken in
         guess = guess_form([clock], is_clock_of(clock)[1])
@@ -98,7 +102,7 @@ def _seconds(log: Log, value: LogColumn, rows: Sequence[np.ndarray]) -> FloatArr
         seconds = to_seconds([clock], guess.base, "time", log.place, strict=False)
         for finer in (seconds, *(_finer(each, seconds) for each in clocks if each.numeric)):
             if finer is not None and all(_tells_apart(finer[at]) for at in rows):
-                return finer
+                return finer, guess.base
     return None
 
 

@@ -25,6 +25,7 @@ _WESTERN = ("cp1252", "latin-1")  # what any bytes can be read as
 _HEAD_LINES, _ACCENTED = 5, 0.4  # lines with the names; of letters: no Western language has a fifth of them accented
 _MOST_COLUMNS = 1000  # no winch log has more
 _DELIMITERS = (";", ",", "\t", "|")
+_CUT = 0.95  # of the lines, that a mark between columns cuts alike; what is left is a preamble
 
 
 def read_text_log(path: Path, settings: Mapping[str, Any] | None = None) -> Log:
@@ -144,11 +145,18 @@ def _delimiter(lines: Sequence[str]) -> str:
         return lines[0].strip().strip('"')[4:5] or ";"
     sample = [line for line in lines[: 2 * SEEN] if line.strip()][-SEEN:]
     best, delimiter = 0.0, " "
-    for each in (*_DELIMITERS, " "):
+    by_others = any(_cuts_all(sample, each) for each in _DELIMITERS if each != ",")  # commas then are of decimals
+    for each in (*(each for each in _DELIMITERS if not (each == "," and by_others)), " "):
         score = _delimiter_score(sample, each)
         if score > best:
             best, delimiter = score, each
     return delimiter
+
+
+def _cuts_all(sample: Sequence[str], delimiter: str) -> bool:
+    """Whether a mark cuts nearly every line into as many cells, two or more of them with something in it."""
+    widths = Counter(len(row) for row in (_cut(line, delimiter) for line in sample) if sum(map(bool, row)) > 1)
+    return bool(widths) and widths.most_common(1)[0][1] >= _CUT * len(sample)
 
 
 def _delimiter_score(sample: Sequence[str], delimiter: str) -> float:

@@ -9,7 +9,7 @@ import pytest
 from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.engine.chance import Size
-from winch_friction.discrepancy.next_experiment import insufficient, of_runs, of_wire, with_what_was_seen
+from winch_friction.discrepancy.next_experiment import insufficient, of_own_terms, of_runs, of_wire, with_what_was_seen
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
@@ -215,3 +215,22 @@ def test_runs_that_lack_something_say_what_was_seen_of_them_all_the_same(crane_1
     assert said.holdout is lacking.holdout  # of the model that is written, which is the given one
     assert said.notes[0] == "a note"
     assert [("0.306 bar" in note) for note in said.notes[1:]] == [True] * (not named)
+
+
+@pytest.mark.parametrize(
+    ("named", "values", "said"),
+    [
+        (["stribeck"], {"C1": 0.0, "C3": 1.0}, "too much of it: C1 0.02 becomes 0, C3 "),
+        (["stribeck"], {"C1": 0.03}, "something else of it: C1 0.02 becomes 0.03, C3 "),
+        (["coulomb", "churning"], {"C1": 0.0}, None),
+    ],
+)
+def test_a_named_term_that_the_given_model_has_is_not_missing(crane2_model, named, values, said):
+    """A model with Stribeck friction met a winch without: `missing_effect: stribeck` with a negative amount, alone."""
+    given = crane2_model.with_values({**crane2_model.as_dict(), "C1": 0.02, "C3": 2.0})
+    effects = [SimpleNamespace(name=name, law_name="") for name in named]
+    written = given.with_values({**given.as_dict(), **values})
+    notes = of_own_terms(SimpleNamespace(effects=effects, model=written), given)
+    assert [f"stribeck: the given model has this term already and says {said}" in each for each in notes] == (
+        [True] if said else []
+    )

@@ -175,6 +175,22 @@ def of_runs(sides: Sequence[Side]) -> list[str]:
     ]
 
 
+def of_own_terms(result: GapResult, given: FrictionModel) -> list[str]:
+    """What becomes of a named law's term that the given model has already: it is not missing, but too small or too
+    large."""
+    found, before, after = [], given.as_dict(), result.model.as_dict()
+    named = {each.law_name or each.name for each in result.effects}
+    for term in given.terms:
+        sizes = [each.name for each in term.parameters if not each.shape]
+        if term.name not in named or not sizes or not set(sizes) <= set(after):
+            continue
+        told = ", ".join(f"{name} {before[name]:.3g} becomes {after[name]:.3g}" for name in sizes)
+        less = all(abs(after[name]) <= abs(before[name]) for name in sizes)
+        which = "says too much of it" if less else "says something else of it"
+        found.append(f"{term.name}: the given model has this term already and {which}: {told}")
+    return found
+
+
 # -- where the runs cannot answer
 def insufficient(
     checks: Sequence[Check], notes: Sequence[str], crane: Crane, model: FrictionModel,

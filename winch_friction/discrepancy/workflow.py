@@ -28,6 +28,7 @@ from winch_friction.discrepancy.expansion import Given, meet, swings
 from winch_friction.discrepancy.next_experiment import (
     NextExperiment,
     insufficient,
+    of_own_terms,
     of_runs,
     of_wire,
     plan_experiment,
@@ -100,6 +101,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             trial = again.by_runs(study, trial)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result, notes = assemble(study, trial), [*notes, *not_borne_out(search, trial.search)]
+    notes += of_own_terms(result, model)
     if result.verdict == UNEXPLAINED:
         notes += of_wire(given) + of_runs((result.train, result.holdout))
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)

@@ -186,6 +186,42 @@ def test_a_level_falls_by_a_run_in_and_grows_again_by_wear():
     assert [shape.values["tau_wb"] for shape in tried.shapes(runs)] == pytest.approx([100.0, 200.0, 400.0])
 
 
+@pytest.mark.parametrize(("name", "shares"), [
+    ("wear_under_load", {"since the first run": (0.0, 1.0), "around the middle of the dates": (-0.5, 0.5)}),
+    ("wear_under_load_run_in", {"t_wr = 1000, tau_wr = 100": (1.0, 0.0)}),
+    ("wear_under_load_sudden", {"t_we = 1500": (0.0, 1.0)}),
+])  # fmt: skip
+def test_what_carries_the_load_wears_in_proportion_to_it(name, shares):
+    """A dry contact loses a coefficient of friction times its load: a worn sheave is no worn seal."""
+    (tried,) = [each for each in module.literature() if each.law_name == name]
+    assert (tried.name, tried.presumes, tried.linear[0].unit) == ("wear_drift", ("gear_load_loss",), "1")
+    starts = (1000.0, 1200.0, 1700.0, 1900.0)
+    runs = [SimpleNamespace(start=at, time=np.array([0.0, 100.0]), load=np.full(2, at)) for at in starts]
+    assert tried.blind(runs) is None
+    assert tried.blind(runs[2:]) is not None  # at one load it is a wear like any other
+    shapes = {shape.label: shape.values for shape in tried.shapes(runs)}
+
+    def torque(label, at, load):
+        values = {p.symbol: shapes[label].get(p.name, 0.02) for p in tried.term.parameters}
+        return float(tried.term.equation.subs(
+            {**values, symbols.time: at, symbols.T_d: load, symbols.gear_ratio: 250.0}))  # fmt: skip
+
+    assert len(tried.linear) == 1  # with two amounts it would be a loss that does not change as well
+    for label, (first, last) in shares.items():
+        assert torque(label, 1000.0, 5e5) == pytest.approx(0.02 * first * 5e5 / 250.0)
+        assert torque(label, 2000.0, 5e5) == pytest.approx(0.02 * last * 5e5 / 250.0, abs=0.01)
+        assert torque(label, 1400.0, 1e6) == pytest.approx(2.0 * torque(label, 1400.0, 5e5))
+    if name == "wear_under_load":  # a line that began long before is hardly a drift
+        assert set(shapes) == set(shares)
+
+
+def test_a_wear_under_load_is_drawn_either_way_under_a_name_of_its_own():
+    own = [row for row in CURVES if row.cause == "wear_drift"]
+    assert [(row.shape, row.presumes) for row in own if row.times == (LOAD,)] == [
+        ("rising", ("gear_load_loss",)), ("falling", ("gear_load_loss",))]  # fmt: skip
+    assert len({module.name_of(row) for row in own}) == len(own) == 5
+
+
 def test_a_length_adds_by_steps_as_well():
     """A sinker that leaves the deck, a load that enters the water: not ever more with the wire paid out."""
     own = [row for row in module.SURFACES if row.cause == "tare_load"]

@@ -25,33 +25,37 @@ from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.friction.table import FACTORS, Table, outlined, tabulated
 
 TEMPERATURES = (15.0, 30.0, 50.0)  # degC, at which a model's viscous terms may hold
-STRIBECK = (4.0, 8.0, 16.0, 32.0)  # rad/s, octaves from 40 to 300 rpm
-DECAYS = (3.0, 8.0, 20.0)  # rad/s
+STRIBECK, DECAYS = (4.0, 8.0, 16.0, 32.0), (3.0, 8.0, 20.0)  # rad/s, the first in octaves from 40 to 300 rpm
 AGEING = (0.1, 0.4, 1.6)  # 1/s, from a second to ten of rest
 ONSETS = (60e5, 100e5, 150e5, 200e5)  # Pa, from a third of a motor's nominal pressure to beyond its half
 POWERS, FLOWS, EACH_WAY = (0.5, 1.5, 2.0, 3.0), (1.0, 1.75, 2.0), (-1.0, -0.5, 0.0, 0.5, 1.0)
 ONE_WAY, PORT = tuple(b for b in EACH_WAY if b), ("n_po", "m_po")  # as a line: the three are one at one displacement
 FAR = 30.0  # typical sizes: normalised powers have the size of the machine, which differs by more than ten
-OIL, HUNG = ("oil_temperature",), ("hook_load", "wire_out")
+OIL, HUNG, CARRYING = ("oil_temperature",), ("hook_load", "wire_out"), ("gear_load_loss",)
 RESOLVED = {"oil_temperature": 1.0, "time": 1.0}  # K and s, of signals whose zero means nothing
 
 
 def literature() -> list[Candidate]:
     """The other laws of the literature, under the names of their causes."""
-    wear, line = partial(_of, "wear_drift", presumes=COULOMB), partial(_of, "line_pressure_drop")
+    oil, line = partial(_of, "viscosity_temperature", needs=OIL), partial(_of, "line_pressure_drop")
+    wear, since = partial(_of, "wear_drift", presumes=COULOMB), friction.between_runs
+    worn = partial(_of, "wear_drift", presumes=CARRYING, blind=friction.one_load)
+    layers = partial(_of, "layer_radius", needs=("hook_load", "wire_layer"), blind=friction.one_load)
     return [
-        _of("viscosity_temperature", "viscosity_reference", {"T_vw": TEMPERATURES}, needs=OIL, continuous=("T_vw",)),
-        _of("viscosity_temperature", "viscosity_vogel", {"T_vv": TEMPERATURES, "B_vv": (550.0, 1100.0)}, needs=OIL),
-        _of("viscosity_temperature", "viscosity_exponential", {"T_ve": TEMPERATURES, "b_ve": (0.022, 0.045)},
-            needs=OIL),
-        _of("viscosity_temperature", "viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK[1:]}, needs=OIL),
-        _of("viscosity_temperature", "viscosity_each_way", {"T_vu": TEMPERATURES}, needs=OIL, continuous=("T_vu",)),
+        oil("viscosity_reference", {"T_vw": TEMPERATURES}, continuous=("T_vw",)),
+        oil("viscosity_vogel", {"T_vv": TEMPERATURES, "B_vv": (550.0, 1100.0)}),
+        oil("viscosity_exponential", {"T_ve": TEMPERATURES, "b_ve": (0.022, 0.045)}),
+        oil("viscosity_hersey", {"T_vh": TEMPERATURES, "C4_h": STRIBECK[1:]}),
+        oil("viscosity_each_way", {"T_vu": TEMPERATURES}, continuous=("T_vu",)),
         *(_of("stribeck", f"stribeck_{curve}", {f"v_{curve[0]}": STRIBECK}) for curve in ("gauss", "lorentz")),
         _of("dwell_stiction", "dwell_by_speed", {"g_dv": AGEING, "v_dv": DECAYS}, reversal_gain=0.1,
             reversal_rival=True),
         _of("presliding", "presliding", {"d_z": (0.3, 1.0, 3.0)}, law_name="over a long travel", plausible=6.0),
         wear("wear_saturating", shapes=friction.lags("t_ws", "tau_ws", (0.08, 0.25, 0.7))),
-        *(_of(x, "wear_sudden", presumes=COULOMB, shapes=friction.between_runs) for x in ("wear_drift", "brake_drag")),
+        *(_of(x, "wear_sudden", presumes=COULOMB, shapes=since("t_wd")) for x in ("wear_drift", "brake_drag")),
+        worn("wear_under_load", shapes=friction.observed_time("t_wt", "tau_wt", 2)),  # gears and sheaves, as seals do
+        worn("wear_under_load_run_in", shapes=friction.lags("t_wr", "tau_wr", (0.1, 0.2, 0.4, 0.8))),
+        worn("wear_under_load_sudden", shapes=since("t_we")),
         _of("brake_drag", "brake_each_way", presumes=COULOMB),
         wear("wear_logarithmic", shapes=friction.lags("t_wl", "tau_wl", (0.003, 0.03, 0.2))),
         wear("wear_bathtub", shapes=friction.lags("t_wb", "tau_wb", (0.1, 0.2, 0.4))),
@@ -87,10 +91,8 @@ def literature() -> list[Candidate]:
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
             needs=("hook_load",), blind=friction.one_load),
-        _of("layer_radius", "layer_bedding", {"n_lb": (1.5, 2.0)}, needs=("hook_load", "wire_layer"),
-            blind=friction.one_load),
-        _of("layer_radius", "layer_yielding", {"n_ly": (1.0, 1.5, 2.0), "m_ly": (0.5, 2.0)},
-            needs=("hook_load", "wire_layer"), blind=friction.one_load),
+        layers("layer_bedding", {"n_lb": (1.5, 2.0)}),
+        layers("layer_yielding", {"n_ly": (1.0, 1.5, 2.0), "m_ly": (0.5, 2.0)}),
         _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
             blind=friction.no_load),
     ]  # fmt: skip
@@ -144,9 +146,8 @@ LEFT = "displacement_left"  # a test seldom holds many displacements: how a loss
 CURVES = (
     Free("viscosity_temperature", ("oil_temperature",), (SPEED,), shape="falling", anchor="high", needs=OIL),
     Free("stribeck", (SPEED,), (LOAD,), shape="falling", anchor="high", knots=LIMITS.stribeck_knots),
-    Free("wear_drift", ("time",), presumes=COULOMB),
-    Free("wear_drift", ("time",), shape="falling", presumes=COULOMB),
-    Free("wear_drift", ("time",), shape="convex_rising", presumes=COULOMB),
+    *(Free("wear_drift", ("time",), shape=each, presumes=COULOMB) for each in ("rising", "falling", "convex_rising")),
+    *(Free("wear_drift", ("time",), (LOAD,), shape=each, presumes=CARRYING) for each in ("rising", "falling")),
     Free("low_displacement_loss", (SWASH,), (PRESSURE,), Scope.MOTOR, "falling", "high"),
     Free("low_displacement_loss", (SWASH,), (), Scope.MOTOR, "falling", "high"),
     Free("low_displacement_loss", (PRESSURE,), (LEFT,), Scope.MOTOR, "convex_rising"),
@@ -226,7 +227,8 @@ def name_of(row: Free) -> str:
     parts = [f"free_{row.cause}", *row.times[:1]]
     parts += row.signals if len(row.signals) > 1 else ()
     parts += [row.side] if row.side != "both" else []
-    bent = {"falling": not row.times, "convex_rising": row.cause == "wear_drift", "rising": row.cause == "tare_load"}
+    worn, hung = (row.cause == cause for cause in ("wear_drift", "tare_load"))
+    bent = {"falling": worn or not row.times, "convex_rising": worn, "rising": hung}
     return "_".join([*parts, row.shape.partition("_")[0]] if bent.get(row.shape) else parts)
 
 
@@ -242,9 +244,7 @@ def shapes_over(cause: str, signal: str) -> set[str]:
 
 def bending(table: Table) -> FloatArray | None:
     """Quadratic form of a curve's coefficients that grows with every change of its slope, shape (intervals,
-    intervals); None for what is no curve of one signal.
-
-    Where no run has been, a curve goes on as it went; fitted freely it would go anywhere.
+    intervals); None for what is no curve of one signal. Fitted freely it would go anywhere where no run has been.
     """
     if len(table.knots) != 1 or table.shape == "windows":
         return None

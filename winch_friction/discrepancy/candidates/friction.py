@@ -67,7 +67,7 @@ def shipped_friction() -> list[Candidate]:
         _of("gear_asymmetry", {"b_g": (0.0,)}, blind=no_load),
         _of("gear_load_loss", plain=True, blind=no_load),
         _of("sheave_bending", presumes=("gear_load_loss",), blind=no_load),
-        _of("wear_drift", shapes=_observed_time, presumes=COULOMB),
+        _of("wear_drift", shapes=observed_time("t_w", "tau_w"), presumes=COULOMB),
         _of("low_displacement_loss"),
         _of("port_turbulence", {"n_t": (1.5, 2.0, 2.5)}),
         _of("notch_loss"),
@@ -160,15 +160,20 @@ def _one_stribeck(at: Values, own: Values) -> Mapping[str, float]:
     return {"C1": float(max(best[0], 0.0)), "C3": float(max(best[1], 0.0)), "C4": float(best[2])}
 
 
-def _observed_time(runs: Sequence[PreparedRun]) -> list[Shape]:
-    begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
-    span = max(end - begin, 1.0)
-    return [
-        Shape("since the first run", {"t_w": begin, "tau_w": span}),
-        Shape("around the middle of the dates", {"t_w": begin + 0.5 * span, "tau_w": span}),
-        Shape("since well before the first run", {"t_w": begin - 0.5 * span, "tau_w": span}),
-        Shape("since long before the first run", {"t_w": begin - span, "tau_w": span}),
-    ]
+def observed_time(at: str, over: str, most: int = 4) -> Shapes:
+    """Straight lines over the dates, by where they are zero, in lengths of the observed time; the first `most`, for
+    of those that began long before the first run little is a drift and most a constant."""
+    zeros = {
+        "since the first run": 0.0, "around the middle of the dates": 0.5, "since well before the first run": -0.5,
+        "since long before the first run": -1.0,
+    }  # fmt: skip
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        begin, end = min(run.start for run in runs), max(run.start + run.time[-1] for run in runs)
+        span = max(end - begin, 1.0)
+        return [Shape(label, {at: begin + share * span, over: span}) for label, share in [*zeros.items()][:most]]
+
+    return shapes
 
 
 def lags(start: str, lag: str, shares: tuple[float, ...]) -> Shapes:
@@ -192,11 +197,15 @@ def loads(name: str, shares: Sequence[float]) -> Shapes:
     return shapes
 
 
-def between_runs(runs: Sequence[PreparedRun]) -> list[Shape]:
+def between_runs(name: str) -> Shapes:
     """Every instant between two runs, with at least two on either side: one run alone is no change of the machine."""
-    ends = sorted((run.start, run.start + float(run.time[-1])) for run in runs)
-    between = [0.5 * (a[1] + b[0]) for a, b in itertools.pairwise(ends)]
-    return [Shape(label_of({"t_wd": at}), {"t_wd": at}) for at in between[1:-1]]
+
+    def shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
+        ends = sorted((run.start, run.start + float(run.time[-1])) for run in runs)
+        between = [0.5 * (a[1] + b[0]) for a, b in itertools.pairwise(ends)]
+        return [Shape(label_of({name: at}), {name: at}) for at in between[1:-1]]
+
+    return shapes
 
 
 def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:

@@ -31,6 +31,14 @@ t_wb = Parameter("t_wb", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="tim
 tau_wb = Parameter("tau_wb", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="time of one e-fold of the run-in")
 C_wd = Parameter("C_wd", "N*m", 3.0, lower=-100.0, upper=100.0, doc="change of the Coulomb level")
 t_wd = Parameter("t_wd", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time at which it changed")
+c_wt = Parameter("c_wt", "1", 0.01, lower=-0.5, upper=0.5, doc="change of the loss by wear, share of T_d/i")
+t_wt = Parameter("t_wt", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="middle of the observed time")
+tau_wt = Parameter("tau_wt", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="half length of the observed time")
+c_wr = Parameter("c_wr", "1", 0.01, lower=-0.5, upper=0.5, doc="what a new winch loses more, share of T_d/i")
+t_wr = Parameter("t_wr", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time of the first run")
+tau_wr = Parameter("tau_wr", "s", 1e6, lower=1.0, upper=1e12, shape=True, doc="time of one e-fold")
+c_we = Parameter("c_we", "1", 0.01, lower=-0.5, upper=0.5, doc="change of the loss all at once, share of T_d/i")
+t_we = Parameter("t_we", "s", 1e5, lower=-1e12, upper=1e12, shape=True, doc="time at which it changed")
 c_gp = Parameter("c_gp", "N*m", 5.0, upper=200.0, doc="loss per motor at a drum torque of 500 kN m")
 n_gp = Parameter("n_gp", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 c_gf = Parameter("c_gf", "N*m", 5.0, upper=200.0, doc="loss per motor at standstill and a drum torque of 500 kN m")
@@ -130,6 +138,28 @@ wear_sudden = _system(
     (C_wd, t_wd),
     "a seal or a bearing that was changed or gave way between two runs",
 )
+wear_under_load = register(
+    Term(
+        "wear_under_load", c_wt.symbol * T_d / gear_ratio * (time - t_wt.symbol) / tau_wt.symbol, (c_wt, t_wt, tau_wt),
+        Scope.SHAFT, "Amontons 1699: of what carries the load, wear changes a coefficient of friction", "gear and drum",
+    )
+)  # fmt: skip
+# one amount alone: with a level of its own in the end it would be a loss in proportion to the load as well
+wear_under_load_run_in = register(
+    Term(
+        "wear_under_load_run_in", c_wr.symbol * T_d / gear_ratio * sp.exp(-_since(t_wr, tau_wr)), (c_wr, t_wr, tau_wr),
+        Scope.SHAFT, "run-in of flanks and bushes (Blau 2009), beside a seed of the winch that has run in",
+        "gear and drum",
+    )
+)  # fmt: skip
+wear_under_load_sudden = register(
+    Term(
+        "wear_under_load_sudden",
+        c_we.symbol * T_d / gear_ratio * sp.Piecewise((0.0, time <= t_we.symbol), (1.0, True)), (c_we, t_we),
+        Scope.SHAFT, "the same, all at once: a bearing of gear, drum or sheave that gave way or was changed",
+        "gear and drum",
+    )
+)  # fmt: skip
 gear_load_power = _system(
     "gear_load_power", c_gp.symbol * _load**n_gp.symbol, (c_gp, n_gp), "a power of the load: Hertzian contacts, bending"
 )

@@ -8,9 +8,10 @@ from gap_rig import runs_with
 
 from winch_friction.discrepancy import catalogue, regressors, standing, workflow
 from winch_friction.discrepancy.answer import GapOptions, Verdict
+from winch_friction.discrepancy.candidates.friction import shipped_friction
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.engine import regions
-from winch_friction.discrepancy.engine.blocks import RunBlocks
+from winch_friction.discrepancy.engine.blocks import RunBlocks, usable_samples, without_column
 from winch_friction.discrepancy.expansion import Expansion, Split, expand_around, meet
 from winch_friction.discrepancy.preparation import prepare as preparing
 from winch_friction.discrepancy.preparation import seen as seeing
@@ -71,11 +72,24 @@ def test_what_a_constant_weight_could_explain_goes_in_place():
     rng = np.random.default_rng(5)
     x, y = rng.standard_normal((50, 3)), rng.standard_normal(50)
     table = RunBlocks(y, x.copy(), np.zeros(50, int), np.arange(50), {}, np.ones(50))
-    found = regressors._weightless(table, 1)
+    found = without_column(table, 1)
     assert np.shares_memory(found.x, table.x)
     weight, scale = x[:, 1], float(x[:, 1] @ x[:, 1])
     np.testing.assert_allclose(found.x, x - np.outer(weight, weight @ x / scale), atol=1e-12)
     np.testing.assert_allclose(found.y, y - weight * (weight @ y) / scale, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["presliding", "viscosity_temperature"])
+def test_a_law_that_remembers_is_reckoned_over_the_whole_run(crane_150t, crane2_model, name):
+    run = meet(runs_with(917, "quiet", length=0.1)[:1], crane_150t, crane2_model).prepared[0]
+    run = replace(run, used=run.used & (run.time > 0.3 * run.time[-1]))
+    candidate = next(each for each in shipped_friction() if each.name == name)
+    layout, size = _layout([run], crane2_model, [candidate]), regressors.block_size(run)
+    *_, columns = regressors.regressors(run, layout, size)
+    whole = regressors.slot_columns(run, layout.slots[-1])[:, -1] * layout.scales[-1] / run.unit_torque
+    kept = usable_samples(run.used, size)
+    assert 0.1 < kept.mean() < 0.9
+    np.testing.assert_array_equal(columns[:, -1], whole[kept])
 
 
 def test_what_was_turned_round_keeps_nothing_to_prepare_it_again(monkeypatch, crane_150t, crane2_model):

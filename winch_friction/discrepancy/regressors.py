@@ -17,9 +17,21 @@ from winch_friction.discrepancy.candidates.candidate import (
     Candidate,
 )
 from winch_friction.discrepancy.candidates.families import bending
+from winch_friction.discrepancy.candidates.friction import without_memory
 from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Means, RunBlocks, Slot, run_blocks, segment_length, usable_blocks
+from winch_friction.discrepancy.engine.blocks import (
+    Means,
+    RunBlocks,
+    Slot,
+    run_blocks,
+    samples_of,
+    scaled,
+    segment_length,
+    usable_blocks,
+    usable_samples,
+    without_column,
+)
 from winch_friction.discrepancy.engine.chance import rms
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
@@ -33,7 +45,6 @@ from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
-AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
 MOST_KEPT = 100_000_000  # bytes of means for a search that asks again; those of days of logs fill a memory
 STEP = LIMITS.step * LIMITS.least_noise
 SMALL = 0.1  # of the typical size: a value below it says nothing of how far off it may be
@@ -205,28 +216,26 @@ def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:
 
 
 def regressors(run: PreparedRun, layout: Layout, size: int) -> Iterator[FloatArray | Means]:
-    """The scaled columns of one run in the gap's unit, the base's first: (samples, some columns); or kept means."""
-    base = np.column_stack([run.jacobian, tolerance_columns(run)])
-    yield from _scaled(base, layout.base.scale, run.unit_torque)
+    """The scaled columns of one run in the gap's unit, the base's first: (samples of usable blocks, some columns); or
+    kept means."""
+    own = usable_samples(run.used, size)
+    there = run.at(own)
+    base = np.column_stack([there.jacobian, samples_of(tolerance_columns(run), own)])
+    yield from scaled(base, layout.base.scale, run.unit_torque)
     for slot in layout.slots:
         if (kept := run.means.get(_kept_as(slot, layout, size))) is not None:
             yield kept[1]
             continue
-        yield from _scaled(slot_columns(run, slot), layout.scales[list(slot.columns)], run.unit_torque)
+        # where much of a run stands, a law that remembers nothing is not reckoned there
+        lasts = not without_memory(slot.origin[0])
+        columns = samples_of(slot_columns(run, slot), own) if lasts else slot_columns(there, slot)
+        yield from scaled(columns, layout.scales[list(slot.columns)], run.unit_torque)
 
 
 def _kept_as(slot: Slot, layout: Layout, size: int) -> Hashable:
     """All that the means of a slot's columns hang on; the candidate, kept with them, keeps its id."""
     candidate, shape = slot.origin
     return id(candidate), tuple(shape.values.items()), layout.scales[list(slot.columns)].tobytes(), size
-
-
-def _scaled(columns: FloatArray, scales: FloatArray, unit: float) -> Iterator[FloatArray]:
-    """A few columns at a time: a surface has as many as all laws together."""
-    for at in range(0, columns.shape[1], AT_ONCE):
-        some = columns[:, at : at + AT_ONCE] * scales[at : at + AT_ONCE]
-        some /= unit
-        yield some
 
 
 def block_size(run: PreparedRun) -> int:
@@ -258,19 +267,8 @@ def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: Fl
     for slot in layout.slots if keep else ():
         own = into[slot.columns[0] : slot.columns[-1] + 1]
         run.means.setdefault(_kept_as(slot, layout, size), (slot.origin[0], Means((own if first else own.copy()).T)))
-    return table if weighed else _weightless(table, layout.base.parameters)
-
-
-def _weightless(table: RunBlocks, weight_column: int) -> RunBlocks:
-    """Where the load was never measured it is anything: what a constant weight could explain is taken out
-    everywhere, in the table itself."""
-    weight = table.x[:, weight_column]
-    scale = float(weight @ weight)
-    if scale <= 0.0:
-        return table
-    y = table.y - weight * (weight @ table.y / scale)
-    table.x[...] -= np.outer(weight, weight @ table.x / scale)
-    return RunBlocks(y, table.x, table.segment, table.position, table.features, table.direction)
+    # where the load was never measured it is anything: what a constant weight could explain is taken out
+    return table if weighed else without_column(table, layout.base.parameters)
 
 
 def least_noise_of(run: PreparedRun) -> float:
@@ -293,7 +291,7 @@ def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Acc
         width = len(slot.columns)
         candidate, shape = slot.origin
         if candidate.kind != "signal" or shape.carried:
-            columns = slot_columns(run, slot) * layout.scales[list(slot.columns)]
+            columns = np.ascontiguousarray(slot_columns(run, slot)) * layout.scales[list(slot.columns)]
             total = missing if not shape.carried else of_stroke if candidate.of_stroke else error
             total += columns @ explanation.beta[at : at + width]
         at += width

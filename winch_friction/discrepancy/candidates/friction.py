@@ -139,7 +139,7 @@ def _shapes_over(grid: Grid, speeds: Sequence[str] = ()) -> Shapes:
 
 def _stribeck_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     """Widths of the curve as shares of the speeds that were run."""
-    top = max(float(np.percentile(np.abs(run.speed), 99)) for run in runs)
+    top = max(run.top_speed for run in runs)
     return [Shape(label_of({"C4": top * share}), {"C4": top * share}) for share in STRIBECK_SHARES]
 
 
@@ -216,7 +216,8 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     functions = compiled((term,), len(run.groups), run.constants)
     theta = tuple(values.get(p.name, 1.0) for p in functions.parameters)
     z = state_history(functions, run.point, theta, run.dt)
-    columns = np.empty((len(run.time), sum(not p.shape for p in functions.parameters)))
+    # each column by itself in memory, for whoever weighs or adds up one after the other
+    columns = np.empty((sum(not p.shape for p in functions.parameters), len(run.time))).T
     with np.errstate(all="ignore"):
         for at in range(0, len(columns), AT_ONCE):
             some = slice(at, at + AT_ONCE)
@@ -225,6 +226,12 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
                 columns[some, k] = part
         whole = np.isfinite(columns.sum())
     return columns if whole else np.nan_to_num(columns, copy=False)
+
+
+def without_memory(candidate: Candidate) -> bool:
+    """Whether its columns are a term's, which hang on what is at the same instant alone."""
+    own = candidate.columns
+    return isinstance(own, partial) and own.func is term_columns and own.args[0].state is None
 
 
 def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
@@ -243,7 +250,7 @@ WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider on
 
 def _top(runs: Sequence[PreparedRun]) -> float:
     """Largest speed of the runs but for outliers, rad/s."""
-    return max((float(np.percentile(np.abs(run.speed), 99)) for run in runs), default=np.inf)
+    return max((run.top_speed for run in runs), default=np.inf)
 
 
 def stribeck(values: Values, runs: Sequence[PreparedRun]) -> bool:

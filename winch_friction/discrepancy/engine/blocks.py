@@ -3,14 +3,16 @@
 Values are in the gap's unit and weighted by each record's own noise.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
+
+AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
 
 
 @dataclass(frozen=True)
@@ -119,28 +121,62 @@ def run_blocks(
 ) -> RunBlocks:  # fmt: skip
     """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long.
 
-    `columns` come in parts (samples, some columns), each of which is let go once its means are taken: all of them over
-    all samples of an hour are a gigabyte; or as the `Means` that they have, where these were asked for before. The
-    means go `into` a place of the right size (columns, blocks) where one is given: those of many records are half a
-    gigabyte, for which there is no room twice.
+    `columns` come in parts (samples, some columns), over all samples or over those of `usable_samples`, each of which
+    is let go once its means are taken: all of them over all samples of an hour are a gigabyte; or as the `Means` that
+    they have, where these were asked for before. The means go `into` a place of the right size (columns, blocks) where
+    one is given: those of many records are half a gigabyte, for which there is no room twice.
     """
     starts, counts, keep = _usable(mask, size)
-    means = {name: _means(values, starts, counts, mask)[keep] for name, values in features.items()}
+    own = usable_samples(mask, size)
+    weights, places = mask[own].astype(float), size * np.arange(keep.sum())
+
+    def means_of(values: FloatArray) -> FloatArray:
+        return _means(values if len(values) == len(weights) else values[own], places, counts[keep], weights)
+
+    means = {name: means_of(values) for name, values in features.items()}
     return RunBlocks(
-        y=_means(gap, starts, counts, mask)[keep],
-        x=_beside_each_other(
-            (p.values if isinstance(p, Means) else _means(p, starts, counts, mask)[keep] for p in columns), into
-        ),
+        y=means_of(gap),
+        x=_beside_each_other((p.values if isinstance(p, Means) else means_of(p) for p in columns), into),
         segment=(time[starts[keep]] / length).astype(int),
         position=np.flatnonzero(keep),
         features=means,
-        direction=np.sign(_means(direction, starts, counts, mask)[keep]),
+        direction=np.sign(means_of(direction)),
     )
 
 
 def usable_blocks(mask: np.ndarray, size: int) -> int:
     """How many blocks of `size` samples have enough masked ones."""
     return int(_usable(mask, size)[2].sum())
+
+
+def usable_samples(mask: np.ndarray, size: int) -> np.ndarray | slice:
+    """The samples of the blocks that have enough masked ones, which alone any mean is taken of."""
+    keep = _usable(mask, size)[2]
+    return slice(None) if keep.all() else np.repeat(keep, size)[: len(mask)]
+
+
+def samples_of(columns: FloatArray, own: np.ndarray | slice) -> FloatArray:
+    """These samples of columns (samples, columns), column by column in memory."""
+    return columns if isinstance(own, slice) else np.array([each[own] for each in columns.T]).T
+
+
+def scaled(columns: FloatArray, scales: FloatArray, unit: float) -> Iterator[FloatArray]:
+    """Columns in units of their scales, as shares of a `unit`, a few at a time: a surface has as many as all laws."""
+    for at in range(0, columns.shape[1], AT_ONCE):
+        some = columns[:, at : at + AT_ONCE] * scales[at : at + AT_ONCE]
+        some /= unit
+        yield some
+
+
+def without_column(table: RunBlocks, column: int) -> RunBlocks:
+    """A table without what one of its columns could explain, which is taken out of the others where they stand."""
+    own = table.x[:, column]
+    square = float(own @ own)
+    if square <= 0.0:
+        return table
+    y = table.y - own * (own @ table.y / square)
+    table.x[...] -= np.outer(own, own @ table.x / square)
+    return replace(table, y=y)
 
 
 def _usable(mask: np.ndarray, size: int) -> tuple[np.ndarray, FloatArray, np.ndarray]:
@@ -160,11 +196,12 @@ def _beside_each_other(parts: Iterable[FloatArray], into: FloatArray | None) -> 
     return into.T
 
 
-def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, mask: np.ndarray) -> FloatArray:
-    """Means over the masked samples of each block; blocks without any give 0."""
-    masked = values * (mask[:, None] if values.ndim > 1 else mask)
-    sums = np.add.reduceat(masked, starts, axis=0)
-    return np.asarray(sums / (np.maximum(counts, 1.0)[:, None] if values.ndim > 1 else np.maximum(counts, 1.0)))
+def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, weights: FloatArray) -> FloatArray:
+    """Means over the samples of each block that have the weight 1 and not 0."""
+    if not len(starts):
+        return np.zeros((0, *values.shape[1:]))
+    sums = np.add.reduceat(values * (weights[:, None] if values.ndim > 1 else weights), starts, axis=0)
+    return np.asarray(sums / (counts[:, None] if values.ndim > 1 else counts))
 
 
 def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float], x: FloatArray | None = None) -> Blocks:

@@ -228,7 +228,7 @@ class Problem:
         """Coefficients within bounds, the base's prior included; `g`, `b` summed over the training segments. A `start`
         near the answer saves steps and changes nothing else."""
         index = np.asarray(columns)
-        h, rhs = g[index][:, index], b[index]
+        h, rhs = g[index, index[:, None]].T, b[index]  # column by column, as LAPACK reads it
         k = len(self.base.names)
         h[np.arange(k), np.arange(k)] += LIMITS.prior_weight
         rhs[:k] -= LIMITS.prior_weight * self.base.shift

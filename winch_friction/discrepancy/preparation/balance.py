@@ -75,14 +75,13 @@ class Accounted:
 
 @dataclass(frozen=True)
 class Balance:
-    """Measured and predicted drive torque N m, groups with predicted pressures, operating point, Jacobian."""
+    """Measured and predicted drive torque N m, groups with predicted pressures, operating point."""
 
     measured: FloatArray
     predicted: FloatArray
     groups: Groups
     point: tuple[Any, ...]
     states: tuple[FloatArray, ...]  # of the model's terms with memory
-    jacobian: FloatArray
     unit_torque: float  # N m per bar of the balancing group; per N m of a motor for an electric drive
     simulated: FloatArray | None = None  # the drive torque of a user's simulation
 
@@ -153,7 +152,7 @@ class Balancing:
         states = self._states(point, 0)
         predicted = frictionless + self.model.torque(point, states)
         measured = self.seen.smoothed(_filled(self._logged_torque))
-        return Balance(measured, predicted, (), point, states, self.model.jacobian(point, states), float(total))
+        return Balance(measured, predicted, (), point, states, float(total))
 
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self.seen.measured
@@ -166,7 +165,7 @@ class Balancing:
             predicted = frictionless + self.model.torque(point, states)
         own = next(g for g in groups if g.balances)
         unit = BAR * own.count * float(np.median(own.displacement))
-        return Balance(measured, predicted, groups, point, states, self.model.jacobian(point, states), unit)
+        return Balance(measured, predicted, groups, point, states, unit)
 
     @cached_property
     def _logged_torque(self) -> FloatArray:

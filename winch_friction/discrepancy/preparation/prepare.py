@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.ndimage import binary_opening, maximum_filter1d
 
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
-from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see
+from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -60,7 +61,9 @@ class PreparedRun:
     radius: FloatArray
     drum_torque: FloatArray
     groups: tuple[GroupSignals, ...]
+    model: FrictionModel
     point: tuple[Any, ...]
+    states: tuple[FloatArray, ...]  # of the model's terms with memory
     gap: FloatArray
     wire_mode: Mode  # of the load on its wire
     swinging: float  # kg on the wire, while its mode is sought
@@ -70,7 +73,6 @@ class PreparedRun:
     load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane
-    jacobian: FloatArray
     corrections: FloatArray  # change of the gap in N m per unit of each correction of the model, (samples, corrections)
     gear_ratio: float
     inertia: float
@@ -95,6 +97,23 @@ class PreparedRun:
         """What the drive gave as it was measured, N m at the shaft."""
         return self.gap + self.predicted
 
+    @property
+    def jacobian(self) -> FloatArray:
+        """Partial derivatives of the model's torque by its parameters, N m per unit, shape (samples, parameters): a
+        third of all that a run would hold, for one who asks once."""
+        return self.model.jacobian(self.point, self.states)
+
+    @cached_property
+    def top_speed(self) -> float:
+        """Largest speed but for outliers, rad/s: a hundred laws ask for it."""
+        return float(np.percentile(np.abs(self.speed), 99))
+
+    def at(self, samples: np.ndarray | slice) -> "PreparedRun":
+        """What a law without memory reads of these samples alone: operating point, states and time."""
+        point, states = (tuple(each[samples] if np.ndim(each) else each for each in own)
+                         for own in (self.point, self.states))  # fmt: skip
+        return replace(self, time=self.time[samples], point=point, states=states)
+
     def used_at(self, time: FloatArray) -> np.ndarray:
         """Whether instants, in s from the origin of the run's own time, lie between two samples of the regime."""
         return np.asarray(np.interp(time, self.time + self.start, self.used.astype(float)) > BOTH_SIDES)
@@ -102,26 +121,8 @@ class PreparedRun:
     def sharing(self, other: "PreparedRun") -> "PreparedRun":
         """The same run, with the arrays of another that hold the same to the bit: most do not depend on the model, and
         an hour of all of them is 90 MB."""
-        return replace(self, **{each.name: _shared(getattr(self, each.name), getattr(other, each.name))
+        return replace(self, **{each.name: shared(getattr(self, each.name), getattr(other, each.name))
                                 for each in fields(self) if each.init})  # fmt: skip
-
-
-def _shared(own: Any, other: Any) -> Any:
-    if isinstance(own, np.ndarray):
-        return other if _same(own, other) else own
-    if type(own) is tuple and isinstance(other, tuple) and len(own) == len(other):
-        return tuple(map(_shared, own, other))
-    if isinstance(own, Mapping) and isinstance(other, Mapping):
-        return {name: _shared(value, other.get(name)) for name, value in own.items()}
-    if isinstance(own, GroupSignals) and isinstance(other, GroupSignals):
-        return replace(own, **{f.name: _shared(getattr(own, f.name), getattr(other, f.name)) for f in fields(own)})
-    return own
-
-
-def _same(own: np.ndarray, other: Any) -> bool:
-    """Whether two arrays are the same to the bit, NaN and the sign of zero included."""
-    alike = isinstance(other, np.ndarray) and (own.shape, own.dtype) == (other.shape, other.dtype)
-    return alike and own.tobytes() == other.tobytes()
 
 
 def prepare(
@@ -166,10 +167,10 @@ def prepare(
         acceleration=motion.acceleration, direction=motion.direction, angle=motion.angle, load=hanging.mass,
         tension_measured=hanging.tension_measured, load_acceleration=hanging.acceleration, radius=hanging.radius,
         drum_torque=hanging.drum_torque,
-        groups=balance.groups, point=balance.point, gap=balance.gap, wire_mode=mode,
+        groups=balance.groups, model=model, point=balance.point, states=balance.states, gap=balance.gap, wire_mode=mode,
         swinging=swinging_mass(float(np.median(hanging.mass)), wire), swing_left=swing.left,
         swing_variance=swing.variance / balance.unit_torque**2, swing_noise=swing.noise,
-        load_friction=_load_friction(model, balance), predicted=balance.predicted, jacobian=balance.jacobian,
+        load_friction=_load_friction(model, balance), predicted=balance.predicted,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
         rated_torque=crane.rated_load * GRAVITY * max(crane.drum.layer_radii) / crane.gear_ratio,

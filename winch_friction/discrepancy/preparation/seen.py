@@ -5,8 +5,9 @@ a reversal, which a noisy speed cannot.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import binary_opening
@@ -209,8 +210,7 @@ Groups = tuple[GroupSignals, ...]
 class Seen:
     """What a run tells whatever the model says: its grid, how the shaft moves, what the motors' signals make.
 
-    The same run is balanced some dozen times in a search, and half of what that took was smoothing the same again.
-    """
+    The same run is balanced some dozen times in a search, and half of that was smoothing the same again."""
 
     run: Run
     crane: Crane
@@ -279,3 +279,22 @@ def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArra
     """Measured torque of all motors at the shaft, N m, from the pressures as they were logged."""
     drops = (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups)
     return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
+
+
+def shared(own: Any, other: Any) -> Any:
+    """The same values, in the arrays of another wherever these hold the same to the bit."""
+    if isinstance(own, np.ndarray):
+        return other if _same(own, other) else own
+    if type(own) is tuple and isinstance(other, tuple) and len(own) == len(other):
+        return tuple(map(shared, own, other))
+    if isinstance(own, Mapping) and isinstance(other, Mapping):
+        return {name: shared(value, other.get(name)) for name, value in own.items()}
+    if isinstance(own, GroupSignals) and isinstance(other, GroupSignals):
+        return replace(own, **{f.name: shared(getattr(own, f.name), getattr(other, f.name)) for f in fields(own)})
+    return own
+
+
+def _same(own: np.ndarray, other: Any) -> bool:
+    """Whether two arrays are the same to the bit, NaN and the sign of zero included."""
+    alike = isinstance(other, np.ndarray) and (own.shape, own.dtype) == (other.shape, other.dtype)
+    return alike and np.array_equal(np.ravel(own).view(np.uint8), np.ravel(other).view(np.uint8))

@@ -70,7 +70,6 @@ class PreparedRun:
     swing_left: tuple[float, ...]  # share of what may swing that a swing of each damping ratio would leave
     swing_noise: bool  # whether what swings in the load's acceleration is in the sensors alone
     swing_variance: float  # of what may swing, in the gap's unit squared; 0 where the mode was given
-    load_friction: FloatArray  # friction torque per relative change of the drum torque, N m
     predicted: FloatArray  # drive torque of the base model, N m
     from_speed: FloatArray  # what of it the shaft's speed tells, N m: all but the acceleration of the heaving crane
     corrections: FloatArray  # change of the gap in N m per unit of each correction of the model, (samples, corrections)
@@ -102,6 +101,13 @@ class PreparedRun:
         """Partial derivatives of the model's torque by its parameters, N m per unit, shape (samples, parameters): a
         third of all that a run would hold, for one who asks once."""
         return self.model.jacobian(self.point, self.states)
+
+    @cached_property
+    def load_friction(self) -> FloatArray:
+        """Friction torque per relative change of the drum torque, N m."""
+        more = tuple((1.0 + HEAVIER) * values if k == DRUM_TORQUE else values for k, values in enumerate(self.point))
+        heavier, as_it_is = (np.asarray(self.model.torque(x, self.states)) for x in (more, self.point))
+        return np.asarray((heavier - as_it_is) / HEAVIER)
 
     @cached_property
     def top_speed(self) -> float:
@@ -170,7 +176,7 @@ def prepare(
         groups=balance.groups, model=model, point=balance.point, states=balance.states, gap=balance.gap, wire_mode=mode,
         swinging=swinging_mass(float(np.median(hanging.mass)), wire), swing_left=swing.left,
         swing_variance=swing.variance / balance.unit_torque**2, swing_noise=swing.noise,
-        load_friction=_load_friction(model, balance), predicted=balance.predicted,
+        predicted=balance.predicted,
         corrections=np.empty((len(grid.time), 0)),
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
         rated_torque=crane.rated_load * GRAVITY * max(crane.drum.layer_radii) / crane.gear_ratio,
@@ -262,12 +268,6 @@ def _followed(
     # a sample or two between many that it cannot follow are turning points, and no place where it can
     followed = binary_opening(followed, np.ones(max(round(FOLLOWED_FOR / grid.dt), 1), bool))
     return np.asarray(followed & (followed[motion.used].mean() >= LEAST_FOLLOWED if motion.used.any() else True))
-
-
-def _load_friction(model: FrictionModel, balance: Balance) -> FloatArray:
-    more = tuple((1.0 + HEAVIER) * values if k == DRUM_TORQUE else values for k, values in enumerate(balance.point))
-    heavier, as_it_is = (np.asarray(model.torque(x, balance.states)) for x in (more, balance.point))
-    return np.asarray((heavier - as_it_is) / HEAVIER)
 
 
 def channels_of(

@@ -131,7 +131,7 @@ def _shapes_over(grid: Grid, speeds: Sequence[str] = ()) -> Shapes:
         # down, never up: a curve as wide as half of what was run is a constant there, and that is Coulomb friction
         slow = 2.0 ** np.floor(np.log2(top / FULL_SPEED)) if top < 0.5 * FULL_SPEED else 1.0
         own = {name: tuple(slow * v if name in speeds else v for v in tried) for name, tried in grid.items()}
-        points = [dict(zip(own, point, strict=True)) for point in itertools.product(*own.values())]
+        points = (dict(zip(own, point, strict=True)) for point in itertools.product(*own.values()))
         return [Shape(label_of(values), values) for values in points]
 
     return shapes
@@ -216,13 +216,11 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     functions = compiled((term,), len(run.groups), run.constants)
     theta = tuple(values.get(p.name, 1.0) for p in functions.parameters)
     z = state_history(functions, run.point, theta, run.dt)
-    # each column by itself in memory, for whoever weighs or adds up one after the other
-    columns = np.empty((sum(not p.shape for p in functions.parameters), len(run.time))).T
+    columns = np.empty((sum(not p.shape for p in functions.parameters), len(run.time))).T  # each by itself in memory
     with np.errstate(all="ignore"):
         for at in range(0, len(columns), AT_ONCE):
             some = slice(at, at + AT_ONCE)
-            parts = functions.vector_columns(_part(run.point, some), theta, _part(z, some))
-            for k, part in enumerate(parts):
+            for k, part in enumerate(functions.vector_columns(_part(run.point, some), theta, _part(z, some))):
                 columns[some, k] = part
         whole = np.isfinite(columns.sum())
     return columns if whole else np.nan_to_num(columns, copy=False)
@@ -242,8 +240,7 @@ def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
 # -- the speeds that were seen
 CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
-# rad/s: speeds of laws are stated for motors that turn about so fast; one of large stroke turns at a tenth of it
-FULL_SPEED = 100.0
+FULL_SPEED = 100.0  # rad/s, of motors for which speeds of laws are stated; one of large stroke turns at a tenth
 TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
@@ -288,8 +285,7 @@ def blurred_travel(runs: Sequence[PreparedRun]) -> float:
 
 
 def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
-    """A travel well beyond that in which nobody knows when the shaft turned: shorter ones are looked for just after
-    reversals alone (`search.after_reversals`)."""
+    """A travel well beyond that in which nobody knows when the shaft turned; for others: `search.after_reversals`."""
     return values["d_z"] > CLEAR * blurred_travel(runs)
 
 

@@ -51,7 +51,9 @@ def law(name):
 
 def driven(fastest=200.0, oil=40.0):
     """A run with these speeds and this oil."""
-    return SimpleNamespace(speed=np.linspace(-fastest, fastest, 500), channels={"oil_temperature": np.full(500, oil)})
+    speed = np.linspace(-fastest, fastest, 500)
+    top = float(np.percentile(np.abs(speed), 99))
+    return SimpleNamespace(speed=speed, top_speed=top, channels={"oil_temperature": np.full(500, oil)})
 
 
 @pytest.mark.parametrize(("name", "fastest", "most"), [

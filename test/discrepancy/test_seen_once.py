@@ -1,5 +1,6 @@
 """What a run tells whatever the model says is found once and held once, however many models meet it."""
 
+import tempfile
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from winch_friction.discrepancy.answer import GapOptions, Verdict
 from winch_friction.discrepancy.candidates.friction import shipped_friction
 from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.engine import regions
-from winch_friction.discrepancy.engine.blocks import RunBlocks, usable_samples, without_column
+from winch_friction.discrepancy.engine.blocks import RunBlocks, on_disk, usable_samples, without_column
 from winch_friction.discrepancy.expansion import Expansion, Split, expand_around, meet
 from winch_friction.discrepancy.preparation import prepare as preparing
 from winch_friction.discrepancy.preparation import seen as seeing
@@ -134,8 +135,25 @@ def test_the_means_of_days_of_logs_are_not_kept(monkeypatch, crane_150t, crane2_
     regressors.build_problem(prepared, layout, by_sample=True)
     assert not any(run.means for run in prepared)  # of what just reversed nobody asks twice
     monkeypatch.setattr(regressors, "MOST_KEPT", 1000)
-    regressors.build_problem(prepared, layout)
+    large = regressors.build_problem(prepared, layout).blocks.x
     assert not any(run.means for run in prepared)
+    monkeypatch.undo()
+    small = regressors.build_problem(prepared, layout).blocks
+    held = [isinstance(each, np.memmap) for each in (_owner(large), _owner(small.x))]
+    assert held == [True, False]  # once they are summed up a search reads a part of them
+    np.testing.assert_array_equal(large, small.x)
+    monkeypatch.setattr(tempfile, "TemporaryFile", _full)
+    assert on_disk(small).x is small.x
+
+
+def _owner(values):
+    while isinstance(values.base, np.ndarray):
+        values = values.base
+    return values
+
+
+def _full(*_, **__):
+    raise OSError("no space left on device")
 
 
 def test_runs_around_a_point_are_prepared_once_as_long_as_somebody_holds_them(crane_150t, crane2_model):

@@ -1,6 +1,7 @@
 """The only bridge between winches and the engine: prepared runs and candidate effects become columns and blocks."""
 
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -24,6 +25,7 @@ from winch_friction.discrepancy.engine.blocks import (
     Means,
     RunBlocks,
     Slot,
+    on_disk,
     run_blocks,
     samples_of,
     scaled,
@@ -45,7 +47,7 @@ from winch_friction.physics.friction.terms.effects_motor import REFERENCE_SPEED
 
 UNSURE = 15.0  # times the usual tolerance: how little a sparse log knows of its acceleration
 SHORTEST_PERIOD = 0.02  # s; faster logs are no better in step than that of a usual PLC
-MOST_KEPT = 100_000_000  # bytes of means for a search that asks again; those of days of logs fill a memory
+MOST_KEPT = 100_000_000  # bytes of means in memory for a search that asks again; those of days of logs fill it
 STEP = LIMITS.step * LIMITS.least_noise
 SMALL = 0.1  # of the typical size: a value below it says nothing of how far off it may be
 HELD = 1e-6  # of a tolerance: so little that it is none
@@ -216,8 +218,7 @@ def slot_columns(run: PreparedRun, slot: Slot) -> FloatArray:
 
 
 def regressors(run: PreparedRun, layout: Layout, size: int) -> Iterator[FloatArray | Means]:
-    """The scaled columns of one run in the gap's unit, the base's first: (samples of usable blocks, some columns); or
-    kept means."""
+    """The scaled columns of one run in the gap's unit, the base's first: (usable samples, some columns); or means."""
     own = usable_samples(run.used, size)
     there = run.at(own)
     base = np.column_stack([there.jacobian, samples_of(tolerance_columns(run), own)])
@@ -254,7 +255,8 @@ def build_problem(
     own = zip(runs, sizes, pairwise(ends), strict=True)
     keep = not by_sample and x.nbytes <= MOST_KEPT  # of what just reversed nobody asks twice
     tables = [_blocks(run, layout, size, length, x[:, a:b], keep) for run, size, (a, b) in own]
-    return problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known, x.T)
+    problem = problem_of(tables, layout, np.array([least_noise_of(run) for run in runs]), known, x.T)
+    return problem if x.nbytes <= MOST_KEPT else replace(problem, blocks=on_disk(problem.blocks))
 
 
 def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: FloatArray, keep: bool) -> RunBlocks:

@@ -3,6 +3,7 @@
 Values are in the gap's unit and weighted by each record's own noise.
 """
 
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -108,6 +109,19 @@ class Grams:
         found = np.empty((len(self.order), *values.shape[1:]), values.dtype)
         found[self.order] = np.repeat(values, self.count.astype(int), axis=0)
         return found
+
+
+def on_disk(blocks: Blocks) -> Blocks:
+    """The same blocks with their columns in a file without a name, of which memory holds what is read; as they are
+    where no disk has room."""
+    try:
+        with tempfile.TemporaryFile() as file:
+            blocks.x.T.tofile(file)
+            file.flush()
+            kept = np.memmap(file, blocks.x.dtype, "r", shape=blocks.x.T.shape)
+    except OSError:
+        return blocks
+    return replace(blocks, x=np.asarray(kept).T)
 
 
 def segment_length(total: float) -> float:

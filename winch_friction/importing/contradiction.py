@@ -32,9 +32,9 @@ def _of_clock(name: str, columns: Mapping[str, FloatArray]) -> list[str]:
             f"{name}: time goes back by an hour after sample {back + 1}: the end of summer time? --set time.zone=ZONE, "
             "the log's (e.g. Europe/Oslo), takes it out; else cut the log there"
         ]
-    times = int(np.sum(steps < 0.0))
+    times, first = int(np.sum(steps < 0.0)), int(np.argmax(steps < 0.0))
     return [
-        f"{name}: time goes back {times} times, first after sample {back + 1} by {-float(steps[back]):.4g} s: several "
+        f"{name}: time goes back {times} times, first after sample {first + 1} by {-float(steps[first]):.4g} s: several "
         "recordings in one file? cut it there"
     ]
 

@@ -10,14 +10,21 @@ from scipy.io import savemat
 
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import registered_terms
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.records.corrections import corrections_content, read_corrections
 from winch_friction.records.crane_file import MOST_MOTORS, NUMBERS, RADIUS, check_ranges
 from winch_friction.records.emps import FORCE_GAIN, read_emps
 from winch_friction.records.input_mapping import InputMapping, bag_options_of
+from winch_friction.records.model_file import model_from_content, model_to_text
 from winch_friction.records.plain import finite
 from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, SampleStream
+from winch_friction.records.strict_yaml import Section, parse_yaml
 from winch_friction.records.telemetry import Telemetry, estimates, faults, inputs, state
 from winch_friction.records.topics import TopicMap
 from winch_friction.records.unit_names import SPELLINGS, conversion_to_si
+
+COULOMB = registered_terms()["coulomb"].parameters[0].name
 
 # -- ages
 PRESSURE = "main.pressure_a"
@@ -172,6 +179,47 @@ def test_a_range_holds_its_ends_and_what_is_not_said(plausible):
     for value in (0.99 * plausible.lower, 1.01 * plausible.upper, -1.0):
         with pytest.raises(InputError):
             plausible.check(value, "it")
+
+
+# -- entries of a model file
+@pytest.mark.parametrize(
+    ("given", "bounds"),
+    [
+        ({"lower": 0.01, "upper": 0.3}, (10.0, 300.0)),
+        ({"upper": 0.3}, (0.0, 300.0)),
+        ({"lower": 0.01}, (10.0, 200.0)),
+        ({}, (0.0, 200.0)),
+    ],
+)
+def test_bounds_and_std_are_in_the_unit_of_their_value(given, bounds):
+    """A Coulomb friction in kN m, whose own bounds are 0 and 200 N m."""
+    entry = {"value": 0.15, "unit": "kN*m", "std": 0.02, **given}
+    content = {"schema": "winch_friction.model/1", "name": "m", "terms": ["coulomb"], "parameters": {COULOMB: entry}}
+    model = model_from_content(content, "file")
+    assert model.bounds_of(COULOMB) == pytest.approx(bounds)
+    assert (model.values[0], model.std[0]) == pytest.approx((150.0, 20.0))
+    again = model_from_content(parse_yaml(model_to_text(model), ""), "file")
+    assert again.bounds_of(COULOMB) == pytest.approx(bounds)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_correction_comes_back_from_its_entry(count):
+    """Alone it is an entry, with another of its name a list; of one group it is not one of all."""
+    given = [
+        Correction(
+            "pressure_offset", 1e5 * (k + 1), std=2e4, source="zero check", groups=(group,), during=((5.0, math.inf),)
+        )
+        for k, group in enumerate(("active", "passive")[:count])
+    ]
+    content = corrections_content(given)
+    entries = content["pressure_offset"] if count > 1 else [content["pressure_offset"]]
+    assert [(each["value"], each["std"], each["groups"]) for each in entries] == [
+        (1e5 * (k + 1), 2e4, [group]) for k, group in enumerate(("active", "passive")[:count])
+    ]
+    again = read_corrections(Section({"corrections": content}, "file"))
+    for one, other in zip(given, again, strict=True):
+        assert (one.value, one.std, one.groups, one.during) == (other.value, other.std, other.groups, other.during)
+        assert (other.source, other.bounds, other.time_constant) == (one.source, one.bounds, None)
 
 
 # -- units

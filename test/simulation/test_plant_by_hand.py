@@ -301,6 +301,20 @@ def test_a_winch_starts_where_its_motors_hold_the_load(load, ahc, cycle, crane, 
         assert memory.tolist() == [0.0, 1.0]  # no direction, and dwelt for long
 
 
+@pytest.mark.parametrize(
+    ("secondary", "dp", "pressure_sum"), [(0.0, 70e5, 130e5), (1.0, 70e5, 120e5), (1.0, -70e5, 120e5)]
+)
+def test_the_sum_of_a_loops_pressures_has_the_boost_on_both_sides(secondary, dp, pressure_sum):
+    p = of(secondary=secondary, start_time=1e9, layer=3.0, wire_out=50.0)
+    state = at(P_A=100e5, P_B=30e5, ANGLE=-500.0, SPEED=-7.0)
+    x = plain(equations.operating_point)(p, state, -1.0, 0.5, 2.0, 9e3, 40.0, dp, -200e5, 300e5)
+    assert (x.pressure_driven, x.pressure_sum_driven, x.higher_port_driven) == (70e5, pressure_sum, np.sign(dp))
+    assert (x.pressure_passive, x.pressure_sum_passive, x.higher_port_passive) == (200e5, 300e5, -1.0)
+    assert (x.speed, x.speed_magnitude, x.time, x.wire_out) == (-7.0, 7.0, 1e9 + 2.0, 52.0)
+    assert (x.motor_total, x.count_driven, x.count_passive) == (11.0, 3.0, 8.0)
+    assert (x.displacement_driven, x.displacement_passive, x.drum_torque) == (3e-5, 1e-5, 9e3)
+
+
 # -- memory between the steps
 @pytest.mark.parametrize("speed", [3.0, -3.0])
 def test_a_bristle_bends_over_its_angle_and_stays_bent_at_rest(speed):
@@ -405,6 +419,12 @@ def test_an_asymmetry_does_not_turn_with_the_motion_and_a_ripple_turns_with_the_
     _, fields, _ = hidden(crane, "torque_ripple")
     found = [plain(fixed_torque)(fields, direction, angle, LOAD_TORQUE, 250.0) for angle in (0.5, 0.5 + 2.0 * math.pi)]
     assert found == pytest.approx([0.01 * math.sin(0.5) * LOAD_TORQUE / 250.0] * 2)
+
+
+def test_a_bond_is_as_strong_as_is_said(crane):
+    _, fields, _ = hidden(crane, "dwell_stiction", 2.0)
+    found = {name: value for name, value in vars(fields).items() if value}
+    assert found == pytest.approx({"present": 1.0, "dwell_share": 0.3, "dwell_rate": 0.2, "dwell_angle": 1.0})
 
 
 def test_what_changes_the_plant_is_of_the_size_that_is_said(crane):

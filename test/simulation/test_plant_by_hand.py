@@ -135,6 +135,9 @@ def test_the_winch_pays_out_what_the_tip_rises_and_the_water_follows_its_share(a
     np.testing.assert_allclose(found.reference[:, 3], 0.0)
     np.testing.assert_allclose(found.tip[:, 3], 0.5 * found.tip[:, 0])
     assert not prescribed_motion(ahc, crane, time, 1, 100.0).tip[:, 3].any()
+    sea = {"kind": "jonswap", "significant_height": 2.0, "response": 0.6}  # of the crane tip, not of the water
+    found = prescribed_motion(ahc.override({"water": WATER, "sea": sea}), crane, time, 1, 100.0)
+    np.testing.assert_allclose(found.tip[:, 3], 0.5 / 0.6 * found.tip[:, 0])
 
 
 def test_shares_of_the_pump_are_of_its_full_speed_and_the_load_goes_with_the_winch(cycle, crane):

@@ -34,8 +34,8 @@ def _of_clock(name: str, columns: Mapping[str, FloatArray]) -> list[str]:
         ]
     times, first = int(np.sum(steps < 0.0)), int(np.argmax(steps < 0.0))
     return [
-        f"{name}: time goes back {times} times, first after sample {first + 1} by {-float(steps[first]):.4g} s: several "
-        "recordings in one file? cut it there"
+        f"{name}: time goes back {times} times, first after sample {first + 1} by {-float(steps[first]):.4g} s: "
+        "several recordings in one file? cut it there"
     ]
 
 

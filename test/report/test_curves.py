@@ -1,11 +1,26 @@
 """Friction curves as pages: the difference of two models and the shadow of one are what their labels say."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from winch_friction.physics.winch.model_curve import model_curve
+from winch_friction.physics.channels import CM3_PER_REV
+from winch_friction.physics.winch.model_curve import ModelCurve, model_curve
 from winch_friction.records.model_file import load_model
-from winch_friction.report.curves import SPEED, TORQUE, curve_plot, difference_plot, joint_std, pair_plot
+from winch_friction.report import curves
+from winch_friction.report.curves import (
+    SPEED,
+    TORQUE,
+    curve_plot,
+    difference_plot,
+    joint_std,
+    pair_plot,
+    parameter_html,
+    parts_plot,
+)
+from winch_friction.report.tables import number
 
 FIRST, SECOND = load_model("a6vm215_crane1"), load_model("a6vm215_crane2")
 
@@ -36,3 +51,82 @@ def test_the_shadow_of_a_curve_is_one_standard_deviation(pair):
     assert columns[SPEED] == pytest.approx(np.array([20.0, 80.0, 150.0]) * 30.0 / np.pi)
     assert columns["plus 1 σ [N·m]"] - columns[TORQUE] == pytest.approx(pair[0].std)
     assert columns[TORQUE] - columns["less 1 σ [N·m]"] == pytest.approx(pair[0].std)
+
+
+def curve(model="one", load=55e3, std=2.0, torque=(30.0, 10.0, 20.0), **parts):
+    """Torque in N m at 10, 20 and 30 rpm."""
+    speed = np.array([10.0, 20.0, 30.0]) * np.pi / 30.0
+    return ModelCurve(model, load, 215 * CM3_PER_REV, speed, np.array(torque), np.full(3, std),
+                      {name: np.array(part) for name, part in parts.items()}, 0.0 * speed)  # fmt: skip
+
+
+def drawn(plot):
+    """Labels of the lines with their panel, role, kind and what is drawn."""
+    return {
+        line.label: (line.row, line.role, line.kind, list(plot.frames[line.frame].columns[line.y]))
+        for line in plot.lines
+    }
+
+
+def test_each_load_has_its_own_line_and_shadow_where_the_deviation_is_known():
+    light, heavy = curve(load=15e3), curve(load=100e3, std=float("nan"), torque=(50.0, 60.0, 70.0))
+    plot = curve_plot([light, heavy])
+    assert drawn(plot) == {
+        "15 t ± 1 σ": (0, "noise", "band", [28.0, 8.0, 18.0]),
+        "15 t": (0, "plain", "lines", [30.0, 10.0, 20.0]),
+        "100 t": (0, "plain", "lines", [50.0, 60.0, 70.0]),
+    }
+    assert [line.upper for line in plot.lines] == ["plus 1 σ [N·m]", "", ""]
+    assert "at 215 cm³/rev" in plot.caption
+
+
+def test_the_first_model_is_before_and_the_second_after():
+    plot = pair_plot(curve("one"), curve("two", torque=(31.0, 12.0, 17.0)))
+    lines = drawn(plot)
+    assert lines["one"] == (0, "before", "lines", [30.0, 10.0, 20.0])
+    assert lines["two"] == (0, "after", "lines", [31.0, 12.0, 17.0])
+    assert lines["difference"] == (1, "measured", "lines", [1.0, 2.0, -3.0])
+    assert lines["± 1 σ"][:3] == (1, "noise", "band")
+    assert "two minus one" in plot.caption
+    same = pair_plot(curve("one"), curve("one", torque=(31.0, 12.0, 17.0)))
+    assert [list(same.frames[0].columns[line.y]) for line in same.lines[:2]] == [[30.0, 10.0, 20.0], [31.0, 12.0, 17.0]]
+
+
+def test_terms_that_differ_are_drawn_also_where_one_model_lacks_them():
+    first, second = (
+        curve("one", a=(1.0, 1.0, 1.0), b=(2.0, 2.0, 2.0)),
+        curve("two", a=(1.0, 1.0, 1.0), c=(0.0, 0.0, -4.0)),
+    )
+    plot = difference_plot(first, second)
+    assert {name: values for name, (*_, values) in drawn(plot).items()} == {"b": [-2.0] * 3, "c": [0.0, 0.0, -4.0]}
+    assert plot.frames[0].columns[SPEED] == pytest.approx([10.0, 20.0, 30.0])
+    assert plot.caption == "Terms of two minus those of one, at 55 t."
+
+
+def test_terms_are_stacked_below_what_they_are_together():
+    lines = drawn(parts_plot(curve(coulomb=(20.0, 4.0, 8.0), line_loss=(10.0, 6.0, 12.0))))
+    assert lines == {
+        "coulomb": (0, "plain", "area", [20.0, 4.0, 8.0]),
+        "line loss": (0, "plain", "area", [10.0, 6.0, 12.0]),
+        "together": (0, "measured", "lines", [30.0, 10.0, 20.0]),
+    }
+
+
+def test_a_models_page_says_the_first_the_least_and_the_last_of_its_middle_load(tmp_path, monkeypatch):
+    monkeypatch.setattr(curves, "plot_html", lambda plot: "")
+    of = [curve(load=load, torque=torque) for load, torque in
+          ((15e3, (1.0, 2.0, 3.0)), (55e3, (30.0, 10.0, 20.0)), (100e3, (7.0, 8.0, 9.0)))]  # fmt: skip
+    page = curves.write_model_page(tmp_path / "m.html", SECOND, of, "crane_150t").read_text()
+    assert re.findall(r"<dt>(.*?)</dt><dd>(.*?)</dd>", page) == [
+        ("10 rpm, 55 t", "30 N·m"), ("20 rpm, 55 t", "10 N·m"), ("30 rpm, 55 t", "20 N·m"),
+    ]  # fmt: skip
+    assert f"{SECOND.name}: {len(SECOND.terms)} terms, 10 parameters, on crane crane_150t" in page
+
+
+def test_a_parameters_deviation_is_its_own_and_none_where_the_model_knows_none():
+    cell = lambda html, name: re.findall(r"<td[^>]*>(.*?)</td>", re.search(rf"<tr><td>{name}</td>.*?</tr>", html)[0])
+    k = SECOND.parameter_names.index("C4")
+    known, unknown = parameter_html(SECOND), parameter_html(replace(SECOND, covariance=None))
+    rpm = 30.0 / np.pi
+    assert cell(known, "C4")[1:4] == [number(SECOND.values[k] * rpm), number(SECOND.std[k] * rpm), "rpm"]
+    assert cell(unknown, "C4")[1:4] == [number(SECOND.values[k] * rpm), "–", "rpm"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.report.base import TextSection, render, write_report
+from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.figures import new_figure, save_figure
 from winch_friction.report.tables import (
     estimate_for_people,
@@ -132,3 +133,32 @@ def test_a_channels_name_folds_behind_its_group():
     """On a phone the sentence beside `main.pressure_a` was cut off."""
     assert "main.<wbr>pressure_a" in table_html(["channel"], [["main.pressure_a"]])
     assert "<wbr>" not in table_html(["value"], [["0.1234567890123"]])
+
+
+def test_where_a_page_comes_from_is_said_as_far_as_it_is_known():
+    known = {"command": "winch-friction gap", "commit": "", "seed": 0, "data_sha256": {"a": "1f", "b": "2e"}}
+    html = provenance_html(known | {"runs": ["a", "b"], "files": [{"name": "a.csv", "sha256": "1f"}]})
+    cells = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr>(.*?)</tr>", html)]
+    assert [row for row in cells if row] == [
+        ["command", "winch-friction gap"], ["seed", "0"], ["data sha256", "a 1f, b 2e"], ["runs", "a, b"],
+        ["a.csv", "1f"],
+    ]  # fmt: skip
+    assert "Files" not in provenance_html({"seed": 1})
+    assert re.findall(r"<td[^>]*>(.*?)</td>", provenance_html({"files": {"c.csv": "3d"}})) == ["c.csv", "3d"]
+
+
+def test_a_fact_without_a_value_and_a_list_without_lines_are_left_out():
+    html = decision_html("Do `this`.", [("size", "3 bar"), ("heave", "")], "<p>after</p>")
+    assert re.findall(r"<dt>(.*?)</dt><dd>(.*?)</dd>", html) == [("size", "3 bar")]
+    assert html.startswith('<p class="verdict">Do <code>this</code>.</p>')
+    assert html.endswith("<p>after</p>")
+    assert "<dl" not in decision_html("s", [("heave", "")])
+    assert list_html(["a"], ordered=True) == "<ol><li>a</li></ol>"
+    assert (list_html(["a", "<"]), list_html([])) == ("<ul><li>a</li><li>&lt;</li></ul>", "")
+
+
+def test_the_last_section_says_where_the_page_comes_from(tmp_path):
+    text = write_report(tmp_path / "a.html", "T", [TextSection("One", "1")], "sub", {"seed": 7}).read_text("utf-8")
+    assert text.index("One") < text.index("Provenance")
+    assert "sub" in text
+    assert "Provenance" not in write_report(tmp_path / "b.html", "T", [TextSection("One", "1")]).read_text("utf-8")

@@ -1,5 +1,6 @@
 """Plots as data, equations as MathML, effects in words."""
 
+import base64
 import json
 import re
 from pathlib import Path
@@ -13,7 +14,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms, term_named
 from winch_friction.report import plots
 from winch_friction.report.equations import latex_html, term_html
-from winch_friction.report.plots import Frame, Line, Plot, plot_html
+from winch_friction.report.plots import Frame, Heat, Line, Plot, plot_html, plotly_figure
 
 
 def plot(points=10):
@@ -87,3 +88,67 @@ def test_every_line_stands_out_from_its_card(scheme):
     for each in lines:
         low, high = sorted((card, _luminance(each)))
         assert (high + 0.05) / (low + 0.05) >= 3.0, each
+
+
+def two_panels():
+    frames = [Frame("a", {"t [s]": np.arange(4.0), "p, low [bar]": np.arange(4.0) + 10.0}),
+              Frame("b", {"t [s]": np.arange(3.0), "share [%]": np.arange(3.0) + 20.0})]  # fmt: skip
+    lines = [Line("p", "t [s]", "p, low [bar]", role="before"),
+             Line("s", "t [s]", "share [%]", 1, 1, "after", "dots")]  # fmt: skip
+    return Plot("A Run: 5 t!", frames, lines, "t [s]", ["p [bar]", "s [%]"], "said", "runs", height=100)
+
+
+def numbers(packed):
+    return np.frombuffer(base64.b64decode(packed), "<f4").tolist()
+
+
+def test_what_a_page_draws_is_what_the_plot_says():
+    html = plot_html(two_panels())
+    content = json.loads(re.search(r'application/json">(.*)</script></figure>', html).group(1))
+    assert content["lines"] == [["p", "t [s]", "p, low [bar]", 0, 0, "before", "lines", "", -1],
+                                ["s", "t [s]", "share [%]", 1, 1, "after", "dots", "", -1]]  # fmt: skip
+    assert (content["x"], content["rows"], content["link"]) == ("t [s]", ["p [bar]", "s [%]"], "runs")
+    assert numbers(content["frames"][1]["columns"]["share [%]"]) == [20.0, 21.0, 22.0]
+    assert 'download="a_run_5_t.csv"' in html
+    assert "charset=utf-8,t [s],p  low [bar],share [percent]%0A" in html
+    assert "<figcaption>said</figcaption>" in html
+    assert "height:290px" in html
+
+
+def test_a_thinned_line_keeps_every_k_th_sample_of_all_columns_and_at_most_as_many_as_a_screen():
+    frame = Frame("a", {"t": np.arange(10.0), "y": 2.0 * np.arange(10.0), "m": [f"m{k}" for k in range(10)]})
+    for most, kept in ((10, list(range(10))), (9, [0, 2, 4, 6, 8]), (4, [0, 3, 6, 9]), (3, [0, 4, 8])):
+        columns = plots._frame(frame, most)["columns"]
+        assert numbers(columns["t"]) == kept
+        assert numbers(columns["y"]) == [2 * k for k in kept]
+        assert columns["m"] == [f"m{k}" for k in kept]
+
+
+def test_a_map_keeps_its_axes_and_rows():
+    heat = Heat(np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0]), np.arange(6.0).reshape(3, 2), "h", "x", "y", "bar")
+    html = plot_html(Plot("A", [], [], "", [], heats=[heat], height=100))
+    (drawn,) = json.loads(re.search(r'application/json">(.*)</script></figure>', html).group(1))["heats"]
+    assert [numbers(drawn[k]) for k in "xy"] == [[1.0, 2.0], [3.0, 4.0, 5.0]]
+    assert [numbers(row) for row in drawn["z"]] == [[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]]
+    assert (drawn["xl"], drawn["yl"], drawn["unit"], drawn["title"]) == ("x", "y", "bar", "h")
+
+
+def test_a_notebooks_figure_has_the_same_lines_panels_and_looks():
+    figure = plotly_figure(two_panels())
+    first, second = figure.data
+    assert (first.name, list(first.y), first.mode, first.line.dash) == ("p", [10.0, 11.0, 12.0, 13.0], "lines", "dash")
+    assert (second.name, list(second.y), second.mode, second.line.dash) == ("s", [20.0, 21.0, 22.0], "markers", "solid")
+    assert (first.yaxis, second.yaxis) == ("y", "y2")
+    assert figure.layout.yaxis.title.text == "p [bar]"
+    assert figure.layout.yaxis2.title.text == "s [%]"
+    assert figure.layout.xaxis2.title.text == "t [s]"
+    assert figure.layout.height == 320
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"role": "after that"}, {"kind": "bands"}, {"row": 1}, {"upper": "missing"}, {"x": "x"}]
+)
+def test_a_line_that_cannot_be_drawn_is_refused(wrong):
+    known = {"label": "l", "x": "t", "y": "t", **wrong}
+    with pytest.raises(InputError, match="plot 'A': line 'l' asks for what is not there"):
+        Plot("A", [Frame("a", {"t": np.zeros(1)})], [Line(**known)], "t", ["y"])

@@ -9,7 +9,7 @@ from winch_friction.estimation import ParameterEstimate
 from winch_friction.physics.signals import Run
 from winch_friction.records.model_file import load_model
 from winch_friction.replay.recording import Replayed
-from winch_friction.report.replay_page import facts, learned_html, sentence, torque_plot
+from winch_friction.report.replay_page import facts, learned_html, next_steps, parameter_plot, sentence, torque_plot
 from winch_friction.report.replay_picture import most_learned, replay_figure
 
 SEED = load_model("a6vm215_crane2")
@@ -82,3 +82,74 @@ def test_a_motor_that_turns_is_drawn_turning_while_the_feedforward_waits(taken, 
     assert drawn == pytest.approx(100.0 * 30.0 / np.pi)
     shown = replay_figure(*turning(taken), SEED).axes[1].lines
     assert shown[1].get_ydata() == pytest.approx(100.0 * 30.0 / np.pi)
+
+
+@pytest.mark.parametrize(("share", "statuses", "said"), [
+    (0.0, ["invalid"], "Log speed_reference"), (0.5, ["learned", "invalid"], "ran to its bound"),
+    (0.5, ["seed", "seed"], "Replay a longer recording"), (0.5, ["seed", "frozen"], "Save what was learned"),
+])  # fmt: skip
+def test_what_to_do_hangs_on_what_was_learned(share, statuses, said):
+    content = {**CONTENT, "active_share": share, "parameters": [{"status": each} for each in statuses]}
+    (step,) = next_steps(content)
+    assert step.startswith(said) or said in step
+    assert dict(facts(content))["Recording"] == "10 s, 500 samples"
+
+
+def test_nothing_learned_is_said():
+    assert sentence({**CONTENT, "parameters": [{"status": "seed"}, {"status": "invalid"}]}).endswith(
+        "nothing was learned."
+    )
+
+
+def test_what_was_fed_forward_and_what_was_learned_are_drawn_over_the_same_time():
+    """Both begin at the recording's first sample, each with its own torque and look."""
+    at = np.array([5.0, 6.0, 7.0])
+    fed = Run("c", {"time": at, "friction_torque": np.array([1.0, 2.0, 3.0]), "speed": np.full(3, np.pi)})
+    own = Run("e", {"time": at + 0.5, "friction_torque": np.array([4.0, 5.0, 6.0]), "speed": np.full(3, 2 * np.pi)})
+    plot = torque_plot(fed, own)
+    lines = {line.label: (line.row, line.role, *(plot.frames[line.frame].columns[k].tolist() for k in (line.x, line.y)))
+             for line in plot.lines}  # fmt: skip
+    assert lines["feedforward"] == (0, "after", [0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
+    assert lines["friction by the learned model"] == (0, "before", [0.5, 1.5, 2.5], [4.0, 5.0, 6.0])
+    assert lines["speed"] == (1, "measured", [0.5, 1.5, 2.5], pytest.approx([60.0] * 3))
+    assert lines["speed that the feedforward took"] == (1, "after", [0.0, 1.0, 2.0], pytest.approx([30.0] * 3))
+
+
+def test_a_learned_parameter_is_drawn_beside_its_seed_with_its_deviation_in_the_units_that_people_read():
+    rpm = np.pi / 30.0
+    own = Run(
+        "e",
+        {
+            "time": np.array([5.0, 6.0]),
+            "C4": np.array([200.0, 210.0]) * rpm,
+            "C4_std": np.array([20.0, 10.0]) * rpm,
+            "C3": np.ones(2),
+            "C3_std": np.ones(2),
+        },
+    )
+    plot = parameter_plot(own, SEED, ["C3", "C4"])
+    columns = plot.frames[0].columns
+    lines = {(line.label, line.row): line for line in plot.lines}
+    assert list(plot.rows) == ["C3 [N·m]", "C4 [rpm]"]
+    assert columns["time [s]"].tolist() == [0.0, 1.0]
+    assert columns[lines["learned", 1].y] == pytest.approx([200.0, 210.0])
+    assert columns[lines["± 1 σ", 1].y] == pytest.approx([180.0, 200.0])
+    assert columns[lines["± 1 σ", 1].upper] == pytest.approx([220.0, 220.0])
+    assert columns[lines["seed", 1].y] == pytest.approx([SEED.value("C4") / rpm] * 2)
+    assert [lines[each, 1].role for each in ("learned", "seed", "± 1 σ")] == ["after", "before", "noise"]
+
+
+def test_the_picture_shows_parameters_in_deviations_of_their_seed():
+    fed, own = turning(90.0)
+    moved = {**own.columns, "C4": SEED.value("C4") + np.array([0.0, 1.0, 2.0]), "C4_std": np.array([2.0, 1.0, 0.5])}
+    torque, _, below = replay_figure(fed, Run("e", moved), SEED).axes
+    assert [line.get_label() for line in torque.lines] == ["feedforward", "learned friction"]
+    (line,) = [each for each in below.lines if "(C4)" in each.get_label()]
+    assert line.get_ydata() == pytest.approx([0.0, 0.5, 1.0])
+
+
+def test_a_parameter_without_a_first_deviation_was_not_learned():
+    own = learned(C5=0.5)
+    own.columns["C1_std"][0], own.columns["C3_std"][0] = np.nan, 0.0
+    assert most_learned(own, SEED)[0] == "C5"
+    assert len(most_learned(own, SEED)) == 4

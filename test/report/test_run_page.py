@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.signals import Run
+from winch_friction.physics.winch.model_curve import model_curve
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import read_run
-from winch_friction.report.run_page import channel_rows, run_plot, write_run_page
+from winch_friction.report.run_page import _friction, channel_rows, run_plot, write_run_page
 
 RUN = Run(
     "r",
@@ -70,3 +71,36 @@ def test_a_value_that_its_unit_takes_beyond_all_numbers_is_missing(tmp_path):
 
 def test_one_run_is_one_run(tmp_path):
     assert "1 run<" in write_run_page(tmp_path / "one.html", [RUN], None, None).read_text()
+
+
+def test_channels_of_one_kind_and_unit_share_a_panel_and_the_models_friction_has_its_own():
+    run = Run("r.csv", {
+        "time": 50.0 + np.arange(3.0), "motor_speed": np.full(3, np.pi), "speed_reference": np.full(3, 2.0 * np.pi),
+        "main.pressure_a": np.full(3, 1e7), "main.pressure_b": np.full(3, 2e7), "oil_temperature": np.full(3, np.nan),
+    })  # fmt: skip
+    plot = run_plot(run, np.array([7.0, 8.0, 9.0]))
+    columns = plot.frames[0].columns
+    assert list(plot.rows) == ["speed [rpm]", "pressure [bar]", "friction [N·m]"]
+    assert {line.label: (line.row, line.role, columns[line.y][0]) for line in plot.lines} == {
+        "motor speed": (0, "plain", pytest.approx(30.0)), "speed reference": (0, "plain", pytest.approx(60.0)),
+        "main.pressure a": (1, "plain", pytest.approx(100.0)), "main.pressure b": (1, "plain", pytest.approx(200.0)),
+        "model's friction": (2, "after", 7.0),
+    }  # fmt: skip
+    assert columns["time [s]"].tolist() == [0.0, 1.0, 2.0]
+    assert plot.caption == "r.csv, 3 samples"
+
+
+def test_the_models_friction_of_a_run_is_that_at_its_own_operating_point(crane_150t, crane2_model):
+    """At 55 t with constant speed it is that of the model's curve there."""
+    speed, count = 60.0, 50
+    curve = model_curve(crane2_model, crane_150t, load=55e3, speed=[speed])
+    known_of = {"pressure_a": curve.pressure[0] + 2e6, "pressure_b": 2e6, "displacement": crane_150t.max_displacement}
+    groups = {f"main.{name}": np.full(count, value) for name, value in known_of.items()}
+    columns = {"time": 0.1 * np.arange(count), "motor_speed": np.full(count, speed), "hook_load": np.full(count, 55e3)}
+    known = _friction(Run("r", columns | groups), crane_150t, crane2_model)
+    expected = curve.torque[0]
+    assert known[count // 2] == pytest.approx(expected, rel=0.02)
+    assert (
+        _friction(Run("r", {k: v for k, v in (columns | groups).items() if k != "hook_load"}), crane_150t, crane2_model)
+        is None
+    )

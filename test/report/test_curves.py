@@ -77,6 +77,8 @@ def test_each_load_has_its_own_line_and_shadow_where_the_deviation_is_known():
         "100 t": (0, "plain", "lines", [50.0, 60.0, 70.0]),
     }
     assert [line.upper for line in plot.lines] == ["plus 1 σ [N·m]", "", ""]
+    both = drawn(curve_plot([light, curve(load=100e3, torque=(50.0, 60.0, 70.0))]))
+    assert both["100 t ± 1 σ"][-1] == [48.0, 58.0, 68.0]
     assert "at 215 cm³/rev" in plot.caption
 
 

@@ -4,7 +4,8 @@ import os
 
 import pytest
 
-from winch_friction.fleet.recordings import find_recordings
+from winch_friction.fleet import recordings as module
+from winch_friction.fleet.recordings import Recording, at_hand, find_recordings
 from winch_friction.physics.errors import InputError
 
 
@@ -73,3 +74,65 @@ def test_a_simulators_truth_and_a_fleets_own_results_are_no_recordings(tmp_path)
     touched(tmp_path, "north/a.csv", "north/truth/a_truth.csv", "out/replay/north/a.parquet", "out/store/part.parquet")
     found = find_recordings([str(tmp_path)], without=[tmp_path / "out" / "replay", tmp_path / "out" / "store"])
     assert [(each.crane, each.name) for each in found] == [("north", "a")]
+
+
+@pytest.fixture
+def bucket():
+    """A store in memory, with a run file and a bag of two files."""
+    fsspec = pytest.importorskip("fsspec")
+    filesystem = fsspec.filesystem("memory")
+    for name, content in (("north/a.csv", b"abc"), ("south/bag/metadata.yaml", b"m"), ("south/bag/0.mcap", b"12345")):
+        filesystem.pipe(f"/logs/{name}", content)
+    yield "memory://logs"
+    filesystem.rm("/logs", recursive=True)
+
+
+def test_what_lies_in_a_bucket_is_found_fetched_and_removed_afterwards(bucket):
+    run, bag = find_recordings([bucket])
+    assert [(each.crane, each.name, each.size, each.changed) for each in (run, bag)] == [
+        ("north", "a", 3, 0), ("south", "bag", 6, 0),
+    ]  # fmt: skip
+    with at_hand(run) as path:
+        assert (path.name, path.read_bytes()) == ("a.csv", b"abc")
+    assert not path.exists()
+    with at_hand(bag) as path:
+        assert path.is_dir()
+        assert {each.name: each.read_bytes() for each in path.iterdir()} == {"metadata.yaml": b"m", "0.mcap": b"12345"}
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(("size", "fetched"), [(6, True), (5, False)])
+def test_a_recording_that_is_too_large_is_not_fetched(bucket, monkeypatch, size, fetched):
+    monkeypatch.setattr(module, "LARGEST_LOCAL_COPY", size)
+    bag = find_recordings([bucket])[1]
+    if fetched:
+        with at_hand(bag) as path:
+            assert path.exists()
+        return
+    with pytest.raises(InputError, match="too many to fetch"), at_hand(bag):
+        pass
+
+
+def test_a_recording_on_this_machine_is_itself_and_stays(tmp_path):
+    touched(tmp_path, "north/a.csv")
+    (found,) = find_recordings([str(tmp_path)])
+    with at_hand(found) as path:
+        assert path == tmp_path / "north" / "a.csv"
+    assert path.exists()
+
+
+def test_a_source_with_nothing_in_it_is_named(tmp_path):
+    touched(tmp_path, "north/a.csv", "south/notes.txt")
+    with pytest.raises(InputError, match="south: no recording there"):
+        find_recordings([str(tmp_path / "north"), str(tmp_path / "south")])
+    with pytest.raises(InputError, match="west: no such file or folder"):
+        find_recordings([str(tmp_path / "west")])
+    with pytest.raises(InputError, match="north: no recording there"):
+        find_recordings([str(tmp_path / "north")], without=[tmp_path])
+
+
+def test_every_file_of_a_bag_is_of_its_version():
+    one = Recording("a", "c", "n", (("x/0.mcap", 5), ("x/metadata.yaml", 1)), 7)
+    for files, changed in ((one.files[:1], 7), (one.files, 8), ((("x/1.mcap", 5), one.files[1]), 7)):
+        assert Recording("a", "c", "n", files, changed).version != one.version
+    assert Recording("b", "d", "m", (("y/0.mcap", 5), ("y/metadata.yaml", 1)), 7).version == one.version

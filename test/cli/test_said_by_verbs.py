@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.cli import bench, gap_blind, gap_output, identify_output, replay
+from winch_friction.cli import bench, gap_blind, gap_output, identify, identify_output, provenance, replay
 from winch_friction.cli.chart import chart
 from winch_friction.cli.compare import _loads, _refuse_two_cranes, _said
 from winch_friction.cli.console import show_json, show_table
@@ -497,3 +497,137 @@ def test_a_copy_is_known_by_time_and_speed_and_exchanged_ports_are_named():
     with pytest.raises(InputError, match="same samples, ports A and B of main exchanged in one of them"):
         refuse_copies([run("x", speed, a, b), run("y", speed, b, a)])
     refuse_copies([run("x", speed, a, b), run("y", -speed, a, b)])
+
+
+# -- ranges, settings, where a result comes from
+def test_a_range_is_in_the_unit_that_it_is_given_in():
+    assert identify._range("400-2500", 2.0, "speed") == (800.0, 5000.0)
+    assert identify._range("0-1", 1e5, "pressure") == (0.0, 1e5)
+    for wrong in ("2500-400", "5-5", "5", "1-2-3", "a-b"):
+        with pytest.raises(InputError, match=f"--speed '{wrong}'"):
+            identify._range(wrong, 1.0, "speed")
+
+
+def test_options_of_identify_motor_reach_the_fit(monkeypatch, tmp_path):
+    """Speeds in rad/s, pressures in Pa, displacements in m³/rad; what is not asked for is the motor's usual."""
+    from winch_friction.cli.main import run
+    from winch_friction.identification import motor_identification
+    from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+
+    asked = {}
+
+    def work(data, names, **options):
+        asked.update(options, names=names, data=data)
+        raise InputError("enough")
+
+    monkeypatch.setattr(motor_identification, "identify_motor", work)
+    words = ["identify", "motor", "a6vm215_generated", "--out", str(tmp_path / "m.yaml"), "--no-complex", "--seed", "7"]
+    more = [
+        "--speed",
+        "500-2000",
+        "--displacement",
+        "60-200",
+        "--restarts",
+        "2",
+        "--evaluations",
+        "400",
+        "--use",
+        "mj6",
+    ]
+    assert run([*words, *more, "--max-displacement", "230", "--weighting", "equal"]) == 2
+    inside = asked["fit_range"]
+    assert inside.speed == pytest.approx((500 * RPM, 2000 * RPM))
+    assert inside.pressure == pytest.approx((50 * BAR, 350 * BAR))
+    assert inside.displacement == pytest.approx((60 * CM3_PER_REV, 200 * CM3_PER_REV))
+    assert asked["data"].max_displacement == pytest.approx(230 * CM3_PER_REV)
+    assert (asked["names"], asked["chosen"], asked["seed"], asked["with_complex"]) == (["mj6"], "mj6", 7, False)
+    assert (asked["weighting"], asked["complex_options"]) == ("equal", {"restarts": 2, "max_evaluations": 400})
+
+
+def logged(step, **metadata):
+    return Run("r.csv", {"time": step * np.arange(20.0), "motor_speed": np.zeros(20)}, metadata=metadata)
+
+
+@pytest.mark.parametrize(("rate", "changed"), [(100.0, False), (10.0, True)])
+def test_a_slow_log_gets_age_limits_that_it_can_meet_and_is_told(rate, changed, capsys):
+    found = replay._settings_for(Path("r.csv"), logged(1.0 / rate), None)
+    said = capsys.readouterr().err
+    assert (found is not None) is changed
+    assert ("logged at 10 Hz" in said) is changed
+    if changed:
+        assert [phase.config.max_age for phase in found.phases] == pytest.approx([2.5 / rate] * len(found.phases))
+
+
+def test_a_users_own_age_limits_are_only_questioned(capsys):
+    from winch_friction.replay.settings import ReplaySettings
+
+    own = ReplaySettings()
+    assert replay._settings_for(Path("r.csv"), logged(0.1), own) is own
+    assert "as --params-file says: raise max_age there" in capsys.readouterr().err
+    assert replay._settings_for(Path("r.csv"), None, own) is own
+    with pytest.raises(InputError, match="column 'time': a sample every 100 s is too slow"):
+        replay._settings_for(Path("r.csv"), logged(100.0), None)
+
+
+def test_where_a_result_comes_from_holds_a_hash_of_every_file_and_of_a_bags_files_in_order(tmp_path, monkeypatch):
+    import hashlib
+    import sys
+
+    bag = tmp_path / "bag"
+    bag.mkdir()
+    (bag / "b.mcap").write_bytes(b"22")
+    (bag / "a.yaml").write_bytes(b"1")
+    (tmp_path / "r.csv").write_bytes(b"abc")
+    monkeypatch.setattr(sys, "argv", ["anything", "gap", "my runs", "--seed", "0"])
+    known = provenance.provenance_of([tmp_path / "r.csv", bag], "crane", "model", 0)
+    assert known["command"] == "winch-friction gap 'my runs' --seed 0"
+    assert (known["crane"], known["model"], known["seed"]) == ("crane", "model", 0)
+    assert known["files"] == [
+        {"name": "r.csv", "sha256": hashlib.sha256(b"abc").hexdigest()},
+        {"name": "bag", "sha256": hashlib.sha256(b"122").hexdigest()},
+    ]
+
+
+# -- a fleet over the months
+def test_a_fleet_says_who_changed_in_which_month_and_unit(tmp_path, monkeypatch, capsys):
+    from winch_friction.cli import fleet
+    from winch_friction.fleet import drift
+    from winch_friction.fleet.ledger import Outcome
+
+    seen = []
+    monkeypatch.setattr(
+        drift, "find_steps", lambda series: seen.extend(series) or [drift.Step("north", "friction", 24290, 8.0, 0.001)]
+    )
+    monkeypatch.setattr(drift, "find_unlike", lambda series: [drift.Unlike("south", "constant_torque", 40.0, 2.0, 9.0)])
+    row = {"recording": "a", "time": 1.7e9, "name": "friction", "value": 3.0, "std": 0.5, "unit": "%"}
+    of = lambda traits, *learned: Outcome(
+        "k", "north", "a", 0, 1.0, {"traits": traits, "verb": {"parameters": learned}}, ""
+    )
+    learned = {"parameter": "C3", "learned": 2.0, "sigma": 0.5, "unit": "N*m"}
+    found = fleet._over_time([of([row], learned), of([{**row, "value": 5.0}])], tmp_path)
+    assert [(each.crane, each.trait, each.values.tolist()) for each in seen] == [("north", "friction", [4.0])]
+    assert found["steps"] == [
+        {"crane": "north", "trait": "friction", "month": "2024-03", "size": 8.0, "p_value": 0.001, "unit": "%"}
+    ]
+    assert (found["unlike"][0]["unit"], found["notes"]) == ("N*m", [])
+    undated = fleet._over_time([of([{**row, "time": 5.0}])], tmp_path / "none")
+    assert undated["notes"] == ["no recording has a Unix time: nothing can be followed over the months"]
+    assert fleet._over_time([of([])], tmp_path / "none")["notes"] == []
+    rows = {}
+    monkeypatch.setattr(
+        fleet,
+        "show_table",
+        lambda title, columns, given: rows.update({title: dict(zip(columns, given[0], strict=True))}),
+    )
+    fleet._show_changes(found | {"notes": ["a note"]})
+    assert rows["changed"] == {
+        "crane": "north",
+        "what": "friction",
+        "month": "2024-03",
+        "size": 8.0,
+        "unit": "%",
+        "p": 0.001,
+    }
+    assert rows["unlike the others"]["level"] == 40.0
+    assert rows["unlike the others"]["fleet"] == 2.0
+    assert capsys.readouterr().out == "a note\n"

@@ -110,8 +110,9 @@ def test_a_chance_is_said_down_to_one_in_a_thousand(p, said):
 def test_what_the_repair_changes_is_a_torque_by_each_runs_own_pressure_and_leaves_heave():
     """Before minus after: 2 and -6 bar at 10 N m/bar, 1 and 0 bar at 20 N m/bar."""
     torque = np.sqrt((20.0**2 + 60.0**2 + 20.0**2) / 4)
-    assert gap_torque(result()) == pytest.approx(torque)
-    low, high = re.match(r"(\S+) to (\S+) mm", left_of_heave(result())).groups()
+    found = result(train=side(before=(99.0, 9.0, 9.0, 9.0)))
+    assert gap_torque(found) == pytest.approx(torque)
+    low, high = re.match(r"(\S+) to (\S+) mm", left_of_heave(found)).groups()
     assert (float(low), float(high)) == pytest.approx((8.9 / 457 * torque, 24.3 / 648 * torque), rel=0.05)
     assert left_of_heave(result("N*m")) == ""
 
@@ -307,8 +308,7 @@ def test_the_gap_by_speed_is_the_rms_of_the_locked_runs_before_and_after():
     assert columns["before [bar]"].tolist() == [3.0, 4.0, 1.0, 1.0]
     assert columns["after [bar]"].tolist() == [1.0, 2.0, 0.0, 1.0]
     assert columns["noise floor [bar]"].tolist() == [0.25] * 4
-    assert columns["motor speed [rpm]"] == pytest.approx([7.5, 17.5, 27.5, 37.5], abs=5.01)
-    assert (np.abs(columns["motor speed [rpm]"] - [10.0, 20.0, 30.0, 40.0]) <= 2.51).all()
+    assert columns["motor speed [rpm]"] == pytest.approx([7.5, 17.5, 27.5, 37.5], abs=0.05)
     assert [(line.role, line.kind) for line in plot.lines] == [
         ("before", "bars"),
         ("after", "bars"),

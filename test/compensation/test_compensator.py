@@ -1,6 +1,7 @@
 """The feedforward law and the rules of docs/physics.md §4."""
 
 import math
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -455,3 +456,126 @@ def test_a_sample_that_comes_just_in_time_is_no_silence(begin):
         outputs = [each.step(ahc_sample(begin + 0.1 * k, speed)) for each in (slow, quick)]
         assert outputs[0].friction_torque == pytest.approx(outputs[1].friction_torque, abs=0.01)
     assert outputs[0].state == "active"
+
+
+# -- what is set and what is told
+@pytest.mark.parametrize(("width", "taken"), [(74.9, False), (75.0, True)])
+def test_a_torque_commanded_drive_on_measured_speed_needs_a_width_of_75_rad_s(width, taken):
+    with nullcontext() if taken else pytest.raises(InputError, match=f"at least 75 rad/s .found {width:g}"):
+        CompensatorConfig(drive="torque", velocity_source="measured", reversal_speed=width)
+
+
+@pytest.mark.parametrize("name", ["motor_speed", "active.pressure_a", "main.displacement", "speed_reference"])
+def test_what_turns_with_every_wave_is_no_older_than_half_a_second(name):
+    CompensatorConfig(max_age=0.5, max_ages={name: 0.5, "hook_load": 60.0, "oil_temperature": 3600.0})
+    with pytest.raises(InputError, match="max_age must be 0.001 ... 0.5 s"):
+        CompensatorConfig(max_age=0.51)
+    with pytest.raises(InputError, match=f"max_ages.{name} must be at most 0.5 s, found 0.51"):
+        CompensatorConfig(max_ages={name: 0.51})
+
+
+@pytest.mark.parametrize(("limit", "bound"), [(math.inf, 2000.0), (1e4, 2000.0), (700.0, 700.0)])
+def test_a_limit_that_is_set_is_never_above_the_cranes_own(limit, bound):
+    each = compensator(absolute_limit=limit, slew_limit=1e6)
+    assert each.status()["torque_limit"] == bound == each.output.absolute
+    each.configure(CompensatorConfig(absolute_limit=limit, slew_limit=1e6))
+    assert each.output.absolute == bound
+
+
+def test_a_look_ahead_that_is_set_while_it_runs_is_looked():
+    each = compensator()
+    for lead in (0.0, 0.2):
+        each.configure(CompensatorConfig(lead=lead, jerk_filter=0.0))
+        outs = [each.step(ahc_sample(10.0 * lead + t, 50.0 + 30.0 * t)) for t in PERIOD * np.arange(20)]
+        assert outs[-1].speed == pytest.approx(50.0 + 30.0 * (19 * PERIOD + lead))
+
+
+@pytest.mark.parametrize(("source", "channel"), [("measured", "motor_speed"), ("reference", "speed_reference")])
+def test_another_source_of_the_speed_is_another_input_that_is_needed(source, channel):
+    each = compensator(velocity_source="measured" if source == "reference" else "reference")
+    each.configure(CompensatorConfig(velocity_source=source))
+    for name in ("motor_speed", "speed_reference"):
+        out = each.step(replace(ahc_sample(0.0, 50.0), **{name: math.nan}))
+        assert out.valid is (name != channel)
+        assert each.status()["missing"] == (channel if name == channel else "")
+
+
+def test_a_model_that_is_taken_over_needs_what_its_terms_read():
+    each, more = compensator(), term_named("viscosity_temperature")
+    values = (*SEED.values, *(parameter.typical for parameter in more.parameters))
+    each.load_model(replace(SEED, terms=(*SEED.terms, more), values=values, covariance=None))
+    assert not each.step(ahc_sample(0.0, 100.0)).valid
+    assert each.status()["missing"] == "oil_temperature"
+
+
+@pytest.mark.parametrize("acceleration", [-400.0, -20.0, 20.0, 400.0])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_sign_is_as_wide_as_the_acceleration_either_way_asks_for(acceleration, side):
+    """... and no narrower than the reversal speed: 400 rad/s^2 over 0.05 s are 20 rad/s, 20 rad/s^2 hardly one."""
+    each = compensator(scale=1.0, reversal_time=0.05, reversal_speed=3.0)
+    speed = 5.0 * side
+    for k in range(-50, 1):
+        each.step(ahc_sample(1.0 + k * PERIOD, speed + acceleration * k * PERIOD))
+    width = max(3.0, 0.05 * abs(acceleration))
+    sample = ahc_sample(1.0, speed)
+    full = sample_operating_point(sample, CRANE, drum_torque=CRANE.drum_torque(55e3), speed=speed)
+    torque = float(SEED.torque((math.tanh(speed / width), *full[1:])))
+    assert each._target.torque == pytest.approx(torque, rel=1e-6)
+    assert each.status()["drum_torque"] == CRANE.drum_torque(55e3)
+
+
+@pytest.mark.parametrize("source", ["reference", "measured"])
+def test_a_target_without_its_inputs_turns_with_its_own_speed_and_grows_little_from_rest(source):
+    """At a hundredth of the direction a target says next to nothing of the size: it would be a hundred times it."""
+    each = compensator(velocity_source=source, scale=1.0, reversal_time=0.0)
+    whole = model_torque(SEED, ahc_sample(0.0, 100.0), 100.0)
+    for start, most in ((100.0, whole), (0.03, 0.2 * whole)):
+        each.reset()
+        each.step(ahc_sample(0.0, start))
+        each._target.reversal = 0.5  # s, as of before
+        lost = replace(ahc_sample(PERIOD, -100.0), groups={}, motor_speed=30.0, speed_reference=30.0)
+        own = "speed_reference" if source == "reference" else "motor_speed"
+        each.step(replace(lost, **{own: -100.0}))
+        assert -most * (1.0 + 1e-9) <= each._target.torque < 0.0
+        assert each._target.reversal == math.inf
+    each.step(replace(lost, time=2 * PERIOD, **{own: 1e6}))  # no speed of this crane
+    assert each._target.torque < 0.0
+
+
+def test_a_target_without_its_inputs_stays_inside_the_envelope_of_the_seed():
+    each = compensator(scale=1.0, envelope=0.4)
+    each.step(ahc_sample(0.0, 0.5))
+    envelope = each._target.envelope
+    each._target.size = 10.0 * envelope
+    each.step(replace(ahc_sample(PERIOD, 100.0), groups={}))
+    assert each._target.torque == pytest.approx(envelope)
+
+
+def test_a_load_from_the_balance_takes_off_what_accelerates_the_shaft():
+    each, acceleration = compensator(load_filter=0.1, scale=1.0, acceleration_filter=0.0, jerk_filter=0.0), 60.0
+    for k in range(100):
+        speed = 50.0 + acceleration * k * PERIOD
+        held = CRANE.drum_torque(40e3) / CRANE.gear_ratio + CRANE.inertia * acceleration
+        held += each._law.torque(_point_of(each, k, speed), 1) if k else 0.0
+        motors = CRANE.motor_count("active") * CRANE.max_displacement
+        group = GroupSample(held / motors + 25 * BAR, 25 * BAR, CRANE.max_displacement)
+        each.step(Sample(k * PERIOD, speed, speed_reference=speed, groups={"active": group}))
+    assert each.status()["drum_torque"] == pytest.approx(CRANE.drum_torque(40e3), rel=0.02)
+
+
+def _point_of(each, k, speed):
+    group = GroupSample(300 * BAR, 25 * BAR, CRANE.max_displacement)
+    sample = Sample(k * PERIOD, speed, groups={"active": group})
+    return sample_operating_point(sample, CRANE, drum_torque=CRANE.drum_torque(40e3), speed=speed)
+
+
+@pytest.mark.parametrize("speed", [1.0, 20.0, 400.0])
+def test_a_slew_is_what_a_reversal_of_the_friction_at_this_load_needs_however_fast_it_turns(speed):
+    """A loss that is there near standstill alone must not hold up the next reversal; one that grows must not either."""
+    for name in ("stribeck", "viscous"):
+        seed = SEED.subset([name])
+        config = CompensatorConfig(reversal_time=0.5, reversal_speed=3.0, envelope=1.3)
+        each = FeedforwardCompensator(CRANE, seed, config)
+        each.step(ahc_sample(0.0, speed))
+        sizes = [abs(model_torque(seed, ahc_sample(0.0, 55.0), at)) for at in (3.0, speed)]
+        assert each.status()["slew_limit"] == pytest.approx(1.3 * max(sizes) / 0.5)

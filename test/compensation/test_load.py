@@ -9,6 +9,7 @@ from winch_friction.compensation.parts import DrumTorque, Needs
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.records.crane_file import load_crane
 
 FULL = 3 * 3.4e-5 + 8 * 1.1e-5  # m^3/rad of both groups
 
@@ -74,3 +75,34 @@ def test_a_rope_force_acts_on_the_radius_of_the_layer_in_use(crane_150t):
     radii = crane_150t.drum.layer_radii
     assert inner == pytest.approx(3e5 * radii[0])
     assert outer == pytest.approx(3e5 * radii[-1])
+
+
+@pytest.mark.parametrize("time_constant", [1.0, 5.0])
+@pytest.mark.parametrize("dt", [0.02, 1.0, 60.0])
+def test_a_step_moves_the_estimate_by_its_share_of_step_and_time_constant(crane_150t, time_constant, dt):
+    """After a gap it is near what the balance says now, and never beyond it."""
+    each = DrumTorque(crane_150t, math.nan, 17.0)
+    each.learn(balanced(crane_150t, 50e3, 0.0, 0.0), 0.0, 0.0, 0.02)
+    each.configure(math.nan, time_constant)
+    each.learn(balanced(crane_150t, 60e3, 0.0, 0.0), 0.0, 0.0, dt)
+    expected = 50.0 + 10.0 * dt / (dt + time_constant)
+    assert each.value(Sample(0.0, 0.0)) / crane_150t.drum_torque(1e3) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("channel", "factor"), [("hook_load", 1.0), ("rope_force", GRAVITY)])
+@pytest.mark.parametrize(("share", "believed"), [(-0.06, False), (-0.04, True), (0.99, True), (1.01, False)])
+def test_each_way_to_show_the_load_has_its_own_range(crane_150t, channel, factor, share, believed):
+    """A mass in kg and a force in N: what is too much of the one is little of the other."""
+    ranges = ChannelRanges(crane_150t)
+    needs = Needs(ranges, {"drum_torque"}, "measured", load_known=False)
+    shown = replace(balanced(crane_150t, 30e3, 0.0, 0.0), **{channel: share * factor * 2.0 * crane_150t.rated_load})
+    assert needs.missing(shown) == (() if believed else (channel,))
+
+
+@pytest.mark.parametrize(
+    ("shown", "load_known", "missing"),
+    [({}, False, True), ({}, True, False), ({"hook_load": 100.0}, False, False), ({"rope_force": 1e3}, False, False)],
+)
+def test_an_electric_drive_needs_its_torque_only_where_nothing_else_tells_the_load(shown, load_known, missing):
+    needs = Needs(ChannelRanges(load_crane("emps")), {"drum_torque"}, "measured", load_known=load_known)
+    assert needs.missing(Sample(0.0, 0.1, **shown)) == (("motor_torque",) if missing else ())

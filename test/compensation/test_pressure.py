@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
-from winch_friction.compensation.parts import CarryingPressure
+from winch_friction.compensation.parts import CarryingPressure, pressure_per_torque
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import GroupSample, Sample
 
@@ -107,3 +107,25 @@ def test_a_group_that_is_not_there_carries_nothing():
     each.of(0.0, 1e4, 0.0, 1e5)
     assert each.of(100.0, 1e4, 1.0, 1e5) == 1e6
     assert each.of(100.0, 0.0, 1.02, 1e5) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("groups", "name", "carries"),
+    [(["active", "passive"], "active", "active"), (["active", "passive"], "passive", "passive"),
+     (["active", "passive"], "main", ""), (["main"], "active", "main"), ([], "active", "")],
+)  # fmt: skip
+@pytest.mark.parametrize(("share", "counted"), [(0.5, 0.5), (0.05, 0.1), (-0.01, 0.1)])
+def test_the_group_that_was_set_carries_it_or_the_only_one(crane, groups, name, carries, share, counted):
+    members = {each: GroupSample(50 * BAR, 25 * BAR, share * crane.max_displacement) for each in groups}
+    found = pressure_per_torque(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name))
+    motors = crane.groups.get(carries, math.inf)
+    assert found == pytest.approx(1.0 / (motors * counted * crane.max_displacement))
+
+
+@pytest.mark.parametrize(
+    ("limit", "rated", "bound"),
+    [(math.inf, 450, 450), (math.inf, 0, 450), (200, 450, 200), (600, 450, 450), (600, 0, 450), (200, 0, 200)],
+)
+def test_its_bound_is_the_lower_of_what_was_set_and_what_the_crane_is_rated_for(crane, limit, rated, bound):
+    own = CarryingPressure.on(replace(crane, rated_pressure=rated * BAR), CompensatorConfig(pressure_limit=limit * BAR))
+    assert own.absolute == pytest.approx(bound * BAR)

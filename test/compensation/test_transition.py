@@ -23,7 +23,7 @@ def test_a_bridge_that_is_over_carries_nothing_again():
     assert bridge.value() == 0.0
 
 
-@pytest.mark.parametrize(("down", "left"), [(None, 0.75), (2.0, 0.75), (0.5, 0.0)])
+@pytest.mark.parametrize(("down", "left"), [(None, 0.75), (2.0, 0.75), (8.0, 0.75), (1.0, 0.5), (0.5, 0.0)])
 def test_a_fade_goes_down_within_the_shorter_of_two_times(down, left):
     fade = Fade(2.0, 1.0)
     assert fade.step(False, 0.5, down) == pytest.approx(left)

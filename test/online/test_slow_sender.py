@@ -44,3 +44,12 @@ def test_with_an_age_limit_beyond_its_period_a_slow_sender_is_served() -> None:
     service = CompensatorService(CRANE, SEED, TOPICS, config, ServiceOptions(watchdog_timeout=0.5))
     assert max(map(abs, fed(service, 0.0, 5.0, SLOW))) > 100.0
     assert service.status(5.0)["state"] == "active"
+
+
+@pytest.mark.parametrize(("late", "told"), [(0, False), (2, False), (3, True), (6, True)])
+def test_three_late_samples_in_a_row_are_a_slow_sender(late: int, told: bool) -> None:
+    service = CompensatorService(CRANE, SEED, TOPICS, None, ServiceOptions(watchdog_timeout=0.5))
+    for k in range(late + 1):
+        service.take_row(swell((k + 1) * SLOW))
+    assert service.law.status()["missing"] == (SAID if told else "")
+    assert (service.law.status()["state"] == "stale") is told

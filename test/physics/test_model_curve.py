@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.winch import group_point, operating_point
-from winch_friction.physics.winch.model_curve import LOWEST_SPEED, TOP_SPEED, model_curve
+from winch_friction.physics.winch.model_curve import LOWEST_SPEED, TOP_SPEED, model_curve, usual_loads
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
@@ -69,3 +70,37 @@ def test_a_curve_ends_where_its_machine_does(model, crane, fastest):
 def test_a_hydraulic_crane_is_drawn_to_the_top_of_the_papers_tests(crane_150t):
     speed = model_curve(MODEL, crane_150t).speed
     assert (speed[0], speed[-1]) == pytest.approx((LOWEST_SPEED, TOP_SPEED))
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_a_curve_is_of_the_setting_that_is_asked_for_and_of_either_way(crane_150t, share):
+    """At half the displacement the motors hold the same load with about twice the pressure."""
+    setting = share * crane_150t.max_displacement
+    found = model_curve(MODEL, crane_150t, load=55e3, displacement=setting, speed=SPEED)
+    assert found.displacement == setting
+    held = found.pressure * crane_150t.motor_count("main") * setting
+    assert held == pytest.approx(crane_150t.drum_torque(55e3) / crane_150t.gear_ratio + found.torque, rel=1e-6)
+    assert (np.sign(found.torque) == np.sign(SPEED)).all()
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [({"load": -1.0}, "load -1 kg"), ({"load": np.inf}, "load inf kg"), ({"speed": [np.nan]}, "one finite speed"),
+     ({"speed": []}, "one finite speed"), ({"displacement": 1.01}, "outside 0"), ({"displacement": 0.0}, "outside 0")],
+)  # fmt: skip
+def test_a_curve_of_what_cannot_be_is_refused(crane_150t, asked, said):
+    if "displacement" in asked:
+        asked = {"displacement": asked["displacement"] * crane_150t.max_displacement}
+    with pytest.raises(InputError, match=said):
+        model_curve(MODEL, crane_150t, **{"speed": SPEED, **asked})
+
+
+def test_the_usual_loads_are_shares_of_the_rated_one_or_of_what_the_motors_hold(crane_150t):
+    assert usual_loads(crane_150t) == (15e3, 55e3, 100e3)
+    assert usual_loads(replace(crane_150t, rated_load=30e3)) == (3e3, 11e3, 20e3)
+    bare = replace(crane_150t, rated_load=0.0)
+    held = 11 * crane_150t.max_displacement * 300e5 * 250.0 / (9.80665 * 0.8)  # kg
+    assert usual_loads(bare) == pytest.approx([0.4 * held * s for s in (0.1, 55.0 / 150.0, 100.0 / 150.0)], rel=0.05)
+    worm = replace(load_crane("worm_drive"), rated_load=0.0)
+    lever = 9.80665 * worm.drum.layer_radii[0] / worm.gear_ratio
+    assert usual_loads(worm)[2] == pytest.approx(0.4 * worm.absolute_torque_limit / lever / 1.5, rel=0.05)

@@ -10,7 +10,12 @@ from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import operating_point, run_operating_points, sample_operating_point
-from winch_friction.physics.winch.operating_point import PredictedSpeed, time_to_reversal
+from winch_friction.physics.winch.operating_point import (
+    PredictedSpeed,
+    smooth_sign,
+    smooth_signs,
+    time_to_reversal,
+)
 
 K_A, K_B = 1e-6, 3e-6
 A, B = np.array([120e5, 25e5, 70e5]), np.array([25e5, 90e5, 70e5])  # A higher, B higher, equal
@@ -126,3 +131,14 @@ def test_a_layer_that_nobody_says_is_the_outer_one_for_a_term_as_for_the_load(cr
 )
 def test_a_motion_turns_when_what_slows_it_has_brought_it_to_rest(speed, acceleration, seconds):
     assert time_to_reversal(PredictedSpeed(speed, acceleration)) == seconds
+
+
+@pytest.mark.parametrize("width", [0.0, 3.0])
+def test_a_sign_is_smooth_where_it_has_a_width_and_one_without(width):
+    speeds = np.array([-6.0, -0.5, 0.0, 0.5, 6.0])
+    expected = [math.tanh(v / width) if width else float(np.sign(v)) for v in speeds]
+    assert [smooth_sign(v, width) for v in speeds] == pytest.approx(expected)
+    assert smooth_signs(speeds, width) == pytest.approx(expected)
+    assert smooth_signs(speeds, np.array([0.0, 1.0, 0.0, 1.0, 0.0])) == pytest.approx(
+        [-1.0, math.tanh(-0.5), 0.0, math.tanh(0.5), 1.0]
+    )

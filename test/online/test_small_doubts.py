@@ -19,7 +19,17 @@ from winch_friction.online.agreement import (
     Voices,
 )
 from winch_friction.online.consumer import HeldTorque
-from winch_friction.online.doubt import LEAST_KNOWN, LONGEST_SPAN, MEMORY, Doubt, LoadAgainstDrive, _Way, span
+from winch_friction.online.doubt import (
+    LEAST_KNOWN,
+    LONGEST_SPAN,
+    MEMORY,
+    Doubt,
+    LoadAgainstDrive,
+    LoadBalance,
+    StandingReadings,
+    _Way,
+    span,
+)
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES
@@ -224,3 +234,178 @@ def test_a_torque_that_no_crane_says_is_ignored_either_way():
     assert not held.take(-600.0, 0.01)
     assert not held.take(600.0, 0.02)
     assert held.torque == 400.0
+
+
+# -- loads beside torques, by hand: tonnes of a crane rated for 150 that are shown and held, and how it turns
+def compared(shown, held, way, seconds, own=None, wire=math.nan):
+    """What is said at the end of so many seconds one way."""
+    own, said = own or LoadAgainstDrive(CRANE, RANGES), ""
+    motors = CRANE.motor_count("active") * CRANE.max_displacement
+    drop = CRANE.drum_torque(1e3 * held) / CRANE.gear_ratio / motors
+    groups = {"active": GroupSample(25e5 + drop, 25e5, CRANE.max_displacement)}
+    for k in range(round(seconds / 0.1)):
+        sample = Sample(0.1 * k, 50.0 * way, groups=groups, hook_load=1e3 * shown, wire_out=wire)
+        said = own.contradiction(sample, 0.1)
+    return said
+
+
+AT_ONCE, IN_THE_MIDDLE = "hook_load contradicts the drive torque", ", hoisting and lowering"
+
+
+@pytest.mark.parametrize(
+    ("shown", "held", "way", "said"),
+    [
+        (55, 55, 1, ""), (55, 12, 1, ""),  # apart by less than four fifths of the larger one
+        (55, 10, 1, AT_ONCE), (10, 56, 1, AT_ONCE), (55, -60, -1, AT_ONCE),
+        (50, 8, -1, ""), (50, 8, 1, AT_ONCE),  # friction takes up to 45 t of a lowered load, and none of a hoisted one
+        (0, 40, 1, ""), (0, 40, -1, AT_ONCE), (0, -40, -1, ""), (0, -40, 1, AT_ONCE),
+        (0, 46, 1, AT_ONCE), (0, -46, -1, AT_ONCE),
+        (14, 0, 1, ""), (16, 0, 1, AT_ONCE), (0, -14, 1, ""), (0, -16, 1, AT_ONCE),
+        (344, 344, 1, ""), (346, 346, 1, AT_ONCE + IN_THE_MIDDLE), (-346, -346, -1, AT_ONCE + IN_THE_MIDDLE),
+    ],
+)  # fmt: skip
+def test_a_load_and_a_torque_one_way_contradict_each_other_beyond_what_friction_may_be(shown, held, way, said):
+    own = LoadAgainstDrive(CRANE, RANGES)
+    assert compared(shown, held, way, 0.9, own) == ""
+    assert own.pending is bool(said)
+    assert compared(shown, held, way, 0.2, own) == said
+
+
+@pytest.mark.parametrize(
+    ("shown", "held", "wire", "doubted"),
+    [
+        (50, 80, 0, False), (50, 87, 0, True), (80, 50, 0, False), (87, 50, 0, True),
+        (50, 87, 5, False), (87, 50, 5, True), (50, 87, -5, True),  # of 5 t of wire a cell at the hook sees nothing
+        (20, 6, 0, False), (20, 4.5, 0, True), (0, 14, 0, False),
+    ],
+)  # fmt: skip
+def test_the_middle_of_both_ways_may_be_off_by_two_fifths_and_by_a_tenth_of_the_rated_load(shown, held, wire, doubted):
+    own, metres = LoadAgainstDrive(CRANE, RANGES), 1e3 * wire / CRANE.wire_mass
+    assert compared(shown, held, 1.0, 8.0, own, metres) == ""
+    assert compared(shown, held, -1.0, LEAST_KNOWN, own, metres) == ""
+    said = compared(shown, held, -1.0, 2.2, own, metres)  # of a memory of 20 s, 5 are known after 5.8
+    assert said == (AT_ONCE + IN_THE_MIDDLE if doubted else "")
+    assert own.pending is doubted
+
+
+@pytest.mark.parametrize(
+    ("shown", "name"),
+    [({"hook_load": 55e3}, "hook_load"), ({"rope_force": 5.4e5}, "rope_force"), ({}, "load (the parameter)")],
+)
+def test_what_contradicts_the_torque_is_named_as_it_was_shown(shown, name):
+    own, said = LoadAgainstDrive(CRANE, RANGES, 55e3), ""
+    groups = {"active": GroupSample(25e5, 25e5, CRANE.max_displacement)}
+    for k in range(20):
+        said = own.contradiction(Sample(0.1 * k, 50.0, groups=groups, **shown), 0.1)
+    assert said == f"{name} contradicts the drive torque"
+
+
+# -- the balance of torques
+def balanced(apart, hoisting, lowering, slow=0.0, **shown):
+    """A balance that is off by a share, after so many seconds of either way, and of creeping down."""
+    own, said, time = LoadBalance(5.0), "", 0.0
+    for seconds, speed in ((slow, -4.0), (hoisting, 50.0), (lowering, -50.0)):
+        for _ in range(round(seconds / 0.1)):
+            time += 0.1
+            said = own.contradiction(apart, Sample(time, speed, **(shown or {"hook_load": 55e3})))
+    return own, said
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_balance_is_suspect_from_a_twentieth_on_and_wrong_from_a_tenth_on_either_way(sign):
+    own, said = balanced(sign * 0.04, 20.0, 16.0)
+    assert (said, own.suspicion, own.pending) == ("", "", False)
+    own, said = balanced(sign * 0.07, 20.0, 16.0)
+    assert (said, own.pending) == ("", False)
+    assert own.suspicion.startswith(f"the balance of torques adds {sign * 0.07:+.0%} to hook_load: ")
+    own, said = balanced(sign * 0.12, 20.0, 16.0, rope_force=5e5)
+    assert said.startswith("rope_force contradicts the balance of torques by 12%: ")
+    assert (own.suspicion, own.pending) == ("", True)
+
+
+@pytest.mark.parametrize(
+    ("hoisting", "lowering", "slow", "told"),
+    [(40.0, 0.0, 0.0, False), (40.0, 4.0, 30.0, False), (0.0, 40.0, 0.0, False), (40.0, 6.0, 0.0, True)],
+)
+def test_no_balance_is_wrong_before_the_winch_has_turned_both_ways(hoisting, lowering, slow, told):
+    """One way, friction that the seed does not know looks like load."""
+    own, said = balanced(0.2, hoisting, lowering, slow)
+    assert bool(said) is told
+    assert not own.suspicion
+
+
+def test_a_suspicion_counts_from_when_both_ways_were_seen():
+    assert not balanced(0.07, 40.0, 6.0)[0].suspicion
+    assert balanced(0.07, 40.0, 16.0)[0].suspicion
+
+
+# -- readings that stand still
+MEASURED = ("motor_torque", "mechanical_power", "motor_current", "hook_load", "rope_force", "heave_velocity",
+            "wire_out", "shaft_angle", "load_torque")  # fmt: skip
+
+
+def standing(way=1.0, lives="", **shown):
+    """Whether it is doubted after two seconds in which nothing moves but what `lives`."""
+    own, said = StandingReadings(5.0), ""
+    for k in range(100):
+        group = GroupSample(150e5, 25e5, 3e-5)
+        sample = Sample(PERIOD * k, 60.0 * way, groups={"active": group}, **{"hook_load": 55e3, **shown})
+        owner = group if hasattr(group, lives) else sample
+        if lives:
+            setattr(owner, lives, 1e-6 * k)
+        said = own.contradiction(sample, PERIOD)
+    return "all readings" in said
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_readings_that_stand_still_are_doubted_whichever_way_it_turns_or_is_told_to(way):
+    assert standing(way)
+    assert standing(0.0, speed_reference=60.0 * way)
+    assert not standing(0.0, speed_reference=4.0 * way)
+    assert not standing(0.0)
+
+
+@pytest.mark.parametrize("lives", [*MEASURED, "pressure_a", "pressure_b", "displacement"])
+def test_one_reading_that_lives_shows_a_sender_that_does(lives):
+    assert not standing(lives=lives)
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("motor_torque", True), ("mechanical_power", True), ("motor_current", True), ("hook_load", False)],
+)
+def test_a_drive_of_any_kind_may_hang_and_one_without_a_torque_tells_nothing(name, told):
+    own, said = StandingReadings(5.0), ""
+    for k in range(100):
+        said = own.contradiction(Sample(PERIOD * k, 60.0, **{name: 30.0}), PERIOD)
+    assert ("all readings" in said) is told
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_speed_of_many_digits_hangs_lowering_as_well_as_hoisting(way):
+    own, found = StandingReadings(5.0), []
+    for k in range(200):
+        speed = way * (50.0 + 10.0 * math.sin(0.01 * min(k, 60)))
+        group = GroupSample(150e5 + k, 25e5, 3e-5)
+        found.append(own.contradiction(Sample(PERIOD * k, speed, groups={"active": group}), PERIOD))
+    assert not any(found[:100])
+    assert found[-1].startswith("motor_speed stands still")
+
+
+# -- how long a doubt counts
+@pytest.mark.parametrize(
+    ("looks", "stands"),
+    [
+        ([(True, 0.9)], False), ([(True, 1.0)], True), ([(True, 0.6), (None, 29.0), (True, 0.6)], True),
+        ([(True, 0.6), (None, 31.0), (True, 0.6)], False), ([(True, 1.1), (None, 300.0)], True),
+        ([(True, 0.6), (None, 20.0), (True, 0.3), (None, 20.0), (True, 0.2)], True),
+        ([(True, 0.6), (False, 0.1), (True, 0.6)], False), ([(True, 1.1), (False, 0.9)], True),
+        ([(True, 1.1), (False, 1.1)], False), ([(True, 1.1), (False, 0.9), (True, 0.1), (False, 0.9)], True),
+        ([(True, 1.1), (None, 31.0), (False, 0.5), (True, 0.1), (False, 0.6)], True),
+    ],
+)  # fmt: skip
+def test_a_doubt_counts_what_was_wrong_until_something_was_right_or_nothing_was_seen_for_long(looks, stands):
+    own = Doubt(1.0)
+    for wrong, seconds in looks:
+        own.step(wrong, seconds)
+    assert own.stands is stands

@@ -2,18 +2,21 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from winch_friction.estimation.answers import ParameterStatus
+from winch_friction.estimation.answers import ParameterStatus, ParameterStatuses, learned_model, parameter_estimates
 from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.estimation.dynamics import wire_step
 from winch_friction.estimation.interval import FrictionFunctions, Intervals, mean_direction
 from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.estimation.sample import LEAST_LOAD, PICKED_UP, HangingLoad, accepted, saturated, usable
 from winch_friction.estimation.sensor_errors import SensorErrors
 from winch_friction.estimation.trust import Excitation, VarianceFactor
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import ORDER
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges, sample_operating_point
 from winch_friction.records.crane_file import load_crane
@@ -206,3 +209,129 @@ def test_a_speed_that_passes_zero_has_no_direction_but_the_size_it_had():
 def test_a_setting_of_the_estimator_beyond_its_range_is_refused():
     with pytest.raises(InputError, match="settle_time must be 0 ... 600 s, found -1"):
         EstimatorConfig(settle_time=-1.0)
+
+
+def test_parameters_are_the_seed_and_so_many_of_its_sigmas():
+    own = ScaledParameters(SEED, CONFIG)
+    phi = np.linspace(-0.2, 0.2, own.size)
+    expected = np.array(SEED.values) + SEED.std * phi
+    assert own.contains(phi)
+    assert own.values(phi) == pytest.approx(expected)
+    assert own.theta(phi) == pytest.approx(expected)
+    assert own.std(np.diag(phi**2)) == pytest.approx(SEED.std * np.abs(phi))
+    assert own.covariance(own.seed_prior) == pytest.approx(np.array(SEED.covariance))
+
+
+def test_without_a_covariance_every_value_has_a_share_of_its_size_for_a_sigma():
+    bare = load_model("emps_symmetric").with_covariance(None)
+    bare = bare.with_values({name: -3.0 for name, p in zip(bare.parameter_names, bare.parameters, strict=True)
+                             if p.lower < 0.0})  # fmt: skip
+    assert min(bare.values) < 0.0
+    own = ScaledParameters(bare, EstimatorConfig(default_std=0.3))
+    assert own.scale == pytest.approx(0.3 * np.abs(bare.values))
+    assert (own.seed_prior == np.eye(own.size)).all()
+
+
+def test_a_covariance_fades_to_the_prior_that_is_believed_now():
+    own = ScaledParameters(SEED, EstimatorConfig(forgetting_time=100.0))
+    own.widen([0, 3])
+    learned = 0.1 * own.prior
+    for seconds, share in ((1.0, 0.01), (50.0, 0.5), (1e4, 1.0)):
+        assert learned + own.faded(learned, seconds) == pytest.approx((1.0 - share) * learned + share * own.prior)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_what_lies_outside_its_range_on_either_side_moves_the_others_along(side):
+    """The constrained estimate of least distance: a state that is correlated by a half moves by half as much."""
+    own = ScaledParameters(SEED, CONFIG)
+    limit = (own.upper if side > 0.0 else own.lower)[2]
+    x, covariance = np.zeros(2 + own.size), np.eye(2 + own.size)
+    x[4] = limit + side * 0.5
+    covariance[1, 4] = covariance[4, 1] = 0.5
+    found = own.projected(x, covariance, 2)
+    assert found[4] == pytest.approx(limit)
+    assert found[1] == pytest.approx(-side * 0.25)
+    assert not np.delete(found, [1, 4]).any()
+    assert own.at_limit(found[2:]).tolist() == [k == 2 for k in range(own.size)]
+
+
+def test_sigmas_that_are_taken_back_alone_leave_those_of_before_believed_again():
+    own = ScaledParameters(SEED, CONFIG)
+    own.widen([0, 1])
+    own.widen_only([SEED.parameter_names[4]])
+    assert own.widened_names == (SEED.parameter_names[4],)
+    others = np.delete(np.arange(own.size), 4)
+    assert own.prior[np.ix_(others, others)] == pytest.approx(own.seed_prior[np.ix_(others, others)])
+    assert own.prior[4, 4] == pytest.approx(own.range_factor[4] ** 2 * own.seed_prior[4, 4])
+
+
+def test_a_parameters_answer_tells_the_seeds_sigma_and_the_one_that_took_its_place():
+    own = ScaledParameters(SEED, CONFIG)
+    own.widen([1])
+    phi = np.zeros(own.size)
+    phi[1] = 0.1
+    model = learned_model(own, phi, 0.25 * own.seed_prior, crane="c")
+    texts = [f"status {k}" for k in range(own.size)]
+    for k, each in enumerate(parameter_estimates(own, model, texts)):
+        std = SEED.std[k]
+        assert (each.name, each.unit, each.status) == (SEED.parameter_names[k], SEED.parameters[k].unit, texts[k])
+        assert each.value == pytest.approx(SEED.values[k] + (0.1 * std if k == 1 else 0.0))
+        assert each.seed_value == SEED.values[k]
+        found = (each.std, each.seed_std, each.prior_std)
+        assert found == pytest.approx((0.5 * std, std, std * (own.range_factor[1] if k == 1 else 1.0)))
+
+
+def test_a_status_is_a_share_of_the_sigma_that_is_believed_now():
+    """A sigma that was taken back and has come down to the seed's own is learned, not as unknown as the seed was."""
+    own = ScaledParameters(SEED, CONFIG)
+    own.widen([0])
+    variances = np.where(np.arange(own.size) == 0, 0.25, 1.0) * own.prior.diagonal()
+    assert 0.5 * own.range_factor[0] > CONFIG.learned_below
+    each = ParameterStatuses(CONFIG, own)
+    each.step(SimpleNamespace(considered_variances=variances, phi=np.zeros(own.size)), False, 1.0)
+    assert each.levels == ["learned", *["seed"] * (own.size - 1)]
+
+
+# -- a step
+def between(before, after, config=CONFIG, seed=SEED, mass=50e3, last=None, **shown):
+    own = load(mass) if mass else HangingLoad(CRANE, 2.0)
+    intervals = Intervals(CRANE, config, own, FrictionFunctions(seed), SensorErrors(CRANE, seed, config))
+    taken = sample(time=0.04, speed=after, **shown)
+    start = last or accepted(sample(time=0.02, speed=before), CRANE)
+    return intervals.between(start, accepted(taken, CRANE), taken, seed.values, 300.0)
+
+
+@pytest.mark.parametrize(("shown", "length"), [(120.0, 120.0), (math.nan, 70.0), (0.2, 1.0), (-5.0, 1.0)])
+def test_a_step_has_the_wire_that_hangs_there_and_a_metre_of_it_at_least(shown, length):
+    config = EstimatorConfig(wire_length=70.0, wire_damping=2e5)
+    step, _ = between(60.0, 60.0, config, wire_out=shown, wire_layer=2.0)
+    assert np.array(step.wire) == pytest.approx(np.array(wire_step(CRANE, 50e3, 2.0, length, 2e5, 0.02)))
+
+
+@pytest.mark.parametrize(("mass", "load_torque"), [(50e3, None), (0.0, 300.0)])
+def test_a_step_is_taken_at_the_measured_load_or_at_the_one_that_was_found(mass, load_torque):
+    step, point = between(60.0, 60.0, mass=mass)
+    measured = CRANE.drum_torque(mass) / CRANE.gear_ratio
+    assert point[ORDER.index("drum_torque")] == pytest.approx(CRANE.gear_ratio * (load_torque or measured))
+    drive = CRANE.motor_count("active") * CRANE.max_displacement * 125e5
+    assert step.torque == pytest.approx(drive - measured)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "stick"),
+    [(2.9, 50.0, True), (50.0, -2.9, True), (-2.9, 2.9, True), (3.1, 50.0, False), (-50.0, 3.1, False)],
+)
+def test_a_step_with_either_end_near_standstill_is_one_in_stick(before, after, stick):
+    """... where the friction is unknown by thirty times its level, and else by a third of its change, squared."""
+    viscous = SEED.subset(["viscous"])
+    step, point = between(before, after, seed=viscous)
+    assert step.stick is stick
+    functions = FrictionFunctions(viscous)
+    if stick:
+        unknown = 30.0 * functions.magnitude(point, viscous.values, 1)
+    else:
+        ends = ((math.copysign(1.0, speed), abs(speed), speed, *point[3:]) for speed in (before, after))
+        one, other = (functions.torque(end, viscous.values, 1) for end in ends)
+        unknown = abs(other - one) / math.sqrt(3.0)
+    assert math.sqrt(step.unknown) == pytest.approx(unknown)
+    assert unknown > 0.0

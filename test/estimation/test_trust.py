@@ -87,3 +87,25 @@ def test_no_step_waits_for_the_band_of_the_largest_window():
     assert consistency.windows == consistency.inside == 1
     assert longest < 0.05
     assert nis_band(largest) == pytest.approx([chi2.ppf(each, largest) / largest for each in (0.025, 0.975)], rel=1e-9)
+
+
+@pytest.mark.parametrize(("nis", "limit"), [(0.0, 0.05), (9.0, 100.0), (1e6, 100.0)])
+def test_the_noise_is_taken_for_wrong_by_a_factor_of_tens_at_most(nis, limit):
+    factor = VarianceFactor(1.0)
+    for _ in range(200):
+        factor.step(nis, 0.2)
+    assert factor.value == limit
+
+
+def test_each_window_has_its_own_mean_and_counts_where_it_is_inside_both_ends_of_the_band():
+    each = Consistency(50)
+    lower, upper = nis_band(50)
+    assert (each.share_inside, each.last_mean, each.windows) == (1.0, 1.0, 0)
+    means = (0.9 * lower, 1.01 * lower, 1.0, 0.99 * upper, 1.1 * upper, 1.0)
+    for mean, inside in zip(means, (0, 1, 2, 3, 3, 4), strict=True):
+        for k in range(50):
+            each.step(mean + (0.1 if k % 2 else -0.1))
+        assert each.last_mean == pytest.approx(mean)
+        assert each.inside == inside
+    assert each.windows == 6
+    assert each.share_inside == pytest.approx(4.0 / 6.0)

@@ -14,9 +14,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.estimation.checkpoint import Kept, filter_state, restored_state
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
-from winch_friction.physics.winch.crane import Drum
+from winch_friction.physics.winch.crane import Drive, Drum
 from winch_friction.records.checkpoint import LARGEST, SCHEMA, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
@@ -219,3 +220,65 @@ def test_a_recording_given_as_the_checkpoint_is_not_read_into_memory(tmp_path):
         stream.truncate(LARGEST + 1)  # no disk is taken
     with pytest.raises(InputError, match="log.mcap: not a checkpoint: 16 MB; name another file"):
         read_checkpoint(path)
+
+
+# -- what a checkpoint belongs to, and what is no state
+OTHER = {
+    "crane": {"name": "another"}, "drive": {"drive": Drive("electric")}, "gear_ratio": {"gear_ratio": 251.0},
+    "inertia": {"inertia": 1.6}, "layer_radii": {"drum": Drum((0.8, 0.9))}, "groups": {"groups": {"main": 10}},
+    "max_displacement": {"max_displacement": 3e-5},
+}  # fmt: skip
+MANY = 2
+
+
+def kept_content():
+    seed = load_model("a6vm215_crane2").subset(["motor_viscous", "stribeck"])
+    size = MANY + len(seed.values)
+    x = np.arange(float(size))[:, None]
+    covariance = np.diag(1.0 + np.arange(float(size)))
+    covariance[0, 1] = covariance[1, 0] = 0.5
+    kept = Kept(x, covariance, np.full((1, size), 3.0), 55e3, ["seed"] * len(seed.values), [seed.parameter_names[0]])
+    return load_crane("crane_150t"), seed, kept, size
+
+
+@pytest.mark.parametrize("name", OTHER)
+def test_a_checkpoint_of_a_crane_that_differs_in_any_of_this_is_refused_by_its_name(name):
+    crane, seed, kept, size = kept_content()
+    content = filter_state(crane, seed, kept)
+    assert restored_state(content, crane, seed, size, 1).mass == 55e3
+    with pytest.raises(InputError, match=f"checkpoint: {name} is "):
+        restored_state(content, replace(crane, **OTHER[name]), seed, size, 1)
+
+
+def test_what_is_kept_comes_back_field_by_field_and_even():
+    crane, seed, kept, size = kept_content()
+    content = filter_state(crane, seed, kept)
+    content["covariance"][0][1] += 2e-3  # what rounding leaves between the halves
+    found = restored_state(content, crane, seed, size, 1)
+    assert found.x == pytest.approx(kept.x)
+    assert found.sensitivity == pytest.approx(kept.sensitivity)
+    assert found.covariance[0, 1] == found.covariance[1, 0] == pytest.approx(0.501)
+    assert (found.levels, found.widened) == (kept.levels, kept.widened)
+    assert np.isnan(
+        restored_state(filter_state(crane, seed, replace(kept, mass=float("nan"))), crane, seed, size, 1).mass
+    )
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [{"levels": ["seed"]}, {"levels": ["seed"] * 9}, {"widened": ["no such"]}, {"mass": -1.0}, {"mass": float("inf")},
+     {"state": [float("nan")] * 4}, {"sensitivity": [[float("inf")] * 4]}, {"covariance": (-np.eye(4)).tolist()}],
+)  # fmt: skip
+def test_numbers_that_are_no_state_are_refused(spoil):
+    crane, seed, kept, size = kept_content()
+    fitted = {key: _of_size(value, size) for key, value in spoil.items()}
+    with pytest.raises(InputError, match="not those of a filter"):
+        restored_state({**filter_state(crane, seed, kept), **fitted}, crane, seed, size, 1)
+
+
+def _of_size(value, size):
+    if not isinstance(value, list) or isinstance(value[0], str):
+        return value
+    if not isinstance(value[0], list):
+        return [value[0]] * size
+    return (-np.eye(size)).tolist() if len(value) > 1 else [[value[0][0]] * size]

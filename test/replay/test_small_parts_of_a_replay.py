@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation.answers import Estimate
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.bag_write import MESSAGES
@@ -96,3 +97,46 @@ def test_a_node_that_begins_afresh_has_the_model_that_was_learned_before(monkeyp
 @pytest.mark.parametrize("enabled", [True, False])
 def test_a_phase_is_on_or_off_as_it_was_recorded(enabled):
     assert voice(Phase(enabled=enabled)).service.status(0.0)["enabled"] is enabled
+
+
+def test_the_services_of_a_replay_have_the_settings_that_it_is_given():
+    own = ReplaySettings(
+        (Phase(config=ReplayConfig(max_age=0.9)),), model_delay=0.3, model_period=7.0, estimator_max_age=0.8,
+        watchdog_timeout=0.4, stamp_window=0.6,
+    )  # fmt: skip
+    topics = crane_topics(CRANE)
+    told = [each(CRANE, SEED, topics, own).service for each in (CompensatorVoice, EstimatorVoice)]
+    for service in told:
+        assert (service.options.watchdog_timeout, service.options.stamp_window) == (0.4, 0.6)
+    assert told[0].options.model_delay == told[0].schedule.delay == 0.3
+    assert (told[0].inputs.hold.max_age, told[1].inputs.hold.max_age, told[1].model_period) == (0.9, 0.8, 7.0)
+
+
+@pytest.mark.parametrize(("stamp", "begins"), [(99.9, False), (100.0, True), (101.0, True)])
+def test_a_phase_with_a_date_begins_with_it(stamp, begins):
+    own = voice(Phase(), Phase(start=100.0))
+    assert own._begins(Phase(start=100.0), stamp) is begins
+
+
+def test_every_phase_notes_what_it_refuses_in_the_one_list():
+    own = voice(Phase(), Phase())
+    own.service.refuse("of the first")
+    own._begin(Phase())
+    own.service.refuse("of the second")
+    own.offer_text("no: [model", "/friction_model")
+    assert own.refused[:2] == ["of the first", "of the second"]
+    assert own.refused[2].startswith("/friction_model line 1: not valid YAML")
+
+
+@pytest.mark.parametrize(
+    ("accepted", "torque", "valid"),
+    [(True, 3.0, True), (False, 3.0, False), (True, float("nan"), False), (False, float("nan"), False)],
+)
+def test_an_answer_is_valid_where_it_was_taken_in_and_shows_a_torque(accepted, torque, valid):
+    model = SimpleNamespace(values=(1.0,), std=np.array([0.1]))
+    record = EstimateRecord(SimpleNamespace(model=lambda: model, seed=SimpleNamespace(parameter_names=("k",))))
+    record.take(Estimate(0.5, accepted, "learning", 0.1, 0.2, 0.3, 1.0, 2.0, torque))
+    run = record.run("r")
+    assert run.aside["valid"].tolist() == [valid]
+    names = ("time", "innovation", "innovation_variance", "nis", "speed", "drum_torque", "k", "k_std")
+    assert [float(run[name][0]) for name in names] == [0.5, 0.1, 0.2, 0.3, 1.0, 2.0, 1.0, 0.1]

@@ -94,3 +94,23 @@ def test_a_torque_at_the_motors_and_no_load_on_the_rope_contradict_each_other(sh
     found = [each.contradictions(Sample(0.05 * k, 100.0 + 0.01 * k, groups=groups, **shown)) for k in range(30)]
     assert found[10] == ()
     assert found[-1] == (f"{said} contradicts the drive torque",)
+
+
+# of the shipped crane the largest speed is 628 rad/s: 63 rad/s and 30 % of the larger one may lie between the two
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("one", "other", "differ"),
+    [(200.0, 370.0, False), (200.0, 381.0, True), (200.0, 60.0, True), (200.0, 90.0, False), (200.0, -200.0, True),
+     (62.0, 0.0, None), (64.0, 0.0, False), (100.0, 0.0, True), (85.0, 0.0, False), (50.0, -50.0, None)],
+)  # fmt: skip
+def test_command_and_speed_contradict_each_other_whichever_is_the_larger(way, one, other, differ):
+    for speed, command in ((one, other), (other, one)):
+        own = Agreement(CRANE, ChannelRanges(CRANE))
+        assert own._speeds_differ(Sample(0.0, way * speed, speed_reference=way * command)) is differ
+
+
+def test_a_load_that_is_set_is_compared_with_the_torque_of_the_drive():
+    own = Agreement(CRANE, ChannelRanges(CRANE), load=55e3)
+    groups = {"active": GroupSample(25e5, 25e5, CRANE.max_displacement)}
+    found = [own.contradictions(Sample(0.1 * k, 50.0, speed_reference=50.0, groups=groups)) for k in range(20)]
+    assert "load (the parameter) contradicts the drive torque" in found[-1]

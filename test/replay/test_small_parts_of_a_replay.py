@@ -140,3 +140,10 @@ def test_an_answer_is_valid_where_it_was_taken_in_and_shows_a_torque(accepted, t
     assert run.aside["valid"].tolist() == [valid]
     names = ("time", "innovation", "innovation_variance", "nis", "speed", "drum_torque", "k", "k_std")
     assert [float(run[name][0]) for name in names] == [0.5, 0.1, 0.2, 0.3, 1.0, 2.0, 1.0, 0.1]
+
+
+@pytest.mark.parametrize(("silence", "begins"), [(0.9, False), (1.1, True), (-5.0, False)])
+def test_a_pause_is_a_second_without_a_sample(silence, begins):
+    own = voice(Phase(), Phase(start=float("nan")))
+    own.service.inputs.last_stamp = 50.0
+    assert own._begins(Phase(start=float("nan")), 50.0 + silence) is begins

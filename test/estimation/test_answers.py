@@ -21,7 +21,7 @@ def statuses(**settings):
     return ParameterStatuses(EstimatorConfig(**settings), parameters), state
 
 
-@pytest.mark.parametrize(("learning_every", "text"), [(0, "frozen"), (4, "learned")])
+@pytest.mark.parametrize(("learning_every", "text"), [(0, "frozen"), (4, "learned"), (5, "learned")])
 def test_a_parameter_is_frozen_only_where_learning_rested_all_the_time(learning_every, text):
     """Learning that goes on now and then, between two looks at the statuses, is learning."""
     each, state = statuses(settle_time=1.0)

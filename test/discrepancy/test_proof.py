@@ -123,3 +123,128 @@ def test_a_drift_is_said_with_the_interval_and_the_chance_of_its_line():
     assert 1e-3 < line.pvalue < 0.01
     wanted = f"changes by {8.0 * line.slope:+.3g} ± {8.0 * 1.96 * line.stderr:.2g} bar (95 %, p = {line.pvalue:.1g})"
     assert wanted in said
+
+
+@pytest.mark.parametrize(("before", "after", "share"), [(1.0, 0.5, 0.24 / 0.99), (1.0, 0.05, 0.0), (0.5, 0.5, 1.0)])
+def test_the_share_that_names_leave_is_one_of_the_square_above_the_floor(before, after, share):
+    assert module.share_left(side(after, before, noise_floor=0.06, least_noise=0.08)) == pytest.approx(share)
+
+
+@pytest.mark.parametrize(
+    ("fewer", "nameless", "minor"),
+    [
+        (0.25, 2.0, True),  # 0.05 of 3.98, above a floor of 0.1
+        (0.25, 0.5, False),  # the same, of 0.24
+        (0.4, 6.0, False),  # a small part of the whole, but plainly more than the floor
+    ],
+)
+def test_what_a_second_name_takes_is_measured_beside_what_all_of_them_take(fewer, nameless, minor):
+    assert module.is_minor(side(nameless), side(fewer), side(0.19)) is minor
+
+
+@pytest.mark.parametrize(("left", "of_nobody"), [(0.116, True), (0.117, False)])
+def test_what_is_nobodys_lies_within_a_third_of_the_floors_square(left, of_nobody):
+    """The square root of 1.35 times the floor of 0.1."""
+    assert module.nobodys(side(left, noise_floor=0.06, least_noise=0.08)) is of_nobody
+
+
+@pytest.mark.parametrize(("left", "which"), [(0.9, "training"), (0.9, "locked")])
+def test_what_is_left_is_said_of_the_runs_that_it_is_left_of(left, which):
+    why = (module.leaves_most if which == "training" else leaves_too_much)(side(left, 1.0, 0.06, 0.08))
+    assert why == f"81 % of the {which} gap's square above the noise is left (1 to 0.9)"
+
+
+def test_names_that_fit_only_their_own_runs_are_said_with_what_is_left_of_either():
+    """3 times the floor of these, and a tenth of the others: a floor is none's merit, so it is held against one."""
+    why = module.fits_only_its_own(side(0.01, noise_floor=0.06, least_noise=0.08), side(0.3, None, 0.06, 0.08))
+    assert why == "fits the runs that it was chosen on (0.01 left) and not the locked ones (0.3 left)"
+    assert not module.fits_only_its_own(side(0.2, noise_floor=0.06, least_noise=0.08), side(0.3, None, 0.06, 0.08))
+
+
+def blocked(run, position, after):
+    run, position = np.array(run), np.array(position)
+    return SimpleNamespace(
+        after=np.array(after, float), blocks=SimpleNamespace(run=run, position=position, segment=10 * run + position)
+    )
+
+
+def test_two_files_are_compared_over_the_blocks_that_both_can_use():
+    """Of a run a block's number is its place on the run's own grid, whatever else is usable."""
+    first = blocked([0, 0, 1, 1], [0, 2, 0, 3], [1.0, 2.0, 3.0, 4.0])
+    second = blocked([0, 0, 1, 1, 1], [1, 2, 0, 2, 3], [5.0, 6.0, 7.0, 8.0, 9.0])
+    refit, repaired, segment, run = module._common(first, second)
+    assert (refit.tolist(), repaired.tolist()) == ([2.0, 3.0, 4.0], [6.0, 7.0, 9.0])
+    assert (segment.tolist(), run.tolist()) == ([2, 10, 13], [0, 1, 1])
+    assert [len(each) for each in module._common(first, blocked([2], [0], [1.0]))] == [0, 0, 0, 0]
+
+
+def test_a_gap_is_related_to_the_drive_by_their_norms():
+    assert module._relative(np.array([3.0, 4.0]), np.array([30.0, -40.0])) == pytest.approx(0.1)
+    assert module._relative(np.zeros(0), np.zeros(0)) == 0.0
+
+
+HOURS, EVEN = np.arange(8.0), np.array([1, -1, -1, 1, 1, -1, -1, 1])
+
+
+def drifting(slope, temperature=(), hours=HOURS, names=()):
+    """Hours of runs whose loss along the motion grows by so much of a drive of 100 from the first to the last."""
+    loss = 100.0 * slope * (hours - hours[0]) / max(np.ptp(hours), 1.0) + 0.01 * EVEN[: len(hours)]
+    runs = [
+        Driven(
+            start=3600.0 * hour, present=frozenset(temperature), used=np.ones(2, bool), gap=np.zeros(2),
+            predicted=np.full(2, 100.0), unit_torque=1.0,
+        )
+        for hour in hours
+    ]  # fmt: skip
+    direction = np.tile([1.0, -1.0, 0.0], len(hours))
+    blocks = SimpleNamespace(run=np.repeat(np.arange(len(hours)), 3), direction=direction)
+    kept = np.repeat(loss, 3) * direction + 50.0 * (direction == 0.0)
+    return drift_note([SimpleNamespace(runs=runs, blocks=blocks, after=kept)], names, "bar")
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({}, True),
+        ({"slope": -0.05}, True),  # it may fall as well
+        ({"slope": 0.015}, False),  # less than 2 % of the drive is no one's concern, however sure
+        ({"slope": -0.015}, False),
+        ({"slope": 0.025}, True),
+        ({"temperature": ("oil_temperature",)}, False),
+        ({"names": ("wear_drift",)}, False),
+        ({"names": ("tare_load",)}, True),
+        ({"hours": np.arange(6.0)}, True),
+        ({"hours": np.arange(5.0)}, False),
+        ({"hours": np.zeros(8)}, False),
+    ],
+)
+def test_a_drift_is_said_of_enough_runs_where_it_matters_and_nothing_tells_it_apart(more, said):
+    """Over the blocks that move; what is left at rest is no loss along the motion."""
+    assert bool(drifting(**{"slope": 0.05, **more})) is said
+
+
+def test_a_drift_is_said_per_hour_and_with_its_sign():
+    assert drifting(-0.05, hours=3.0 + 2.0 * np.arange(8.0)).startswith("over 14.0 h the loss along the motion changes")
+    assert "changes by -5 " in drifting(-0.05, hours=3.0 + 2.0 * np.arange(8.0))
+
+
+@pytest.mark.parametrize(("at", "gap"), [([0.0, 1.0, 2.0, 3.0], [2.0] * 4), ([1.0, 2.0], [2.0, 2.0])])
+def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_own_run(monkeypatch, at, gap):
+    """A run that a correction of time has shortened has no value outside."""
+    monkeypatch.setattr(module, "block_size", lambda _: 1)
+    monkeypatch.setattr(module, "timing_column", lambda run: np.full(len(run.time), 30.0))
+    old = SimpleNamespace(
+        time=np.arange(4.0), start=100.0, used=np.ones(4, bool), gap=np.full(4, 50.0), unit_torque=10.0,
+        direction=np.array([1.0, 1.0, -1.0, -1.0]), channels={"load": np.arange(4.0)},
+    )  # fmt: skip
+    at = np.array(at)
+    new = SimpleNamespace(
+        time=at - at[0], start=100.0 + at[0], gap=np.full(len(at), 40.0), unit_torque=20.0,
+        used_at=lambda when: np.ones(len(when), bool),
+    )  # fmt: skip
+    found = module._blocks(old, new, 2.0)
+    assert found.position.tolist() == at.astype(int).tolist()
+    assert found.y == pytest.approx(np.full(len(at), 5.0))
+    assert found.x == pytest.approx(np.column_stack([gap, np.full(len(at), 3.0)]))
+    assert found.features["load"] == pytest.approx(at)
+    assert found.direction == pytest.approx(np.where(at < 2, 1.0, -1.0))

@@ -79,3 +79,58 @@ def test_a_handful_of_blocks_is_no_region():
     gap = np.where(direction < 0.0, 50.0, 0.0) + RNG.normal(0.0, 0.1, 600)
     blocks = SimpleNamespace(y=gap, direction=direction, features={})
     assert "lowering" not in [each.where for each in find_regions(blocks, gap, {})]
+
+
+def test_a_region_has_its_share_of_the_square_and_its_own_mean():
+    """Hoisting keeps 3, lowering -1: of the square nine tenths and one tenth."""
+    found = regions(np.where(DIRECTION > 0, 3.0, -1.0))
+    assert [each.where for each in found] == ["hoisting", "lowering"]
+    assert [each.share_of_gap for each in found] == pytest.approx([0.9, 0.1])
+    assert [each.mean_residual for each in found] == pytest.approx([3.0, -1.0])
+    assert [each.signals for each in found] == [("direction",)] * 2
+
+
+def test_no_gap_lies_nowhere():
+    assert regions(np.zeros(600), pressure=RNG.uniform(50.0, 150.0, 600)) == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"), [(READ_AS, "50 bar"), ({"pressure": (1e-5, "MPa")}, "0.0005 MPa"), ({}, "50")]
+)
+def test_a_threshold_is_a_quantile_in_the_unit_that_people_read(unit, words):
+    """By the last part of a signal's name, and without a unit where none is known."""
+    pressure = np.tile(np.linspace(0.0, 100.0, 300), 2)
+    direction = np.repeat([1.0, -1.0], 300)
+    gap = np.where(pressure > 50.0, 4.0, 0.0)
+    blocks = SimpleNamespace(y=gap, direction=direction, features={"active.pressure": pressure})
+    first = find_regions(blocks, gap, unit)[0]
+    assert first.where == f"active.pressure > {words}"
+    assert first.signals == ("active.pressure",)
+    assert first.share_of_gap == pytest.approx(1.0)
+    assert first.mean_residual == pytest.approx(4.0)
+
+
+def test_where_two_signals_meet_both_are_said_the_direction_last():
+    """A quarter of the plane, of which either signal alone has half nothing."""
+    first, second = (each.ravel() for each in np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 40)))
+    way = np.where(np.arange(1600) % 2, 1.0, -1.0)
+    gap = np.where((first > 0.67) & (second < 0.33), -2.0, 0.0)
+    blocks = SimpleNamespace(y=gap, direction=way, features={"a.load": first, "wire_out": second})
+    found = find_regions(blocks, gap, {})[0]
+    assert set(found.where.split(" and ")) == {"a.load > 0.667", "wire_out < 0.333"}
+    assert set(found.signals) == {"a.load", "wire_out"}
+    assert found.mean_residual < -1.5
+    gap = np.where((first > 0.67) & (way < 0), -2.0, 0.0)
+    found = find_regions(SimpleNamespace(y=gap, direction=way, features={"a.load": first}), gap, {})[0]
+    assert found.where == "a.load > 0.667 and lowering"
+    assert found.signals == ("a.load", "direction")
+
+
+def test_a_condition_that_is_met_hardly_ever_is_none_and_what_is_not_known_is_in_none():
+    pressure = np.tile(np.linspace(0.0, 100.0, 300), 2)
+    pressure[::2] = np.nan
+    gap = np.where(pressure > 85.0, 9.0, 0.0) + np.where(np.isnan(pressure), 1.0, 0.0)
+    found = find_regions(SimpleNamespace(y=gap, direction=np.zeros(600), features={"pressure": pressure}), gap, {})
+    high, known = next(each for each in found if each.where.startswith("pressure > 8")), pressure > 85.0
+    assert high.mean_residual == pytest.approx(9.0, rel=0.1)
+    assert high.share_of_gap == pytest.approx(81.0 * known.sum() / (81.0 * known.sum() + 300.0), rel=0.05)

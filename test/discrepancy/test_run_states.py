@@ -11,13 +11,28 @@ from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
+from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.catalogue import levels_of, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
-from winch_friction.discrepancy.run_states import EACH_RUN
+from winch_friction.discrepancy.run_states import (
+    EACH_RUN,
+    SINCE,
+    SOME_RUNS,
+    THEN,
+    State,
+    _drag,
+    _state,
+    _then,
+    _within,
+    in_each_run,
+    in_some_runs,
+)
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.term import Parameter
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model, save_model
 
@@ -232,3 +247,123 @@ def test_the_second_half_of_a_run_has_no_say_in_its_state():
         levels, deviations = levels_of(problem, slot, runs)
         assert np.all(np.abs(levels - 3.0 * told * (np.arange(runs) >= 5)) < 5.0 * deviations)
         assert np.all(deviations < 0.6)
+
+
+# -- windows
+INF = float("inf")
+
+
+def dated(*spans):
+    """Runs that begin and last so, in s; the clock of each begins with it."""
+    return [SimpleNamespace(start=begin, time=np.array([0.0, lasts]), name=f"r{begin:g}") for begin, lasts in spans]
+
+
+@pytest.mark.parametrize(
+    ("there", "windows", "law"),
+    [
+        ("..##", ((115.0, INF),), SINCE),  # half way between the end of the one and the beginning of the next
+        ("##..", ((-1.0, 31.0),), SOME_RUNS),  # what ends is no date from which on it is there
+        (".#..", ((19.0, 31.0),), SOME_RUNS),
+        (".#.#", ((19.0, 31.0), (299.25, 311.0)), SOME_RUNS),
+        ("..#.", ((199.0, 299.25),), SOME_RUNS),  # no further than half way to the next run
+        ("#..#", ((-1.0, 11.0), (299.25, 311.0)), SOME_RUNS),
+    ],
+)
+def test_a_state_is_there_in_the_windows_of_its_runs_and_no_others(there, windows, law):
+    """In the order of their dates, whatever the order that they are given in."""
+    spans = [(0.0, 10.0), (20.0, 10.0), (200.0, 99.0), (299.5, 10.5)]
+    shuffled = [2, 0, 3, 1]
+    runs, own = dated(*(spans[k] for k in shuffled)), np.array([there[k] == "#" for k in shuffled])
+    state = _state(runs, np.where(own, 5.0, 0.0), own)
+    assert (state.law, state.count, state.runs, state.both) == (law, there.count("#"), 4, False)
+    assert [pytest.approx(each) for each in windows] == list(state.windows)
+    for run, inside in zip(runs, own, strict=True):
+        assert any(begin <= run.start <= end for begin, end in state.windows) is bool(inside)
+
+
+@pytest.mark.parametrize(
+    ("other", "level", "both"),
+    [(0.9, 6.0, False), (1.1, 6.0, True), (-1.1, 5.0, False), (-1.3, 5.0, True), (1.1, -6.0, False), (6.0, 0.0, True)],
+)
+def test_what_the_other_runs_have_counts_beside_what_lies_between_the_levels(other, level, both):
+    """A fifth of the step between the two, whichever way; a run of which nothing is known has no say."""
+    there = np.array([False, False, True, True, False])
+    levels = np.where(there, level, other)
+    levels[4] = np.nan
+    state = _state(dated(*((100.0 * k, 10.0) for k in range(5))), levels, there)
+    assert state.both is both
+    assert state.label == "in some runs, 2 of 5" + ", and another size else" * both
+
+
+@pytest.mark.parametrize(("start", "inside"), [(9.0, 0.0), (10.0, 1.0), (20.0, 1.0), (21.0, 0.0), (35.0, 1.0)])
+@pytest.mark.parametrize("both", [False, True])
+def test_a_states_column_is_its_causes_within_its_windows(start, inside, both):
+    candidate = Candidate("zero", columns=lambda run, values: np.full((3, 1), values["x"]))
+    state = State(((10.0, 20.0), (30.0, 40.0)), 2, 4, both)
+    found = _within(candidate, state, SimpleNamespace(start=start), {"x": 7.0})
+    assert found.tolist() == [[7.0] * both + [7.0 * inside]] * 3
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_a_states_corrections_hold_during_its_windows_and_what_all_runs_have_always(both):
+    def corrects(found, *_):
+        return [Correction("pressure_offset", found["x"])]
+
+    windows = ((10.0, 20.0),)
+    found = {"x": 2.0e5, "x" + THEN: 3.0e5} if both else {"x": 3.0e5}
+    made = _then(Candidate("zero", corrects=corrects), State(windows, 1, 2, both), found, None, None)
+    always = [(2.0e5, ())] * both
+    assert [(each.value, tuple(each.during)) for each in made] == [*always, (3.0e5, windows)]
+
+
+def a_slot(name):
+    shape = Shape("all groups", {"port_a": 1.0})
+    linear = (Parameter("x", "Pa", 1.0, doc="a zero"),)
+    own = Candidate(name, linear=linear, corrects=lambda *_: [], continuous=("late",), shapes=lambda _: [shape])
+    return Slot(name, "", (1,), origin=(own, shape))
+
+
+@pytest.mark.parametrize(("other", "names"), [(0.0, ["x"]), (3.0, ["x", "x" + THEN])])
+def test_a_zero_in_some_runs_is_a_law_of_its_cause_with_an_amount_for_the_others_where_they_have_some(
+    monkeypatch, other, names
+):
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: False)
+    there = np.array([False, True, False])
+    runs = dated((0.0, 10.0), (100.0, 10.0), (200.0, 10.0))
+    (found,) = in_some_runs(a_slot("zero"), runs, np.where(there, 8.0, other), there)
+    assert (found.name, found.law_name, found.continuous) == ("zero", SOME_RUNS, ())
+    assert [each.name for each in found.linear] == names
+    (shape,) = found.shapes(runs)
+    assert shape.label.startswith("all groups, in some runs, 1 of 3")
+    assert shape.values == {"port_a": 1.0}
+
+
+@pytest.mark.parametrize(("there", "laws"), [([False, True, False], [SOME_RUNS]), ([False, True, True], [])])
+def test_a_brake_that_drags_since_a_date_has_a_law_of_its_own(monkeypatch, there, laws):
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: False)
+    there = np.array(there)
+    runs = dated((0.0, 10.0), (100.0, 10.0), (200.0, 10.0))
+    found = in_some_runs(a_slot("brake_drag"), runs, np.where(there, 8.0, 0.0), there)
+    assert [each.law_name for each in found] == laws
+
+
+def test_what_a_signal_tells_is_no_candidate(monkeypatch):
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: True)
+    there = np.array([False, True, False])
+    runs = dated((0.0, 10.0), (100.0, 10.0), (200.0, 10.0))
+    assert in_some_runs(a_slot("zero"), runs, 8.0 * there, there) == []
+
+
+def test_a_drag_of_each_run_has_its_windows_by_date_and_its_amounts_as_shares_of_the_largest(monkeypatch):
+    """A brake drives nothing: what seems to is none of it."""
+    made = []
+    monkeypatch.setattr("winch_friction.discrepancy.run_states._drag", lambda *each: made.append(each) or each)
+    runs = dated((200.0, 10.0), (0.0, 10.0), (100.0, 10.0))
+    in_each_run(runs, np.array([1.0, 3.0, -2.0]))
+    windows = ((-1.0, 11.0), (99.0, 111.0), (199.0, 211.0))
+    assert made == [(cause, windows, EACH_RUN, (1.0, 0.0, 0.3333)) for cause in ("brake_drag", "wear_drift")]
+
+
+def test_a_drag_for_a_time_is_named_for_its_cause_and_its_law():
+    own = _drag("brake_drag", ((1.0, 2.0), (3.0, 4.0)), SOME_RUNS)
+    assert (own.name, own.law_name, own.term.name) == ("brake_drag", SOME_RUNS, "brake_drag_in_some_runs")

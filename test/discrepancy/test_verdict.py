@@ -1,6 +1,7 @@
 """What makes a verdict: what is left where nothing swings and where something does, large gaps, ripples, and size."""
 
 import pickle
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,13 +12,21 @@ from winch_friction.discrepancy.answer import (
     NOTHING,
     UNEXPLAINED,
     Combination,
+    Effect,
     GapOptions,
+    GapResult,
+    Side,
+    Verdict,
     decide,
+    named,
     steady_excess,
+    unexplained_share,
 )
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Untestable
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.chance import Dependence
+from winch_friction.discrepancy.engine.chance import Dependence, Size
 from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.selection import Considered
 from winch_friction.discrepancy.thresholds import LIMITS
 
 SIZE = 1000  # blocks
@@ -108,3 +117,115 @@ def test_what_a_user_has_chosen_goes_to_other_processes():
     """Many cranes are searched at once."""
     chosen = GapOptions(seed=3, plan=False)
     assert pickle.loads(pickle.dumps(chosen)) == chosen
+
+
+# -- what is written
+@pytest.mark.parametrize(("law_name", "free", "law", "kind"), [
+    ("", False, "wave", "literature"), ("bent", True, "bent", "free"),
+])  # fmt: skip
+def test_an_effect_is_written_with_each_of_its_figures_in_its_own_place(law_name, free, law, kind):
+    known = {"a": ParameterEstimate(2.0, 0.3, "kg")}
+    own = Effect(
+        "wave", ("other",), "all groups", r"\tau", known, 0.01, 0.4, 0.9, "just after reversals", law_name, free,
+        Combination("a + b", 5.0, 0.5, "kg", "tied"),
+    )  # fmt: skip
+    content = own.content()
+    assert content.pop("identifiable_combination")["expression"] == "a + b"
+    assert content == {
+        "name": "wave", "indistinguishable_from": ["other"], "variant": "all groups", "law": law, "law_kind": kind,
+        "latex": r"\tau", "parameters": {"a": {"value": 2.0, "std": 0.3, "unit": "kg"}},
+        "evidence": {"p_value": 0.01, "cv_gain": 0.4, "selection_frequency": 0.9, "where": "just after reversals"},
+    }  # fmt: skip
+
+
+def kept(names, number, blocks=2, after=1.0):
+    """Runs of these names whose figures all begin with their number: 2.1 before, 2.2 after, ..."""
+    of = {name: SimpleNamespace(name=name) for name in names}
+    whole = SimpleNamespace(y=np.zeros(blocks * len(names)), run=np.repeat(np.arange(len(names)), blocks))
+    return Side(
+        tuple(of.values()), whole, 0.0 * whole.y, after + 0.0 * whole.y, Size(number + 0.1, (number, number + 0.15)),
+        Size(number + 0.2, (number + 0.05, number + 0.25)), number + 0.3, number + 0.4, (number + 0.5, number + 0.6),
+    )  # fmt: skip
+
+
+def result(**more):
+    own = {
+        "verdict": "ambiguous", "refused": "why", "effects": (), "unit": "bar", "train": kept("abc", 1.0),
+        "holdout": kept("de", 2.0), "depends": (Dependence("speed", 0.2, 1e-3),), "unexplained_share": 0.7,
+        "considered": (Considered("wave", "all", 0.3, 0.04, 1, "taken"),),
+        "untestable": (Untestable("air", r"V", "a command", "it shows there"),), "model": None, "seed_model": None,
+    }  # fmt: skip
+    written = GapResult(**{**own, **more})
+    written.__dict__["regions"] = (SimpleNamespace(where="hoisting", share_of_gap=0.6, mean_residual=-1.5),)
+    return written.content()
+
+
+def test_the_answer_is_written_with_each_of_its_figures_in_its_own_place():
+    content = result()
+    assert content["gap"] == {
+        "unit": "bar",
+        "train": {"before": 1.1, "after": 1.2, "relative_before": 1.5, "relative_after": 1.6},
+        "holdout": {
+            "before": 2.1, "after": 2.2, "relative_before": 2.5, "relative_after": 2.6, "noise_floor": 2.3,
+            "before_ci": [2.0, 2.15], "after_ci": [2.05, 2.25], "runs": ["d", "e"],
+        },
+    }  # fmt: skip
+    assert content["regions"] == [{"where": "hoisting", "share_of_gap": 0.6, "mean_residual": -1.5}]
+    assert content["unexplained"] == {"depends_on": ["speed"], "share_of_gap": 0.7, "reason": "why"}
+    assert content["untestable"] == [{"name": "air", "needs": "a command", "because": "it shows there"}]
+    assert content["considered"] == [
+        {"name": "wave", "variant": "all", "stage": 1, "cv_gain": 0.3, "p_value": 0.04, "outcome": "taken"}
+    ]
+    assert (content["schema"], content["verdict"], content["next_experiment"]) == ("winch_friction.gap/2",) + (
+        "ambiguous", None,
+    )  # fmt: skip
+
+
+def test_proposals_are_numbered_from_one_as_their_files_are():
+    content = result(proposals=[SimpleNamespace(content=lambda stem: stem)] * 2, next_experiment={"scenario": "a.yaml"})
+    assert content["proposals"] == ["proposal_1", "proposal_2"]
+    assert content["next_experiment"] == {"scenario": "a.yaml"}
+
+
+def test_of_locked_runs_without_a_block_no_figure_is_written():
+    none = result(holdout=kept("d", 2.0, blocks=0))["gap"]["holdout"]
+    assert none.pop("runs") == ["d"]
+    assert set(none.values()) == {None}
+
+
+def test_a_floor_is_noise_and_what_no_balance_closes_and_excuses_a_step_of_the_transducers():
+    side = replace(kept("a", 1.0), noise_floor=0.3, least_noise=0.4)
+    assert side.floor == pytest.approx(0.5)
+    assert side.excused == pytest.approx(np.hypot(0.3, 0.4 * LIMITS.step))
+
+
+def test_what_each_run_keeps_is_in_floors_and_the_one_that_keeps_most_comes_first():
+    side = replace(kept("abc", 1.0), noise_floor=0.3, least_noise=0.4, after=np.array([1.0, -1, 3, -3, 2, 2]))
+    assert {run.name: list(own) for run, own in side.left_by_run}["b"] == pytest.approx([6.0, -6.0])
+    assert list(side.most_left_first.items()) == [(n, pytest.approx(v)) for n, v in (("b", 6), ("c", 4), ("a", 2))]
+
+
+@pytest.mark.parametrize(
+    ("depends", "said"),
+    [
+        ([("a", 0.3, 1e-4), ("b", 0.2, 0.5), ("c", 0.1, 0.01)], "ac"),  # those that are sure
+        ([("a", 0.3, 1e-4), ("c", LIMITS.least_named_share, 1e-4)], "a"),  # and large enough to be named
+        ([("a", 0.3, 0.5), ("b", 0.0, 0.5), ("c", -0.1, 0.5)], "a"),  # of none that is sure what predicts anything
+        ([(name, 0.1, 1e-4) for name in "abcde"], "abcde"[: LIMITS.most_signals]),
+    ],
+)
+def test_the_signals_that_are_named_are_those_that_are_sure_or_else_those_that_predict(depends, said):
+    assert [each.signal for each in named([Dependence(*each) for each in depends])] == list(said)
+
+
+@pytest.mark.parametrize(
+    ("kind", "found", "before", "after", "share"),
+    [
+        (MISSING, True, 110.0, 30.0, 0.2), (MISSING, True, 110.0, 5.0, 0.0), (MISSING, True, 20.0, 60.0, 1.0),
+        (UNEXPLAINED, False, 110.0, 30.0, 1.0), (NOTHING, False, 110.0, 30.0, 0.0),
+    ],
+)  # fmt: skip
+def test_the_share_that_no_name_explains_is_one_of_what_lies_above_the_noise(kind, found, before, after, share):
+    base, final = SimpleNamespace(loss=before), SimpleNamespace(loss=after)
+    selection = SimpleNamespace(base=base, final=final, found=["one"] * found)
+    assert unexplained_share(SimpleNamespace(floor=10.0), selection, Verdict(kind)) == pytest.approx(share)

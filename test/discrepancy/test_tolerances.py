@@ -1,12 +1,29 @@
 """A delay within a sample and a zero within a transducer's step are no names, whatever they take off a gap."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
+from winch_friction.discrepancy.estimates import (
+    InFile,
+    SeedRefuted,
+    _cost,
+    _inflated,
+    _surprise,
+    agreed,
+    estimates_of,
+    takes_little,
+    together,
+    widened,
+    within_a_sample,
+    within_a_step,
+)
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction.correction import Correction
 
 WARMTH = np.linspace(-1.0, 1.0, 201)
 
@@ -64,3 +81,131 @@ def test_names_that_take_less_than_half_of_what_a_refit_leaves_take_little(whole
         takes_little(SimpleNamespace(excess=lambda each: {"refit": whole, "names": left}[each]), "refit", "names")
         is little
     )
+
+
+def test_a_delay_is_held_against_the_slowest_log_and_both_are_said_in_ms():
+    found = {"tau": SimpleNamespace(value=0.001), "tau_2": SimpleNamespace(value=-0.009)}
+    side = SimpleNamespace(runs=[SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02)])
+    why = within_a_sample({"signal_delay": found}, side)
+    assert why == "a delay of 9 ms is how a log of a sample every 20 ms is made"
+
+
+def test_a_zero_within_a_step_is_said_with_its_size_and_the_step():
+    zeros = Slot("pressure_offset", "", (1,))
+    problem = SimpleNamespace(blocks=SimpleNamespace(x=np.full((9, 2), 2.0)), columns=lambda _: (0, 1))
+    fitted = SimpleNamespace(slots=(zeros,), beta=np.array([5.0, 0.04]))
+    why = within_a_step(SimpleNamespace(problem=problem), [fitted], 0.1)
+    assert why == f"a zero of 0.08 is within the {0.1 * LIMITS.step:.2g} by which a transducer steps"
+
+
+# -- estimates
+def shaped(label, law="", **values):
+    linear = (SimpleNamespace(name="a", unit="kg"), SimpleNamespace(name="b", unit="kg/m"))
+    parameters = [*linear, *(SimpleNamespace(name=name, unit="s") for name in values)]
+    candidate = SimpleNamespace(linear=linear, term=SimpleNamespace(parameters=parameters) if values else None)
+    return Slot("wave", label, (1, 2), law=law, origin=(candidate, SimpleNamespace(values=values)))
+
+
+def known_by(slots, seen=(1.0, 1.0, 1.0)):
+    return SimpleNamespace(problem=SimpleNamespace(slots=slots), total_g=np.diag(seen))
+
+
+@pytest.mark.parametrize(("seen", "names"), [((1.0, 1.0, 1.0), ["a", "b"]), ((1.0, 1.0, 0.0), ["a"])])
+def test_an_amplitude_of_which_the_runs_say_nothing_is_no_estimate(seen, names):
+    own = shaped("all")
+    found = estimates_of(own, np.array([2.0, 3.0]), np.array([0.2, 0.3]), known_by((own,), seen))
+    every = {"a": ParameterEstimate(2.0, 0.2, "kg"), "b": ParameterEstimate(3.0, 0.3, "kg/m")}
+    assert found == {name: every[name] for name in names}
+
+
+@pytest.mark.parametrize(
+    ("at", "others", "std"),
+    [
+        (5.0, (4.0, 7.0), 0.5),  # a tenth of it, for the grid is wider
+        (5.0, (), 0.5),
+        (1000.0, (990.0, 1030.0), 5.0),  # half the way to the next one
+        (-1000.0, (-990.0, -1030.0), 5.0),
+        (1000.0, (990.0, 1200.0), 100.0),
+    ],
+)
+def test_a_shape_is_known_to_a_tenth_or_to_half_the_way_to_the_next(at, others, std):
+    """Of its own law alone, and an amplitude of it is one although the runs hardly see it."""
+    own = shaped("own", t=at)
+    slots = (own, *(shaped("", t=other) for other in others), shaped("", "bent", t=at + 0.1))
+    found = estimates_of(own, np.array([2.0, 3.0]), np.array([0.2, 0.3]), known_by(slots, (1.0, 0.0, 0.0)))
+    assert set(found) == {"a", "b", "t"}
+    assert found["t"] == ParameterEstimate(at, pytest.approx(std), "s")
+
+
+def test_what_two_laws_of_a_cause_both_have_adds_and_the_rest_of_either_stays():
+    a, b, c = (ParameterEstimate(value, std, "kg") for value, std in ((3.0, 0.3), (-1.0, 0.4), (7.0, 0.1)))
+    both = together({"x": a, "y": c}, {"x": b, "z": c})
+    assert both == {"x": ParameterEstimate(2.0, pytest.approx(0.5), "kg"), "y": c, "z": c}
+
+
+def test_an_estimate_is_what_its_correction_has_beside_what_the_model_had():
+    """By a factor that may turn its sign; its deviation has none."""
+    read = InFile("offset", -2.0, 3.0).read(Correction("pressure_offset", 9.0, 4.0), "Pa")
+    assert read == ParameterEstimate(-3.0, 2.0, "Pa")
+    assert InFile("offset", 1.0, 0.0).read(Correction("pressure_offset", 9.0), "Pa").std == 0.0
+
+
+def test_estimates_stand_where_both_laws_say_that_they_stand():
+    one, other = InFile("a", 1.0, 0.0), InFile("b", 1.0, 0.0)
+    found = agreed({"x": one, "y": one, "z": one}, {"x": one, "y": other, "w": other})
+    assert found == {"x": one, "y": None, "z": one, "w": other}
+
+
+# -- the seed
+def test_a_seed_is_widened_by_as_much_as_its_refutation_allows(crane2_model):
+    given = SimpleNamespace(model=crane2_model)
+    factor = LIMITS.seed_reach / LIMITS.prior_bound
+    found = _widened(given)
+    np.testing.assert_allclose(found.std, factor * np.array(crane2_model.std))
+    assert found.values == crane2_model.values
+
+
+def _widened(given):
+    @dataclass(frozen=True)
+    class Whole:
+        model: object
+
+    return widened(Whole(given.model)).model
+
+
+def test_a_careless_seed_costs_its_data_its_shift_and_one_factor():
+    """Four deviations of 3: their mean square is 9, and by a factor of 3 each is what one expects."""
+    shift = np.array([3.0, -3.0, 3.0, -3.0])
+    price = LIMITS.effect_price / 2.0
+    assert _inflated(100.0, shift) == pytest.approx(100.0 / LIMITS.prior_weight + 4.0 + 4.0 * np.log(9.0) + price)
+    small = np.array([0.5, -0.5])  # no seed is better than it says
+    assert _inflated(100.0, small) == pytest.approx(100.0 / LIMITS.prior_weight + 0.5 + price)
+
+
+def test_names_cost_their_data_what_the_base_moves_and_a_price_each():
+    cross = SimpleNamespace(problem=SimpleNamespace(base=SimpleNamespace(shift=np.array([1.0, -1.0, 9.0]))))
+    own = SimpleNamespace(beta=np.array([1.0, 0.0, 5.0, 7.0]), train_loss=100.0, slots=("a", "b", "c"))
+    wanted = 100.0 / LIMITS.prior_weight + 2.0**2 + 1.0 + 3.0 * LIMITS.effect_price
+    assert _cost(cross, own, 2) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(
+    ("posterior", "shift", "sigma", "marginal"),
+    [
+        ((0.0, 0.0), (3.0, 0.0), 2.54, (3.0, 0.0)),  # chi-squared of two: 9.0 is one in 90
+        ((0.0, 1.0), (3.0, 9.0), 3.0, (3.0, 0.0)),  # of the second the data say nothing
+        ((0.75, 0.75), (1.5, 0.0), 0.0, (0.0, 0.0)),  # a quarter of the prior's variance is hardly told
+        ((0.0, 0.36), (0.0, -2.4), 2.54, (0.0, -3.0)),
+    ],
+)
+def test_a_shift_surprises_by_what_the_data_could_have_told_of_it(posterior, shift, sigma, marginal):
+    problem = SimpleNamespace(covariance=lambda *_: np.diag([*posterior, 7.0]), columns=lambda _: (0, 1, 2))
+    found, each = _surprise(SimpleNamespace(problem=problem, total_g=None), np.array(shift), 2)
+    assert found == pytest.approx(sigma, abs=0.01)
+    assert each == pytest.approx(marginal)
+
+
+def test_a_refuted_seed_is_written_with_its_shifts_and_what_they_pass_for():
+    assert SeedRefuted({"K1": 3.5, "C2": -4.0}, 5.0, ("viscous",)).content() == {
+        "parameters": ["K1", "C2"], "sigma": 5.0, "shifts": {"K1": 3.5, "C2": -4.0}, "mimics": ["viscous"],
+    }  # fmt: skip

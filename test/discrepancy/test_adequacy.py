@@ -6,15 +6,33 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import HEAVE, Check, long_enough, of_prepared, of_records
+from winch_friction.discrepancy.adequacy import (
+    HEAVE,
+    SWING,
+    TELLING,
+    Check,
+    _by_way,
+    _distinct,
+    long_enough,
+    of_prepared,
+    of_records,
+)
 from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.engine.chance import Size
-from winch_friction.discrepancy.next_experiment import insufficient, of_own_terms, of_runs, of_wire, with_what_was_seen
+from winch_friction.discrepancy.next_experiment import (
+    insufficient,
+    of_own_terms,
+    of_runs,
+    of_wire,
+    supplying,
+    with_what_was_seen,
+)
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.runs import apart
+from winch_friction.records.strict_yaml import shipped
 
 STEP = 0.1  # s
 
@@ -234,3 +252,86 @@ def test_a_named_term_that_the_given_model_has_is_not_missing(crane2_model, name
     assert [f"stribeck: the given model has this term already and says {said}" in each for each in notes] == (
         [True] if said else []
     )
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        ([], 0), ([5.0], 1), ([5.0, 5.4], 1), ([5.0, 5.6], 2), ([5.6, 5.0], 2), ([1.0, 9.0, 1.0, 9.0], 2),
+        ([1.0, 1.09, 1.18], 1),  # by and by
+        ([0.0, 0.0], 1), ([0.0, 1.0, 2.0], 3),
+    ],
+)  # fmt: skip
+def test_loads_are_two_where_they_differ_by_a_tenth(values, count):
+    assert _distinct(values) == count
+
+
+def test_loads_displacements_and_temperatures_are_those_of_the_training_runs():
+    first, second, locked = (prepared(name, 20.0, 20.0) for name in "acb")
+    for run, load, swash, oil in ((first, 5e4, 2e-5, 20.0), (second, 8e4, 2e-5, 32.0), (locked, 2e4, 9e-5, 70.0)):
+        idle = SimpleNamespace(balances=False, displacement=np.full(3, load))
+        run.groups = (idle, SimpleNamespace(balances=True, displacement=np.full(3, swash)))
+        run.load, run.channels = np.full(len(run.time), load), {"oil_temperature": np.array([oil, oil + 3.0])}
+        run.channels["heave_velocity"] = np.zeros(2)
+    found = {each.what: each for each in of_prepared(SimpleNamespace(prepared=(first, second, locked)), "ac", "b")}
+    assert found["loads"].value == 2.0
+    assert found["displacements"].value == 1.0
+    assert (found["oil temperatures, span"].value, found["oil temperatures, span"].unit) == (15.0, "K")
+    assert found["usable share of the samples"].value == pytest.approx(40.0 / 44.9)
+    assert found["reversals"].value == 2.0
+
+
+def test_the_mean_of_each_way_is_that_of_its_own_samples():
+    found = _by_way(np.array([1.0, 3.0, 10.0, 20.0, 7.0]), np.array([1.0, 1.0, -1.0, -1.0, 0.0]))
+    assert found.tolist() == [2.0, 2.0, 15.0, 15.0, 7.0]
+
+
+@pytest.mark.parametrize(
+    ("lacking", "scenario"),
+    [
+        ((SWING,), "ahc_55t_215"), ((HEAVE, "loads"), "ahc_55t_215"), (("loads",), "experiment_loads"),
+        ((f"{TELLING} (a, b)",), "experiment_loads"), (("hoisting",), "test_02"), ((), "test_02"),
+    ],
+)  # fmt: skip
+def test_what_runs_lack_is_supplied_by_a_scenario_that_has_it(lacking, scenario):
+    """What they have counts for nothing."""
+    met = [Check(what, 1.0, 1.0, "1", True) for what in (SWING, "loads") if what not in lacking]
+    assert supplying([*met, *(Check(what, 0.0, 1.0, "1", False) for what in lacking)]) == scenario
+
+
+def test_runs_that_cannot_answer_say_what_they_lack_and_what_supplies_it(crane_150t, crane2_model):
+    checks = [
+        Check("hoisting", 1.5, 3.0, "s", False), Check("lowering", 9.0, 3.0, "s", True),
+        Check("loads", 1.0, 2.0, "1", False),
+    ]  # fmt: skip
+    found = insufficient(checks, ["a note"], crane_150t, crane2_model)
+    lacks = "hoisting: 1.5 s, needed 3 s; loads: 1, needed 2"
+    assert (found.verdict, found.refused, found.effects) == (INSUFFICIENT, lacks, ())
+    assert found.next_experiment == {
+        "scenario": "experiment_loads.yaml", "separates": [], "expected_z": 0.0, "considered": {},
+        "note": f"supplies what the runs lack ({lacks})",
+    }  # fmt: skip
+    assert found.next_scenario == shipped("scenarios", "experiment_loads").read_text(encoding="utf-8")
+    assert (found.adequacy, found.notes, found.unit) == (tuple(checks), ("a note",), "bar")
+    assert found.model is found.seed_model is crane2_model
+
+
+@pytest.mark.parametrize(
+    ("check", "said"),
+    [
+        (Check("lasts", 1.234567, 3.0, "s", False), "lasts: 1.23 s, needed 3 s"),
+        (Check("share", 0.1, 0.2, "1", False), "share: 0.1, needed 0.2"),
+        (Check(f"{TELLING} (a)", 0.0, 1.0, "1", False), f"{TELLING} (a)"),
+    ],
+)
+def test_what_is_lacking_is_said_with_its_unit(check, said):
+    assert check.sentence == said
+
+
+@pytest.mark.parametrize(("value", "met"), [(5.0, True), (4.999, False)])
+def test_a_record_that_lasts_just_long_enough_does(value, met):
+    runs = [Run("a", {"time": np.linspace(7.0, 7.0 + value, 500)}), Run("b", {"time": np.linspace(0.0, 2.0, 21)})]
+    found = {each.what: each for each in of_records(runs, runs[:1])}
+    assert found["longest record"].met is met
+    assert found["records that can be used"].value == pytest.approx(value)
+    assert found["fastest log"].value == pytest.approx(499.0 / value / 0.98)

@@ -15,10 +15,13 @@ from winch_friction.discrepancy.engine.chance import (
     _near_curve,
     chance_of_no_gain,
     dependences,
+    does_as_well,
     least_part,
     near,
     rivals_of,
+    rms,
     rms_with_interval,
+    sign_flip_p_value,
 )
 from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -200,3 +203,76 @@ def test_what_takes_most_is_looked_at_closer_though_it_is_not_sure(monkeypatch, 
     monkeypatch.setattr(chance, "candidate_trials", lambda *_: trials)
     cross = SimpleNamespace(excess=lambda _: excess, floor=10.0)
     assert chance.most_of_it(cross, SimpleNamespace(slots=(), loss=100.0)) is most
+
+
+# -- figures of their own
+def test_a_size_is_a_root_mean_square_over_blocks_however_many_a_segment_has():
+    values, segment = np.array([3.0, -3.0, 3.0, 5.0]), np.array([0, 0, 0, 1])
+    whole = np.sqrt((27.0 + 25.0) / 4.0)
+    assert rms(values) == pytest.approx(whole)
+    assert rms(values[:0]) == 0.0
+    size = rms_with_interval(values, segment, np.zeros(4, int), np.random.default_rng(0))
+    assert size.value == pytest.approx(whole)
+    assert size.interval == pytest.approx((3.0, 5.0))  # either segment twice
+    nothing = rms_with_interval(values[:0], segment[:0], segment[:0], np.random.default_rng(0))
+    assert (nothing.value, nothing.interval) == (0.0, (0.0, 0.0))
+
+
+@pytest.mark.parametrize(("before", "after", "chance"), [(1.0, 2.0, 1.0), (1.0, 1.0, 1.0), (2.0, 1.0, 0.0)])
+def test_a_gain_is_a_square_that_falls_from_before_to_after(before, after, chance):
+    found = chance_of_no_gain(
+        np.full(len(RUN), before), np.full(len(RUN), -after), SEGMENT, RUN, np.random.default_rng(0)
+    )
+    assert found == pytest.approx(chance, abs=2e-3)
+
+
+def test_nothing_is_no_gain():
+    assert chance_of_no_gain(np.zeros(0), np.zeros(0), SEGMENT[:0], RUN[:0], np.random.default_rng(0)) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("gains", "low", "high"),
+    [
+        (np.ones(20), 0.0, 1e-3),
+        (-np.ones(20), 1.0, 1.0),
+        (np.tile([1.0, -1.0], 10), 0.5, 0.65),  # as often as not, ties included
+        (np.ones(3), 0.1, 0.15),  # of three, all with the same sign, one in eight
+    ],
+)
+def test_a_sign_flips_chance_is_that_of_a_mean_above_nothing(gains, low, high):
+    assert low <= sign_flip_p_value(gains) <= high
+
+
+@pytest.mark.parametrize(
+    ("trial", "does"),
+    [
+        (10.0, True),
+        (12.0, True),  # within 3 % of the 90 that the effect saves, however sure
+        (13.0, False),
+        (60.0, False),
+        (8.0, True),
+    ],
+)
+def test_a_rival_that_is_surely_worse_does_as_well_within_a_small_share_of_what_is_saved(trial, does):
+    own, without, other = (loses(A, np.full(40, loss / 40.0)) for loss in (10.0, 100.0, trial))
+    assert does_as_well(other, own, without, np.random.default_rng(0)) is does
+
+
+def test_a_rival_that_is_not_surely_worse_saves_half_of_what_an_effect_saves():
+    rng = np.random.default_rng(0)
+    own, without = loses(A, np.full(40, 0.25)), loses(A, np.full(40, 2.5))
+    scattered = np.full(40, 0.25)
+    scattered[:2] += [20.0, -3.0]  # 17 of 90 behind, in one segment
+    assert does_as_well(loses(B, scattered), own, without, rng)
+    scattered[0] += 30.0  # 47 of 90
+    assert not does_as_well(loses(B, scattered), own, without, rng)
+
+
+def test_what_a_signal_predicts_has_the_size_of_its_wave():
+    """A straight line over the speed, hoisting and lowering apart: one for friction, one for what is lost one way."""
+    speed = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+    wave = 4.0 * speed
+    found = told(remainder({"speed": speed}, 0.5), wave + 0.1 * noise())
+    assert found.size == pytest.approx(2.0 * rms(wave), rel=0.1)
+    assert found.share == pytest.approx(1.0, abs=0.1)
+    assert found.signal == "speed"

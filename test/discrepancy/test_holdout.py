@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.adequacy import lock_holdout
+from winch_friction.discrepancy.adequacy import _beyond, _covered, _drawn, _unseen, lock_holdout, refuse
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
 
@@ -79,3 +80,72 @@ def test_of_runs_that_others_cover_those_are_locked_that_cover_most(seed):
     ]
     locked = sorted(loads[int(name[1:])] for name in lock_holdout(log, 0.25, np.random.default_rng(seed)).holdout)
     assert locked == [11, 90]
+
+
+def test_of_a_divided_run_the_last_part_is_locked_and_both_keep_what_the_run_said():
+    time = 100.0 + np.arange(0.0, 20.01, 0.1)
+    run = Run("long", {"time": time, "hook_load": 5.0 * time}, {}, ("a warning",), {"made": "by hand"})
+    split = lock_holdout([run], 0.25, np.random.default_rng(0))
+    assert (split.train, split.holdout) == (("long (first part)",), ("long (last part)",))
+    first, last = split.runs
+    assert (first.time[0], last.time[0], last.time[-1]) == pytest.approx((100.0, 115.0, 120.0))
+    assert first.time[-1] == pytest.approx(115.0 - LIMITS.guard_time, abs=0.11)
+    for part in split.runs:
+        assert part["hook_load"] == pytest.approx(5.0 * part.time)
+        assert (tuple(part.warnings), part.metadata) == (("a warning",), {"made": "by hand"})
+
+
+@pytest.mark.parametrize(
+    ("kinds", "fraction", "counts"),
+    [
+        ([8], 0.25, [2]), ([8, 4], 0.25, [2, 1]), ([2], 0.1, [1]), ([1, 6], 0.5, [0, 3]), ([3], 0.6, [2]),
+        ([2], 0.6, [1]), ([2, 2], 0.05, [1, 1]),
+    ],
+)  # fmt: skip
+def test_of_every_kind_a_share_is_locked_and_never_all(kinds, fraction, counts):
+    places = np.split(np.arange(sum(kinds)), np.cumsum(kinds)[:-1])
+    for seed in range(20):
+        locked = _drawn([own.tolist() for own in places], fraction, np.random.default_rng(seed))
+        assert [len(locked & set(own.tolist())) for own in places] == counts
+
+
+def test_what_is_locked_reaches_beyond_the_others_by_ranges_of_all_runs():
+    """Of loads of 1 to 5 t: what the locked ones reach below and above, less a small part of what they cover."""
+    loads = np.array([[1.0, 2.0], [2.0, 3.0], [3.0, 4.0], [4.0, 5.0], [np.nan, np.nan]])
+    small = LIMITS.lock_cover / 4.0
+    for locked, far in (({1}, -small), ({0}, 0.25 - small), ({3}, 0.25 - small), ({0, 3}, 0.5 - 4.0 * small)):
+        assert _beyond(frozenset(locked), [loads]) == pytest.approx(far)
+        assert _beyond(frozenset(locked), [loads, 1e6 * loads]) == pytest.approx(2.0 * far)
+    assert _beyond(frozenset({4}), [loads]) == 0.0  # it has none of it
+    assert _beyond(frozenset(range(4)), [loads]) == 0.0  # and neither have the others
+
+
+def test_a_run_covers_a_column_without_its_rarest_values():
+    values = np.append(np.arange(101.0), np.nan)
+    some = [Run("a", {"time": np.arange(102.0), "hook_load": values}), Run("b", {"time": np.arange(3.0)})]
+    found = _covered("hook_load", some)
+    assert found[0] == pytest.approx([5.0, 95.0])
+    assert np.isnan(found[1]).all()
+
+
+@pytest.mark.parametrize(("locked", "unseen"), [({0}, 0), ({0, 1}, 1), ({2}, 2), ({0, 2}, 2), ({0, 1, 2}, 3)])
+def test_layers_that_only_locked_runs_are_on_are_counted(locked, unseen):
+    layers = [frozenset({1.0, 2.0}), frozenset({1.0, 2.0}), frozenset({3.0, 4.0}), frozenset({2.0})]
+    assert _unseen(frozenset(locked), layers) == unseen
+
+
+@pytest.mark.parametrize(
+    ("fraction", "seed", "why"),
+    [(0.05, 0, ""), (0.6, 3, ""), (0.04, 0, "--holdout 0.04"), (0.61, 0, "--holdout 0.61"), (0.25, -1, "seed -1")],
+)
+def test_a_share_or_a_seed_that_is_none_is_refused_by_its_value(fraction, seed, why):
+    if not why:
+        refuse(runs(2), fraction, seed)
+        return
+    with pytest.raises(InputError, match=why):
+        refuse(runs(2), fraction, seed)
+
+
+def test_no_run_is_refused():
+    with pytest.raises(InputError, match="no run given"):
+        refuse([], 0.25, 0)

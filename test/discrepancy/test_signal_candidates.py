@@ -61,10 +61,10 @@ def test_a_gain_that_grows_is_taken_out_exactly(error):
 
 
 def machine(motors, swept, gear, radius, inertia=1.54, rpm=2100.0):
-    group = SimpleNamespace(count=motors)
+    group, speed = SimpleNamespace(count=motors), np.linspace(-rpm, rpm, 2001) * RPM
     return SimpleNamespace(
         constants=(("max_displacement", swept),), groups=[group], gear_ratio=gear, radius=np.array([radius]),
-        inertia=inertia, speed=np.linspace(-rpm, rpm, 2001) * RPM, dt=0.02, channels={},
+        inertia=inertia, speed=speed, top_speed=float(np.percentile(np.abs(speed), 99)), dt=0.02, channels={},
     )  # fmt: skip
 
 

@@ -21,11 +21,16 @@ from winch_friction.discrepancy.preparation.prepare import prepare
 from winch_friction.discrepancy.ties import (
     TIES,
     Company,
+    Member,
+    Partner,
+    Tie,
     _best_pair,
     _covariance,
     _partner,
+    _times,
     company,
     e_D,
+    known_combination,
     unsought,
 )
 from winch_friction.discrepancy.workflow import find_gap
@@ -210,3 +215,51 @@ def test_a_line_of_each_motors_own_is_a_ports_loss_whichever_way_the_oil_passes(
     assert len(ports) == 4
     for port in ports:
         assert max(abs(float(port @ line)) for line in lines) == pytest.approx(1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("factor", "unit", "said"),
+    [
+        (1.0, "1", "+ e_D"), (-1.01, "1", "- e_D"), (1.03, "1", "+ 1.03 * e_D"), (-0.25, "1", "- 0.25 * e_D"),
+        (1.0, "m", "+ 1 m * e_D"), (-120.04, "m", "- 120 m * e_D"),
+    ],
+)  # fmt: skip
+def test_a_summand_has_its_sign_and_no_factor_that_is_nearly_one(factor, unit, said):
+    assert _times(factor, unit, "e_D") == said
+
+
+SIDES = Tie(Member("pressure_scale"), Member("displacement_scale"), "a product", "a gauge")
+
+
+def test_a_partner_is_said_with_the_size_that_would_do_the_same_and_what_tells_the_two_apart():
+    own = Partner(SIDES, ParameterEstimate(0.0234, 0.0041, "1"), 1.0, "e_D")
+    assert own.name == "displacement_scale"
+    assert own.note == (
+        "pressure_scale and displacement_scale (e_D = 0.0234 ± 0.0041) are one thing in these runs (a product); "
+        "to tell them apart: a gauge"
+    )
+    assert "(m = 900 ± 50 kg)" in Partner(SIDES, ParameterEstimate(900.0, 50.0, "kg"), 1.0, "m").note
+
+
+@pytest.mark.parametrize(("tied_to", "expression"), [("pressure_scale", "e_p + 3 * e_D"), ("brake_drag", None)])
+def test_of_an_effect_with_one_amplitude_and_a_partner_their_sum_is_known_as_well_as_the_amplitude(tied_to, expression):
+    linear = tuple(SimpleNamespace(name=name) for name in ("e_p", "unseen"))
+    found = SimpleNamespace(slot=Slot("pressure_scale", "", (1,), origin=(SimpleNamespace(linear=linear), None)))
+    tie = Tie(Member(tied_to), Member("displacement_scale"), "a product", "a gauge")
+    partner = Partner(tie, ParameterEstimate(0.01, 0.002, "1"), 3.0, "e_D")
+    known = known_combination(None, found, {"e_p": ParameterEstimate(0.03, 0.001, "1")}, [partner], None)
+    assert (known and known.expression) == expression
+    if known:
+        assert (known.value, known.std, known.unit, known.because) == (0.03, 0.001, "1", "a product")
+
+
+def test_of_three_estimates_the_two_that_are_tied_most_are_combined_by_what_spreads_less():
+    """b and c: the one that spreads less keeps its factor of one beside the other."""
+    std = np.array([1.0, 2.0, 8.0])
+    related = np.array([[1.0, 0.3, 0.2], [0.3, 1.0, 0.95], [0.2, 0.95, 1.0]])
+    estimates = {n: ParameterEstimate(v, s, "kg") for n, v, s in zip("abc", (50.0, 60.0, 70.0), std, strict=True)}
+    known = _best_pair(np.outer(std, std) * related, estimates, list("abc"))
+    assert known.because == "b and c are tied in these runs, correlation 0.950"
+    assert known.expression == "c - 3.8 * b"  # 0.95 * 8 / 2
+    assert known.value == pytest.approx(70.0 - 3.8 * 60.0)
+    assert known.std == pytest.approx(8.0 * np.sqrt(1.0 - 0.95**2))

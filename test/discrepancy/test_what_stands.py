@@ -239,3 +239,75 @@ def test_what_does_as_well_as_a_step_of_a_transducer_does_not_stand(monkeypatch)
     monkeypatch.setattr(module, "within_a_step", within)
     stands, why = module._stands(search, SimpleNamespace(holdout=side()), lambda _: full, RNG)
     assert (stands, why) == (None, "a step")
+
+
+# -- an effect with an instant, placed by the locked runs' first halves
+def shaped(name, columns, law=""):
+    return Slot(name, f"at {columns}", columns, law=law, origin=ORIGIN)
+
+
+def test_shapes_that_are_one_over_the_training_runs_are_those_of_the_same_law_with_the_same_columns():
+    x = np.arange(12.0).reshape(4, 3)
+    x = np.column_stack([x, x[:, 0], 2.0 * x[:, 0], x[:, 0]])
+    own, same, larger, bent, other = (
+        shaped("step", (0,)), shaped("step", (3,)), shaped("step", (4,)), shaped("step", (5,), "bent"),
+        shaped("wave", (5,)),
+    )  # fmt: skip
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(blocks=SimpleNamespace(x=x), slots=(own, same, larger, bent, other))
+    )
+    assert module._same_on_training(cross, own) == [same]
+    assert module._same_on_training(cross, larger) == []
+
+
+def test_an_effect_stands_at_the_instant_that_leaves_least_of_the_locked_runs_first_halves():
+    """The second halves would say another one, but on them the names are proven."""
+    early, late, other = shaped("step", (0,)), shaped("step", (1,)), shaped("wave", (2,))
+    run = np.repeat([0, 1], 4)
+    blocks = SimpleNamespace(run=run, position=np.tile(np.arange(4), 2))
+    first = np.tile([True, True, False, False], 2)
+    left = {early.label: np.where(first, 3.0, 0.0), late.label: np.where(first, 1.0, 9.0)}
+    locked = SimpleNamespace(problem=SimpleNamespace(blocks=blocks), remainder=lambda each: -left[each.slots[1].label])
+    assert module._left_of_first_halves(locked, SimpleNamespace(slots=(other, late))) == pytest.approx(4.0)
+
+    @dataclass(frozen=True)
+    class Explained:
+        slots: tuple
+
+    def cross_of(names, known):
+        assert (names, known) == (("locked",), (other, early))
+        return locked
+
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in (other, early))
+    search = replace(
+        searched(other, early), selection=Selection(Explained(()), Explained((other, early)), found),
+        cross=SimpleNamespace(explain=Explained),
+    )  # fmt: skip
+    asked = Placed(**vars(search), expansion=SimpleNamespace(cross=cross_of))
+    told = module._told(asked, 1, [early, late], SimpleNamespace(holdout=("locked",)))
+    assert told.selection.final.slots == (other, late)
+    assert [each.slot for each in told.selection.found] == [other, late]
+
+
+@dataclass(frozen=True)
+class Placed(Searched):
+    expansion: object = None
+
+
+@pytest.mark.parametrize(
+    ("train", "locked", "which", "left"),
+    [(1.0, 5.0, "locked", "5"), (5.0, 1.0, "training", "5"), (5.0, 6.0, "locked", "6")],
+)
+def test_without_a_name_it_is_said_which_runs_keep_more_than_noise(monkeypatch, train, locked, which, left):
+    monkeypatch.setattr(module, "unexplained", lambda search, why, rng: why)
+    trial = Trial(searched(), None, side(train), side(locked))
+    why = module._judged(trial, "a reason", None)
+    assert why == f"a reason; a refit without a name leaves the {which} runs {left}, noise 1"
+    assert module._judged(trial, "", None).startswith("a refit")
+
+
+def test_a_file_says_who_made_it_of_what_and_by_which_chance():
+    study = SimpleNamespace(split=SimpleNamespace(train=("a", "b")), options=SimpleNamespace(seed=7))
+    assert module._provenance(study, searched(verdict=Verdict(UNEXPLAINED))) == {
+        "repaired_by": "winch-friction gap", "verdict": UNEXPLAINED, "trained_on": ["a", "b"], "seed": 7,
+    }  # fmt: skip

@@ -659,6 +659,21 @@ def test_names_fall_where_one_law_that_is_none_of_theirs_does_as_much(slots, law
     assert bool(outdone(laws_near, cross, Selection(named, named, found))) is falls
 
 
+@pytest.mark.parametrize(("slots", "said"), [
+    (SLOTS, "than wave and other together would explain"), ((LAWED,), "than wave would explain"),
+    ((LAWED, BENT), "than wave would explain"),
+])  # fmt: skip
+def test_names_that_fall_are_said_with_the_signals_of_the_law_that_does_what_they_do(slots, said):
+    """The law that leaves least, which is the first."""
+    cross = SimpleNamespace(floor=10.0, problem=SimpleNamespace(slots=slots))
+    named = replace(explanation(np.full(40, 1.0)), slots=slots)
+    first = Law((Factor("root", "motor_speed"), Factor("square", "wire_out")), True)
+    laws = [Scored(law, 1.0, 0.0, left, np.zeros(40)) for law, left in ((first, 12.0), (SQUARE, 39.0))]
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
+    why = outdone(laws, cross, Selection(named, named, found))
+    assert why == f"one law of motor_speed and wire_out does by itself more {said}"
+
+
 @pytest.mark.parametrize(("slots", "law", "falls"), [
     ((LAWED,), ROOT, False), ((CURVE,), ROOT, False), ((CURVE,), SQUARE, False), (SLOTS, ROOT, True),
 ])  # fmt: skip

@@ -150,7 +150,7 @@ def test_places_that_follow_each_other_are_a_stretch(places, whole):
     ("values", "tells"),
     [
         (np.linspace(9.9, 10.0, 20), True), (np.linspace(9.9, 10.0, 19), False), (np.linspace(9.91, 10.0, 20), False),
-        (np.linspace(-10.0, -9.89, 20), True), (np.zeros(20), False),
+        (np.linspace(-10.0, -9.89, 20), True), (np.linspace(-10.0, -9.91, 20), False), (np.zeros(20), False),
     ],
 )  # fmt: skip
 def test_a_signal_tells_of_something_where_it_differs_by_a_share_of_its_size(values, tells):

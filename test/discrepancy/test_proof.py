@@ -196,9 +196,9 @@ def drifting(slope, temperature=(), hours=HOURS, names=()):
         )
         for hour in hours
     ]  # fmt: skip
-    direction = np.tile([1.0, -1.0, 0.0], len(hours))
-    blocks = SimpleNamespace(run=np.repeat(np.arange(len(hours)), 3), direction=direction)
-    kept = np.repeat(loss, 3) * direction + 50.0 * (direction == 0.0)
+    direction = np.tile([1.0, -1.0, 0.0, 0.0, 0.0], len(hours))
+    blocks = SimpleNamespace(run=np.repeat(np.arange(len(hours)), 5), direction=direction)
+    kept = np.repeat(loss, 5) * direction + 50.0 * (direction == 0.0)
     return drift_note([SimpleNamespace(runs=runs, blocks=blocks, after=kept)], names, "bar")
 
 
@@ -228,8 +228,8 @@ def test_a_drift_is_said_per_hour_and_with_its_sign():
     assert "changes by -5 " in drifting(-0.05, hours=3.0 + 2.0 * np.arange(8.0))
 
 
-@pytest.mark.parametrize(("at", "gap"), [([0.0, 1.0, 2.0, 3.0], [2.0] * 4), ([1.0, 2.0], [2.0, 2.0])])
-def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_own_run(monkeypatch, at, gap):
+@pytest.mark.parametrize("at", [[0.0, 1.0, 2.0, 3.0], [1.0, 2.0]])
+def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_own_run(monkeypatch, at):
     """A run that a correction of time has shortened has no value outside."""
     monkeypatch.setattr(module, "block_size", lambda _: 1)
     monkeypatch.setattr(module, "timing_column", lambda run: np.full(len(run.time), 30.0))
@@ -239,12 +239,12 @@ def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_ow
     )  # fmt: skip
     at = np.array(at)
     new = SimpleNamespace(
-        time=at - at[0], start=100.0 + at[0], gap=np.full(len(at), 40.0), unit_torque=20.0,
+        time=at - at[0], start=100.0 + at[0], gap=20.0 * at, unit_torque=20.0,
         used_at=lambda when: np.ones(len(when), bool),
     )  # fmt: skip
     found = module._blocks(old, new, 2.0)
     assert found.position.tolist() == at.astype(int).tolist()
     assert found.y == pytest.approx(np.full(len(at), 5.0))
-    assert found.x == pytest.approx(np.column_stack([gap, np.full(len(at), 3.0)]))
+    assert found.x == pytest.approx(np.column_stack([at, np.full(len(at), 3.0)]))
     assert found.features["load"] == pytest.approx(at)
     assert found.direction == pytest.approx(np.where(at < 2, 1.0, -1.0))

@@ -134,3 +134,25 @@ def test_a_condition_that_is_met_hardly_ever_is_none_and_what_is_not_known_is_in
     high, known = next(each for each in found if each.where.startswith("pressure > 8")), pressure > 85.0
     assert high.mean_residual == pytest.approx(9.0, rel=0.1)
     assert high.share_of_gap == pytest.approx(81.0 * known.sum() / (81.0 * known.sum() + 300.0), rel=0.05)
+
+
+def test_regions_that_overlap_have_each_its_whole_share_and_the_largest_comes_first():
+    """Found first is what is largest in the mean: of what lies around it the second one has that as well."""
+    pressure = np.tile(np.linspace(0.0, 100.0, 300), 2)
+    gap = np.select([pressure > 85.0, pressure > 67.0], [9.0, 3.0], 0.0)
+    blocks = SimpleNamespace(y=gap, direction=np.zeros(600), features={"pressure": pressure})
+    found = find_regions(blocks, gap, {})
+    assert [each.where for each in found[:2]] == ["pressure > 67", "pressure > 85"]
+    for each in found:
+        sign, border = each.where.split()[1:]
+        own = pressure > float(border) if sign == ">" else pressure < float(border)
+        assert each.share_of_gap == pytest.approx((gap[own] ** 2).sum() / (gap**2).sum(), rel=0.05)
+        assert each.mean_residual == pytest.approx(gap[own].mean(), rel=0.05)
+
+
+def test_no_region_is_a_band_of_one_signal():
+    pressure = np.tile(np.linspace(0.0, 100.0, 300), 2)
+    gap = np.where(np.abs(pressure - 59.0) < 8.0, 9.0, 0.0)
+    for each in find_regions(SimpleNamespace(y=gap, direction=np.zeros(600), features={"p": pressure}), gap, {}):
+        assert each.signals == ("p",)
+        assert " and " not in each.where

@@ -98,8 +98,8 @@ def test_of_a_divided_run_the_last_part_is_locked_and_both_keep_what_the_run_sai
 @pytest.mark.parametrize(
     ("kinds", "fraction", "counts"),
     [
-        ([8], 0.25, [2]), ([8, 4], 0.25, [2, 1]), ([2], 0.1, [1]), ([1, 6], 0.5, [0, 3]), ([1, 6], 0.6, [0, 4]), ([3], 0.6, [2]),
-        ([2], 0.6, [1]), ([2, 2], 0.05, [1, 1]),
+        ([8], 0.25, [2]), ([8, 4], 0.25, [2, 1]), ([2], 0.1, [1]), ([1, 6], 0.5, [0, 3]), ([1, 6], 0.6, [0, 4]),
+        ([3], 0.6, [2]), ([2], 0.6, [1]), ([2, 2], 0.05, [1, 1]),
     ],
 )  # fmt: skip
 def test_of_every_kind_a_share_is_locked_and_never_all(kinds, fraction, counts):

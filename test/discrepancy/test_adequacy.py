@@ -246,9 +246,7 @@ def test_runs_that_lack_something_say_what_was_seen_of_them_all_the_same(crane_1
 def test_a_named_term_that_the_given_model_has_is_not_missing(crane2_model, named, values, said):
     """A model with Stribeck friction met a winch without: `missing_effect: stribeck` with a negative amount, alone."""
     given = crane2_model.with_values({**crane2_model.as_dict(), "C1": 0.02, "C3": 2.0})
-    effects = [SimpleNamespace(name=name, law_name="") for name in named]
-    written = given.with_values({**given.as_dict(), **values})
-    notes = of_own_terms(SimpleNamespace(effects=effects, model=written), given)
+    notes = of_own_terms(named, given, given.with_values({**given.as_dict(), **values}))
     assert [f"stribeck: the given model has this term already and says {said}" in each for each in notes] == (
         [True] if said else []
     )

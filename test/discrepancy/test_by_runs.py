@@ -71,7 +71,6 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
-    monkeypatch.setattr(workflow, "of_own_terms", lambda *_: [])
     monkeypatch.setattr(workflow, "of_runs", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
@@ -87,7 +86,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(
         workflow, "assemble",
         lambda study, own: SimpleNamespace(
-            verdict=own.search.verdict.kind, notes=(), train=own.train, holdout=own.holdout
+            effects=(), verdict=own.search.verdict.kind, notes=(), train=own.train, holdout=own.holdout
         ),
     )  # fmt: skip
     found = workflow.find_gap(runs, None, None, GapOptions())

@@ -51,6 +51,7 @@ class Result:
     verdict: str
     train: Side = Side()
     holdout: Side = Side()
+    effects: tuple = ()
     seed_model: object = None
     seed_refuted: tuple = ()
     adequacy: tuple = ()
@@ -124,7 +125,6 @@ def surrounded(monkeypatch, met, told=True):
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: ["how long is the wire"])
-    monkeypatch.setattr(workflow, "of_own_terms", lambda *_: [])
     monkeypatch.setattr(workflow, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
     monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))

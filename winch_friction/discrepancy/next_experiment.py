@@ -6,7 +6,7 @@ then the other way round, for nobody knows which of them is there. What cannot b
 the measurement, is the expected separation. And what to log where the runs cannot answer at all.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -175,11 +175,10 @@ def of_runs(sides: Sequence[Side]) -> list[str]:
     ]
 
 
-def of_own_terms(result: GapResult, given: FrictionModel) -> list[str]:
+def of_own_terms(named: Collection[str], given: FrictionModel, written: FrictionModel) -> list[str]:
     """What becomes of a named law's term that the given model has already: it is not missing, but too small or too
     large."""
-    found, before, after = [], given.as_dict(), result.model.as_dict()
-    named = {each.law_name or each.name for each in result.effects}
+    found, before, after = [], given.as_dict(), written.as_dict()
     for term in given.terms:
         sizes = [each.name for each in term.parameters if not each.shape]
         if term.name not in named or not sizes or not set(sizes) <= set(after):

@@ -101,7 +101,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
             trial = again.by_runs(study, trial)
             proposals = proposals if trial.search.verdict.kind == UNEXPLAINED else ()
     result, notes = assemble(study, trial), [*notes, *not_borne_out(search, trial.search)]
-    notes += of_own_terms(result, model)
+    if own := [name for each in result.effects if (name := each.law_name or each.name) in model.term_names]:
+        notes += of_own_terms(own, model, result.model)
     if result.verdict == UNEXPLAINED:
         notes += of_wire(given) + of_runs((result.train, result.holdout))
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
@@ -292,9 +293,7 @@ def _times(model: FrictionModel, seed: FrictionModel, runs: Sequence[Run]) -> li
 def _inexact(side: Side, goes_with: Sequence[str], unit: str) -> list[str]:
     """That more than noise is left beside what is named, and with which signals it goes."""
     left, also = side.size_after.value, f", and what is left goes with {', '.join(goes_with)}" if goes_with else ""
-    said = (
-        f"keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}: the cause is named, its law is not exact"
-    )
+    said = f"keep {left:.3g} {unit} where their noise is {side.noise_floor:.3g}"
     if left <= LIMITS.far_off_the_floor * side.floor:
         return []
-    return [f"the locked runs {said}, or a smaller effect is beside it{also}"]
+    return [f"the locked runs {said}: the cause is named, its law is not exact, or a smaller effect is beside it{also}"]

@@ -15,8 +15,9 @@ def test_the_estimators_torque_stands_neither_in_a_silence_nor_after_the_end(ben
     for _ in range(2):
         bench.drive(1.0)
         assert abs(learned[-1].effort[0]) > 50.0
-        number = read_mark(learned[-1].header.frame_id)[1]
         assert bench.spin(2.0, lambda: learned[-1].effort[0] == 0.0)
+        # of the last torque: on a busy machine some are still on their way when the driving ends
+        number = read_mark([each for each in learned if each.effort[0] != 0.0][-1].header.frame_id)[1]
         assert read_mark(learned[-1].header.frame_id) == (False, number + 1)
         bench.spin(0.5)
         assert read_mark(learned[-1].header.frame_id) == (False, number + 1)  # said once

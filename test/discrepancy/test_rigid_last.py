@@ -52,6 +52,7 @@ class Result:
     train: Side = Side()
     holdout: Side = Side()
     effects: tuple = ()
+    model: object = None
     seed_model: object = None
     seed_refuted: tuple = ()
     adequacy: tuple = ()
@@ -152,6 +153,17 @@ def test_a_rigid_wire_is_asked_for_where_nothing_explains_and_a_load_swings(answ
     assert found.verdict == (MISSING if RIGID in asked[1:] else first)
     open_still = ("how long is the wire", "which of 2 sides") if found.verdict == UNEXPLAINED else ()
     assert tuple(found.notes) == (f"{first} at first", *open_still)
+
+
+def test_of_a_named_law_it_is_said_what_becomes_of_a_term_that_the_given_model_has(answers, monkeypatch):
+    runs, given = surrounded(monkeypatch, RIGID), SimpleNamespace(term_names=("stribeck", "viscous"))
+    answers.search, answers.judged = [Found(MISSING)], [(MISSING, CLOSED)]
+    named = (("stribeck", ""), ("dwell_stiction", "dwell_by_speed"), ("coulomb", "viscous"), ("viscous", "free"))
+    effects = tuple(SimpleNamespace(name=name, law_name=law) for name, law in named)
+    monkeypatch.setattr(workflow, "assemble", lambda *_: Result(MISSING, effects=effects, model="written"))
+    monkeypatch.setattr(workflow, "of_own_terms", lambda names, *models: [(tuple(names), *models)])
+    found = workflow.find_gap(runs, None, given, GapOptions(proposals=False))
+    assert (("stribeck", "viscous"), given, "written") in found.notes
 
 
 @pytest.mark.parametrize(("verdict", "quiet", "said"), [

@@ -25,7 +25,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.balance import state_history
-from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.prepare import PreparedRun, samples_of_each
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import compiled
 from winch_friction.physics.friction.table import outlined
@@ -220,7 +220,8 @@ def term_columns(term: Term, run: PreparedRun, values: Values) -> FloatArray:
     with np.errstate(all="ignore"):
         for at in range(0, len(columns), AT_ONCE):
             some = slice(at, at + AT_ONCE)
-            for k, part in enumerate(functions.vector_columns(_part(run.point, some), theta, _part(z, some))):
+            parts = functions.vector_columns(samples_of_each(run.point, some), theta, samples_of_each(z, some))
+            for k, part in enumerate(parts):
                 columns[some, k] = part
         whole = np.isfinite(columns.sum())
     return columns if whole else np.nan_to_num(columns, copy=False)
@@ -230,11 +231,6 @@ def without_memory(candidate: Candidate) -> bool:
     """Whether its columns are a term's, which hang on what is at the same instant alone."""
     own = candidate.columns
     return isinstance(own, partial) and own.func is term_columns and own.args[0].state is None
-
-
-def _part(arrays: Sequence[Any], some: slice) -> tuple[Any, ...]:
-    """These samples of each; what is one number for a whole run stays one."""
-    return tuple(each[some] if np.ndim(each) else each for each in arrays)
 
 
 # -- the speeds that were seen

@@ -1,6 +1,6 @@
 """From a measured run to what every candidate reads."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
@@ -116,8 +116,7 @@ class PreparedRun:
 
     def at(self, samples: np.ndarray | slice) -> "PreparedRun":
         """What a law without memory reads of these samples alone: operating point, states and time."""
-        point, states = (tuple(each[samples] if np.ndim(each) else each for each in own)
-                         for own in (self.point, self.states))  # fmt: skip
+        point, states = samples_of_each(self.point, samples), samples_of_each(self.states, samples)
         return replace(self, time=self.time[samples], point=point, states=states)
 
     def used_at(self, time: FloatArray) -> np.ndarray:
@@ -129,6 +128,11 @@ class PreparedRun:
         an hour of all of them is 90 MB."""
         return replace(self, **{each.name: shared(getattr(self, each.name), getattr(other, each.name))
                                 for each in fields(self) if each.init})  # fmt: skip
+
+
+def samples_of_each(arrays: Iterable[Any], samples: np.ndarray | slice) -> tuple[Any, ...]:
+    """These samples of each; what is one number for a whole run stays one."""
+    return tuple(each[samples] if np.ndim(each) else each for each in arrays)
 
 
 def prepare(

@@ -179,3 +179,9 @@ def test_a_draft_reads_the_times_anew_where_they_are_read_in_another_way():
     draft.log_map = replace(draft.log_map, time=TimeBase("seconds", "ms"))
     for _ in range(2):
         assert draft.converted()[0].columns["time"] == pytest.approx([0.0, 0.02, 0.04])
+
+
+def test_each_log_of_a_draft_has_times_of_its_own():
+    logs = [Log(Path(f"{k}.csv"), (numbers([k, k + 1.0]),), {}, str) for k in range(2)]
+    draft = Draft(logs, None, LogMap({}, ("t",), TimeBase("seconds", "s")))
+    assert [each.columns["time"].tolist() for each in draft.converted()] == [[0.0, 1.0], [1.0, 2.0]]

@@ -171,6 +171,9 @@ def _all(concepts: Iterable[str], quality: float) -> dict[str, float]:
     return dict.fromkeys(concepts, quality)
 
 
+NAMED = 0.5  # how well a name must fit a channel to be taken for its name
+
+
 def name_score(channel: str, concepts: list[Concepts]) -> float:
     """How well a name's concepts name a channel, 0 (not at all) ... 1; `channel` without its motor group."""
     spec = vocabulary().channels[channel]

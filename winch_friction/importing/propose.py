@@ -12,7 +12,7 @@ from winch_friction.importing.guess import Match, group_sets, matches
 from winch_friction.importing.layers import ask_layers
 from winch_friction.importing.log import Log, listed
 from winch_friction.importing.mapping import Entry, LogMap
-from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.names import NAMED, name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.own_clocks import CLOCKS
 from winch_friction.importing.reading import read_log
@@ -35,7 +35,6 @@ from winch_friction.records.run_checks import SPARSE, rows_between
 
 _CLOCKS_SAID = "log.clocks="
 _SHIP = 0.5  # Hz; a ship's motion has a thousandth of its power above it
-_NAMED = 0.5  # how well a name must fit a channel
 _POOLED = 20_000  # values of each log that are looked at together
 
 
@@ -236,7 +235,7 @@ def _instead(lacking: Sequence[str], free: Sequence[str]) -> str:
         readings = [
             (bare, unit) for bare, unit in header_readings(name) if unit and fitting_si_unit("shaft_angle", unit)
         ]
-        if any(name_score("displacement", name_concepts(bare)) > _NAMED for bare, _ in readings):
+        if any(name_score("displacement", name_concepts(bare)) > NAMED for bare, _ in readings):
             said += (
                 f"; '{name}' is an angle: add a column of the displacement that it sets, in % of the largest (bent "
                 "axis: its sine over that of the largest angle; swash plate: its tangent)"

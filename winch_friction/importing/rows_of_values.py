@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.importing.log import Log, LogColumn
-from winch_friction.importing.names import name_concepts, name_score
+from winch_friction.importing.names import NAMED, name_concepts, name_score
 from winch_friction.importing.one_clock import Signal, draws_lines, on_one_clock
 from winch_friction.importing.time_base import TimeBase, guess_form, to_seconds
 from winch_friction.importing.time_names import is_clock_of
@@ -18,7 +18,7 @@ from winch_friction.importing.units import CHANNEL_UNITS
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray
 
-_SIGNALS, _NAMED = 500, 0.5  # names of one archive; how well a name must fit a channel
+_SIGNALS = 500  # names of one archive
 _FEWEST = 5  # values of each signal, in the mean; of fewer a text beside the rows is a remark
 _PEEKED = 5000  # cells that are looked at first: dates of a long log are all different
 _VALUE = re.compile(r"value|wert|verdi|värde", re.IGNORECASE)
@@ -40,7 +40,7 @@ def names_of_signals(log: Log) -> tuple[LogColumn, tuple[str, ...]] | None:
         if not 2 <= len(names) <= min(_SIGNALS, len(cells) // _FEWEST):
             continue
         spoken = [c for name in names if (c := name_concepts(name))]
-        if sum(any(name_score(ch, c) > _NAMED for ch in CHANNEL_UNITS if ch != "time") for c in spoken) >= 2:
+        if sum(any(name_score(ch, c) > NAMED for ch in CHANNEL_UNITS if ch != "time") for c in spoken) >= 2:
             return column, tuple(names)
     return None
 

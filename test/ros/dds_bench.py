@@ -67,6 +67,10 @@ class Bench:
         """What a node has printed."""
         return (self._logs / f"{name}.log").read_text()
 
+    def says(self, name: str, text: str, seconds: float = 10.0) -> bool:
+        """Whether a node prints a text within a while: a thread of its own hands its lines to the console."""
+        return self.spin(seconds, lambda: text in self.log(name))
+
     def remote(self, name: str) -> RemoteNode:
         """A node's services."""
         return RemoteNode(self.node, self.executor, name)

@@ -137,7 +137,7 @@ def test_a_wrong_model_is_refused_and_the_last_good_one_kept(fed: tuple[Bench, l
     status = diagnostics(seen, "feedforward")
     assert status["model"] == seed.name
     assert status["accepted_models"] == "0"
-    assert "model refused" in bench.log("compensator")
+    assert bench.says("compensator", "model refused")
 
 
 def test_time_that_falls_back_begins_anew(bench: Bench) -> None:
@@ -152,7 +152,7 @@ def test_time_that_falls_back_begins_anew(bench: Bench) -> None:
     before = len(torque)
     bench.drive(0.8)
     last, *again = efforts(torque)[before - 1 :]
-    assert "time jumped" in bench.log("compensator")
+    assert bench.says("compensator", "time jumped")
     assert abs(again[0] - last) < 0.1 * abs(last)  # what was published goes on from where it was, by a ramp
     assert abs(again[-1]) > 100.0
 
@@ -188,5 +188,5 @@ def test_what_the_slew_limit_withholds_of_a_large_winch_is_said_at_the_start(ben
     bench.start("compensator", crane=tmp_path / "large.yaml")
     seen = bench.listen("/diagnostics", DiagnosticArray, 10)
     assert bench.spin(10.0, lambda: bool(seen))
-    assert "leaves 3000 of 60000 N*m" in bench.log("compensator")
+    assert bench.says("compensator", "leaves 3000 of 60000 N*m")
     assert float(diagnostics(seen, "feedforward")["torque_limit"]) == 3000.0

@@ -58,7 +58,7 @@ def test_a_bad_model_leaves_the_node_unconfigured(bench: Bench) -> None:
     with pytest.raises(InputError, match="refused to configure"):
         node.change("configure")
     assert node.state() == "unconfigured"
-    assert "'no_such_model' is neither a file nor a shipped name" in bench.log("compensator")
+    assert bench.says("compensator", "'no_such_model' is neither a file nor a shipped name")
     node.set({"model_file": "a6vm215_crane1"})
     node.change("configure")
     assert node.state() == "inactive"
@@ -146,7 +146,7 @@ def test_a_misspelt_parameter_is_said_and_quality_of_service_can_be_overridden(b
     file.write_text(yaml.safe_dump({"/**/compensator": {"ros__parameters": parameters}}))
     bench.start("compensator", "--params-file", str(file))
     bench.announce()
-    assert "parameter 'scal' is not known and has no effect; did you mean scale?" in bench.log("compensator")
+    assert bench.says("compensator", "parameter 'scal' is not known and has no effect; did you mean scale?")
     (subscription,) = bench.node.get_subscriptions_info_by_topic("/winch/joint_states")
     assert subscription.qos_profile.reliability.name == "RELIABLE"
 
@@ -159,8 +159,8 @@ def test_a_file_that_is_no_checkpoint_is_not_written_over(bench: Bench, tmp_path
     assert bench.stop("estimator") == 0
     kept = tmp_path / "notes.yaml.refused"
     assert kept.read_text() == "crane: north\n"
-    assert f"starts from the seed: {given}: not a checkpoint" in bench.log("estimator")
-    assert f"the file is kept as {kept}" in bench.log("estimator")
+    assert bench.says("estimator", f"starts from the seed: {given}: not a checkpoint")
+    assert bench.says("estimator", f"the file is kept as {kept}")
 
 
 def test_a_model_given_as_the_checkpoint_is_refused(tmp_path: Path) -> None:

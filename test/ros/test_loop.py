@@ -116,7 +116,7 @@ def test_the_estimator_continues_from_its_checkpoint(voyage: Voyage, bench: Benc
     bench.announce()
     bench.drive(0.5)
     assert bench.spin(5.0, lambda: bool(models))
-    assert "continues from" in bench.log("estimator")
+    assert bench.says("estimator", "continues from")
     kept, learned = model_from_text(models[0].data), voyage.recording.models[-1]
     assert kept.value("C6") != voyage.plan.seed.value("C6")
     assert kept.value("C6") == pytest.approx(learned.value("C6"), rel=0.02)
@@ -128,7 +128,7 @@ def test_a_checkpoint_of_another_seed_is_refused(voyage: Voyage, bench: Bench, t
     bench.start("estimator", checkpoint=checkpoint, model_file="a6vm215_crane1")
     assert bench.remote("estimator").state() == "active"
     bench.spin(0.5)
-    assert "starts from the seed" in bench.log("estimator")
+    assert bench.says("estimator", "starts from the seed")
 
 
 @pytest.mark.parametrize("node", NODES)

@@ -13,14 +13,14 @@ SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 @pytest.hookimpl(trylast=True)  # the tests of `ros/` get their mark in a file of their own
 def pytest_collection_modifyitems(items):
-    """Long files first; within a file, and among the others, as they stand. Live nodes get a second try."""
+    """Long files first; within a file, and among the others, as they stand. Live nodes get two more tries."""
     here = Path(__file__).parent
     items.sort(key=lambda item: -SECONDS.get(item.path.relative_to(here).as_posix(), 0))
     for item in items:
         if item.get_closest_marker("ros"):
             # processes judged by the clock: a machine that stood still for a moment is no defect, and a defect fails
-            # twice. pytest says at the end which needed it
-            item.add_marker(pytest.mark.flaky(reruns=1))
+            # three times. pytest says at the end which needed it
+            item.add_marker(pytest.mark.flaky(reruns=2))
 
 
 @pytest.fixture(scope="session")

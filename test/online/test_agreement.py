@@ -6,7 +6,8 @@ import pytest
 from sea import CRANE
 
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.doubt import BALANCE_TIME, Doubt, LoadBalance
+from winch_friction.online.doubt import Doubt
+from winch_friction.online.load_balance import BALANCE_TIME, LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 

@@ -7,8 +7,8 @@ import pytest
 from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.doubt import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.online.load_balance import BALANCE_SHARE, BALANCE_TIME
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.signals import Sample

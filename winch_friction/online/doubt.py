@@ -121,6 +121,68 @@ def _readings(sample: Sample) -> tuple[object, ...]:
     return tuple(None if each != each else each for values in (scalars, *groups) for each in values)
 
 
+# -- the speed and the wire that is paid out
+# s between two readings that are compared: a counter has steps and comes late; and s of motion that are remembered
+WIRE_STEP, WIRE_MEMORY = 1.0, 20.0
+# m that the wire must have gone, some steps of any counter, and comparisons: the first some always lie on a line
+LEAST_WAY, LEAST_STEPS = 1.0, 8
+FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
+# times that one may be the other: falls, a layer or a gear ratio that is not the crane's. Revolutions a minute are 9.5
+MOST_APART = 3.0
+WIRE_TIME = 2.0  # s of motion
+
+
+class WireAgainstSpeed:
+    """Whether the speed has the unit and the direction that the wire shows; a command of the same program has both."""
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
+        self._crane, self._largest, self._moving = crane, ranges.speed, AGAINST_SPEED * crane.speed_scale  # rad/s
+        self._doubt, self._how, self._time = Doubt(WIRE_TIME), "", math.nan
+        self._begin(math.nan)
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing."""
+        passed, self._time, wrong = sample.time - self._time, sample.time, None
+        if self._crane.drum.has(sample.wire_layer):
+            lever = self._crane.drum.radius(sample.wire_layer) / self._crane.gear_ratio  # m of wire per rad
+            self._passed += passed
+            self._way -= lever * sample.motor_speed * passed
+            most = lever * self._largest * (self._passed + LONGEST_SPAN)
+            # after a gap, or a counter that was set, nobody knows how far it turned; NaN is not below
+            if not (abs(sample.wire_out - self._last) <= most and 0.0 <= passed <= LONGEST_SPAN):
+                self._begin(sample.wire_out)
+            elif sample.wire_out != self._last and self._passed >= WIRE_STEP:
+                self._count(sample.wire_out)
+            wrong = self._differ() if abs(sample.motor_speed) > self._moving else None
+        return f"motor_speed contradicts wire_out: {self._how}" if self._doubt.step(wrong, dt) else ""
+
+    def _begin(self, reading: float) -> None:
+        """Compare from a reading on, m; what was summed up before is forgotten."""
+        self._last, self._way, self._passed = reading, 0.0, 0.0
+        self._speeds = self._wires = self._both = 0.0  # sums of squares and of products, m2
+        self._gone, self._steps = 0.0, 0  # m, comparisons
+
+    def _count(self, reading: float) -> None:
+        kept = math.exp(-self._passed / WIRE_MEMORY)
+        way, wire = self._way, reading - self._last
+        self._speeds = self._speeds * kept + way * way
+        self._wires = self._wires * kept + wire * wire
+        self._both = self._both * kept + way * wire
+        self._gone, self._steps = self._gone * kept + max(abs(way), abs(wire)), self._steps + 1
+        self._last, self._way, self._passed = reading, 0.0, 0.0
+
+    def _differ(self) -> bool | None:
+        """Whether the one that the speed tells is another motion; None where the wire does not follow, or too little
+        of it is known."""
+        size = math.sqrt(self._speeds * self._wires)
+        known = self._gone >= LEAST_WAY and self._steps >= LEAST_STEPS
+        if not known or size == 0.0 or abs(self._both) < FOLLOWS * size:
+            return None
+        times, turned = math.sqrt(self._speeds / self._wires), self._both < 0.0
+        self._how = "it turns the wrong way" if turned else f"it is {times:.2g} times as large"
+        return turned or not 1.0 / MOST_APART <= times <= MOST_APART
+
+
 # -- the load that is shown, the drive's torque and what the filter finds: can they be of one machine
 # the load and the drive: inertia, friction and waves are a third of it at most
 TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
@@ -133,62 +195,6 @@ MOST_FRICTION = 0.3
 # compensated share, 0.9, one of 1.26: from 1.3 on a winch may cycle
 MIDDLE_SHARE = 0.4  # of the larger one
 MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of one of 10 s
-# the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
-# displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles
-BALANCE_SHARE, BALANCE_TIME = 0.1, 10.0
-# from here on it is said: five times what the shipped scenarios show, half of what stops the learning
-SUSPECT_SHARE = 0.05
-
-
-class LoadBalance:
-    """Whether the load that the estimator finds is the one that the load cell shows.
-
-    A load cell that drifts and a displacement (or both pressures) that drift look the same here: T = D dp is compared
-    with m g r. It is not said which one is wrong, but that nothing may be learned from them. Nor is it before the winch
-    has turned both ways, faster than `moving` rad/s: one way, friction that the seed does not know looks like load.
-    """
-
-    def __init__(self, moving: float = AGAINST_SPEED) -> None:
-        self._doubt, self._time = Doubt(BALANCE_TIME, BALANCE_TIME), math.nan
-        self._moving, self._hoisted, self._lowered = moving, 0.0, 0.0  # rad/s, s, s
-        self._by, self._apart = "", math.nan  # the channel that showed the load last, and by how much it is off
-        self._suspect = Doubt(BALANCE_TIME, BALANCE_TIME)
-
-    def contradiction(self, apart: float, sample: Sample) -> str:
-        """What does not fit, in words; `apart`: the share of the measured load that the balance adds, NaN unknown. A
-        sample without a load contradicts nothing: what hangs there may be another one than was shown last."""
-        dt, self._time = span(self._time, sample.time), sample.time
-        self._hoisted += dt if sample.motor_speed > self._moving else 0.0
-        self._lowered += dt if sample.motor_speed < -self._moving else 0.0
-        wrong: bool | None = False
-        suspect: bool | None = False
-        if math.isfinite(sample_load(sample)):
-            self._by, self._apart = _shown_by(sample), apart
-            wrong = abs(apart) > BALANCE_SHARE if apart == apart else None
-            suspect = abs(apart) > SUSPECT_SHARE if apart == apart else None
-        both_ways = min(self._hoisted, self._lowered) >= LEAST_KNOWN
-        if not both_ways and wrong is False:
-            self._doubt = Doubt(BALANCE_TIME, BALANCE_TIME)
-        self._suspect.step(suspect if both_ways else False, dt)
-        if not self._doubt.step(wrong, dt) or not both_ways:
-            return ""
-        return (
-            f"{self._by} contradicts the balance of torques by {abs(apart):.0%}: load cell, displacement or pressures"
-        )
-
-    @property
-    def suspicion(self) -> str:
-        """What does not fit well, though it stops nothing, in words; '' for nothing."""
-        if not self._suspect.stands or self._doubt.stands:
-            return ""
-        return (
-            f"the balance of torques adds {self._apart:+.0%} to {self._by}: load cell, tare, displacement or pressures?"
-        )
-
-    @property
-    def pending(self) -> bool:
-        """Whether the two loads are apart, though it may not be said yet."""
-        return self._doubt.pending
 
 
 @dataclass
@@ -233,7 +239,7 @@ class LoadAgainstDrive:
             at_once = both_ways = False
             self._hoisting, self._lowering = _Way(), _Way()
         else:
-            self._by = _shown_by(sample)
+            self._by = shown_by(sample)
             if self._tells(sample):
                 at_once, both_ways = self._compared(sample, dt)
         # both look at every sample
@@ -288,7 +294,7 @@ class LoadAgainstDrive:
         return apart > max(MIDDLE_SHARE * max(load, drive), SMALLEST_TORQUE * lever * self._rated)
 
 
-def _shown_by(sample: Sample) -> str:
+def shown_by(sample: Sample) -> str:
     if sample.hook_load == sample.hook_load:
         return "hook_load"
     return "rope_force" if sample.rope_force == sample.rope_force else "load (the parameter)"

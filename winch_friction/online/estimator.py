@@ -11,9 +11,10 @@ from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import LoadAgainstDrive, LoadBalance, StandingReadings, span
+from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -57,6 +58,7 @@ class EstimatorService:
         self._balance = LoadBalance(AGAINST_SPEED * crane.speed_scale)
         self._load = LoadAgainstDrive(crane, self.inputs.ranges)
         self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
+        self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
 
     def take(
         self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
@@ -98,7 +100,8 @@ class EstimatorService:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain
         that changed, which makes the filter reject what tells it."""
         passed = span(self._seen, sample.time)
-        lost = self._load.contradiction(sample, passed) or self._still.contradiction(sample, passed)
+        watched = [each.contradiction(sample, passed) for each in (self._load, self._still, self._wire)]
+        lost = next(filter(None, watched), "")
         self._seen = sample.time
         gain = ""
         if learned.accepted or math.isfinite(learned.innovation):

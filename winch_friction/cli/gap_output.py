@@ -15,6 +15,7 @@ def write_result(out: Path, result: Any, content: dict[str, Any], runs: list[Any
     from winch_friction.records.atomic import together, write_text
     from winch_friction.records.model_file import save_model
 
+    planned = _earlier_plan(out)
     with together(out, "gap.json") as place:
         _write_addition(place, result, runs)
         save_model(result.model, place / "model.yaml")
@@ -23,8 +24,20 @@ def write_result(out: Path, result: Any, content: dict[str, Any], runs: list[Any
         _write_proposals(place, result)
         write_text(place / "gap.json", json.dumps(content, indent=2, allow_nan=False) + "\n")
         new = {each.name for each in place.iterdir()}
-    for old in (each for name in REPLACED for each in out.glob(name) if each.name not in new):
+    for old in (each for name in (*REPLACED, *planned) for each in out.glob(name) if each.name not in new):
         old.unlink()
+
+
+def _earlier_plan(out: Path) -> tuple[str, ...]:
+    """The scenario that an earlier call has written, as long as nobody has made it his own."""
+    from winch_friction.records.strict_yaml import shipped
+
+    try:
+        name = json.loads((out / "gap.json").read_text(encoding="utf-8"))["next_experiment"]["scenario"]
+        own = (out / name).read_text(encoding="utf-8")
+        return (name,) if own == shipped("scenarios", Path(name).stem).read_text(encoding="utf-8") else ()
+    except (OSError, ValueError, LookupError, TypeError):  # no earlier call, or none that planned
+        return ()
 
 
 def _write_proposals(out: Path, result: Any) -> None:

@@ -83,6 +83,20 @@ def test_any_name_is_read_back_as_it_was_given(name, tmp_path, monkeypatch, caps
     assert load_map(tmp_path / "map.yaml").crane == load_scenario("scenario.yaml").crane == name
 
 
+def test_falls_are_so_many_ropes_side_by_side_at_a_part_of_the_radius(own, capsys):
+    assert run(["init", "crane", *CRANE, "--falls", "2", "--out", "two.yaml"]) == 0
+    one, two = load_crane("crane_50t.yaml"), load_crane("two.yaml")
+    assert two.drum.layer_radii == pytest.approx([0.5 * radius for radius in one.drum.layer_radii], rel=1e-3)
+    assert two.wire_mass == pytest.approx(2.0 * one.wire_mass, rel=1e-2)
+    assert two.wire_stiffness == pytest.approx(2.0 * one.wire_stiffness, rel=1e-3)
+    assert (two.gear_ratio, two.inertia) == (one.gear_ratio, one.inertia)
+    assert "rope paid out / 2" in Path("two.yaml").read_text()
+    capsys.readouterr()
+    for wrong, said in ((["--falls", "0"], "--falls 0 must be above 0"), (["--active", "5"], "one group: 0")):
+        assert run(["init", "crane", *CRANE, *wrong, "--out", "three.yaml"]) == 2
+        assert said in capsys.readouterr().err
+
+
 def test_an_own_crane_is_simulated_and_checked(own, capsys):
     machine = ["--crane", "crane_50t.yaml", "--model", "seed_crane_50t.yaml"]
     for scenario in ("ahc_crane_50t.yaml", "normal_crane_50t.yaml"):

@@ -106,7 +106,8 @@ def test_what_a_list_says_of_a_scenario_is_a_whole_sentence(capsys):
     assert [row["name"] for row in rows if not row["about"].endswith((".", ")"))] == []
 
 
-def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys):
+def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "of the first node"))  # which makes it
     assert run(["doctor", "--no-dds", "--json"]) == 0
     findings = json.loads(capsys.readouterr().out)
     areas = {"environment", "libraries", "configuration", "permissions", "compiled code", "clock"}

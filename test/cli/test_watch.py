@@ -6,6 +6,7 @@ import pytest
 
 import winch_friction as wf
 from winch_friction.cli.main import run
+from winch_friction.cli.watch import DISCOVERY, counted
 
 
 @pytest.fixture(scope="module")
@@ -36,3 +37,11 @@ def test_a_joint_that_is_not_there_is_said(bag, capsys):
 def test_what_is_no_bag_is_one_line(name, capsys):
     assert run(["watch", "--bag", name]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize(("silent", "first"), [(0, 0), (3, 3), (DISCOVERY + 9, DISCOVERY)])
+def test_frames_count_from_the_first_word_of_a_node_or_once_nodes_should_have_been_found(silent, first):
+    """Two frames were over before the nodes were found: they were said not to run."""
+    status = [{}] * silent + [{"compensator: feedforward": {}}] * 9
+    found = counted(({"time": None, "status": each, "number": k} for k, each in enumerate(status)), 2)
+    assert [each["number"] for each in found] == [first, first + 1]

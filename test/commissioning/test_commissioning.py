@@ -266,6 +266,16 @@ def test_two_mistakes_at_once_are_both_named_before_any_other(crane_150t, names)
     assert all(made[name].channels[0] in found.channel for name in names), found.sentence
 
 
+@pytest.mark.parametrize("falls", [2, 3])
+def test_a_hook_in_several_falls_is_named_before_a_wrong_gear_or_load(crane_150t, falls):
+    run = read_run(PRACTICE / "test_02.parquet")
+    single = replace(crane_150t, drum=Drum(tuple(falls * radius for radius in crane_150t.drum.layer_radii)))
+    found = first_contradiction(quick_check([run], single, None, dict))
+    assert found.cause == "falls"
+    assert f"in {falls} falls" in found.sentence
+    assert f"divide layer_radii by {falls}" in found.sentence
+
+
 def test_a_balance_that_is_open_both_ways_is_no_two_units(tmp):
     """A winch that jerks: with load and pressures a tenth of themselves its misfit is a tenth, and proves nothing."""
     crane, model = world(0, rig.DRAWN, tmp)

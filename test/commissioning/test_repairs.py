@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from winch_friction.commissioning import kinematics, mistakes
+from winch_friction.commissioning import diagnose, kinematics, mistakes
 from winch_friction.commissioning.kinematics import FASTEST, LATE, LOWEST_SUM, agreements, excesses
 from winch_friction.commissioning.repairs import (
     displacement_times,
     drop_times,
+    in_falls,
     load_times,
     motor_torque_times,
     port_times,
@@ -63,6 +64,23 @@ def test_a_factor_reaches_what_was_logged_in_that_unit_and_nothing_else():
     assert displacement_times(2.0, "active")(view()).groups["passive"].displacement[0] == 3.4e-5
     assert displacement_times(2.0, "active")(view()).groups["active"].displacement[0] == 6e-5
     assert motor_torque_times(-1.0)(view(motor_torque=5.0 * ONE)).motor_torque[0] == -5.0
+
+
+@pytest.mark.parametrize("told", [1.0, 0.5])  # the rope that is paid out, the hook's depth
+def test_a_hook_in_two_falls_goes_half_as_far_as_the_rope_on_ropes_twice_as_stiff_and_swings_twice_as_fast(told):
+    logged = view(rates={"wire_out": told * SPEED / 250.0, "shaft_angle": SPEED}, bounce=3.0, load_torque=7.0 * ONE)
+    found = in_falls(2)(logged)
+    np.testing.assert_allclose(found.rates["wire_out"], found.speed * found.lever)
+    assert (found.radius[0], found.load[0], found.load_torque[0], found.bounce) == (0.5, 5e4, 7.0, 6.0)
+    assert found.rates["shaft_angle"] is logged.rates["shaft_angle"]
+
+
+@pytest.mark.parametrize(("told", "said"), [(2.02, " (the rope of 2 falls, where wire_out is the hook's depth?)"),
+                                            (2.5, "")])  # fmt: skip
+def test_a_wire_that_is_paid_out_to_several_falls_is_told_as_such(told, said):
+    (found,) = diagnose._companions([view(rates={"wire_out": told * SPEED / 250.0})])
+    assert found.words == f"wire_out contradicts motor_speed: it tells {told:.3g} times the speed{said}"
+    assert found.cause == "companion"  # the balance does not use it
 
 
 def test_exchanged_groups_keep_their_numbers_of_motors():

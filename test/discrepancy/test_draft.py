@@ -93,7 +93,14 @@ def stepping(monkeypatch, misfits, step=1.0):
 
 @pytest.mark.parametrize(
     ("misfits", "value"),
-    [((1.0, 1.0), 20.0), ((0.9, 1.0, 0.95), 21.0), ((0.9, 1.0, 0.8, 0.85), 22.0), ((0.9, 1.0, 0.8, 0.7), 23.0)],
+    [
+        ((1.0, 1.0), 20.0),
+        ((0.9, 1.0, 0.9), 21.0),
+        ((0.9, 1.0, 0.95, 0.93, 0.91), 21.0),  # nor its half, nor its quarter
+        ((1.5, 1.0, 0.9, 0.9), 20.5),  # which went too far
+        ((1.5, 1.0, 1.2, 0.9, 0.9), 20.25),
+        ((0.9, 1.0, *np.geomspace(0.8, 0.1, 9)), 30.0),
+    ],
 )
 def test_a_step_that_does_not_shrink_the_gap_is_not_taken_though_its_uncertainty_is(monkeypatch, misfits, value):
     polished = stepping(monkeypatch, misfits)

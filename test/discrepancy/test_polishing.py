@@ -8,6 +8,7 @@ import pytest
 from gap_rig import runs_with
 
 from winch_friction.discrepancy import repair
+from winch_friction.discrepancy.expansion import with_room
 from winch_friction.discrepancy.repair import Repair, _as_found, polished
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
@@ -55,3 +56,12 @@ def test_what_the_last_fit_says_nothing_of_is_as_uncertain_as_when_it_was_found(
     drafted = FrictionModel("m", terms, values, covariance=np.diag([1.0, 0.04, 1.0, 9.0]))
     fitted = replace(drafted, covariance=np.diag([0.99, 0.01, after**2, 4.0]))
     assert _as_found(fitted, drafted, seed).std == pytest.approx((np.sqrt(0.99), 0.1, said, 2.0))
+
+
+@pytest.mark.parametrize(("named", "end", "room"), [(False, 14.0, 14.0), (False, 13.9, 10.0), (True, 14.0, 10.0)])
+def test_what_a_fit_took_to_the_end_of_its_room_is_given_room_around_there_but_nothing_of_the_seed_is(named, end, room):
+    """A Stribeck speed of 38 rad/s from a grid, where 10 is true, held the Coulomb friction at 20 of its deviations."""
+    prior = FrictionModel("m", (term_named("coulomb"),), (10.0,), covariance=np.diag([4.0]))
+    seed = prior if named else FrictionModel("bare", (), ())
+    found = with_room(prior, prior.with_values([end]), {"C2": 2.0}, seed)
+    assert found.values == (room,)

@@ -94,8 +94,12 @@ def test_a_log_of_another_crane_is_not_imported(tmp_path, capsys):
     )
     log = write_text(tmp_path / "log.csv", rows_of(halved))
     assert imported(tmp_path, log) == (2, 2)
-    assert "hook_load" in capsys.readouterr().err  # 2.5 times the pressures, or 0.4 of the load: one and the same
+    said = capsys.readouterr().err
+    assert "hook_load" in said  # 2.5 times the pressures, or 0.4 of the load: one and the same
+    assert "put it right by --set" in said
     assert not (tmp_path / "runs").exists()
+    again = ["import", str(log), "--map", str(tmp_path / "map.yaml"), "--out", str(tmp_path / "runs")]
+    assert run([*again, "--set", "hook_load.factor=0.4"]) == 0, capsys.readouterr().err  # the question's own answer
 
 
 def test_nothing_is_overwritten(tmp_path, capsys):

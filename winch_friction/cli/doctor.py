@@ -122,7 +122,7 @@ def _compiled_code() -> Iterator[Finding]:
 
 def _permissions() -> Iterator[Finding]:
     for name, folder in (("this folder", Path.cwd()), ("ROS logs", Path(os.environ.get("ROS_LOG_DIR", Path.home())))):
-        ok = os.access(folder, os.W_OK)
+        ok = os.access(folder if folder.exists() else folder.parent, os.W_OK)  # the first node makes it
         yield Finding(
             "permissions",
             name,

@@ -155,9 +155,9 @@ def import_logs(
     else:
         problems += against
     if problems:
-        hint = (
-            "nothing written; --force imports what contradicts the crane" if problems == against else "nothing written"
-        )
+        hint = "nothing written"
+        if problems == against:
+            hint += "; put it right by --set, in map or crane file; --force imports what contradicts the crane"
         raise InputError(f"{' | '.join(problems)} ({hint})")
     written = [str(write_run(run, target)) for run, target in zip(runs, targets, strict=True)]
     for run in runs:

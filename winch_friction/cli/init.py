@@ -36,6 +36,7 @@ def crane(
     layers: Annotated[OptionalInt, typer.Option(help="Wire layers.")] = None,
     active: Annotated[OptionalInt, typer.Option(help="Active motors in heave compensation; 0: none.")] = None,
     wire: Annotated[OptionalFloat, typer.Option(help="Wire diameter in mm.")] = None,
+    falls: Annotated[int, typer.Option(help="Parts of rope that the hook hangs in.")] = 1,
     inertia: Annotated[
         OptionalFloat,
         typer.Option(help="Inertia at the motor shaft, kg m^2; of a hydraulic drive estimated if absent."),
@@ -74,7 +75,7 @@ def crane(
         "torque_constant": (torque_constant, float, "N m at the motor shaft per A"),
     }
     wanted, given = wanted_of(drive), {name: value for name, (value, *_) in asked.items() if value is not None}
-    facts = CraneFacts(drive=drive, **{**given, **_answered({name: asked[name] for name in wanted})})
+    facts = CraneFacts(drive=drive, falls=falls, **{**given, **_answered({name: asked[name] for name in wanted})})
     _write(out or _file_of(facts.name), crane_text(facts), overwrite, as_json)
 
 

@@ -2,6 +2,8 @@
 
 The rules scale crane_150t by size: inertia with the motors' total displacement to the power 5/3, a wire with its
 diameter squared. Of a drive that is not hydraulic nothing is scaled but the torque that the rated load takes.
+A load in n falls is at the drum what one on a single fall of n-th radius is: torque, speed and inertia alike. There the
+falls are n ropes side by side, n times as heavy and as stiff.
 """
 
 import json
@@ -40,18 +42,22 @@ class CraneFacts:
     inertia: float | None = None
     drive: str = HYDRAULIC
     torque_constant: float | None = None
+    falls: int = 1
 
     def __post_init__(self) -> None:
         wanted = set(wanted_of(self.drive))
         own = [each for each in (set(_OF_ONE_DRIVE) - wanted - {"inertia"}) if getattr(self, each)]
         wrong = [f"--{_flag(each)} is not of --drive {self.drive}" for each in sorted(own)]
         numbers = ("load", "motors", "displacement", "gear_ratio", "radius", "layers", "wire", "inertia",
-                   "torque_constant")  # fmt: skip
+                   "torque_constant", "falls")  # fmt: skip
         values = {name: getattr(self, name) for name in numbers if name in wanted or getattr(self, name) is not None}
         wrong += [f"--{_flag(name)} {value!r} must be above 0" for name, value in values.items()
                   if value is None or not 0 < value < float("inf")]  # fmt: skip
         if not 0 <= self.active < max(self.motors, 1):
-            wrong.append(f"--active {self.active} must be 0 ... {self.motors - 1}: the others are passive")
+            wrong.append(
+                f"--active {self.active} must be 0 ... {self.motors - 1}: the others are passive; where all of them "
+                "compensate they are one group: 0"
+            )
         wrong += [] if wrong else self._unlikely()
         if wrong:
             raise InputError(f"init crane: {'; '.join(wrong)}")
@@ -69,14 +75,14 @@ class CraneFacts:
         if not found and not HOLDS[0] <= share <= HOLDS[1]:
             found.append(
                 f"at 300 bar these motors hold {self.holds:.3g} t, {share:.2g} times the rated load of {self.load:g} "
-                "t: look at --displacement (per motor), --motors, --gear-ratio and --radius again"
+                "t: look at --displacement (per motor), --motors, --gear-ratio, --radius and --falls again"
             )
         return found
 
     @property
     def radii(self) -> list[float]:
-        """Rope radius of each layer, m."""
-        return [self.radius + 0.87 * 1e-3 * self.wire * k for k in range(self.layers)]
+        """Rope radius of each layer over the number of falls, m."""
+        return [(self.radius + 0.87 * 1e-3 * self.wire * k) / self.falls for k in range(self.layers)]
 
     @property
     def holds(self) -> float:
@@ -108,7 +114,8 @@ def _flag(name: str) -> str:
 
 def crane_text(f: CraneFacts) -> str:
     """The crane file."""
-    wire, radii = (f.wire / WIRE) ** 2, f.radii
+    wire, radii = f.falls * (f.wire / WIRE) ** 2, f.radii
+    falls = f"\n  # {_falls_say(f.falls)}" if f.falls > 1 else ""
     drive, inertia, source, limit, rated = _of_motors(f) if f.displacement else _of_drive(f)
     return f"""# Written by winch-friction init crane. Check what is called an ESTIMATE against the crane's documents.
 schema: winch_friction.crane/1
@@ -116,7 +123,7 @@ name: {yaml_word(f.name)}
 {drive}
 gear_ratio: {f.gear_ratio:g}
 drum:
-  # rope radius per layer in m, innermost first; ESTIMATE beyond the first: 0.87 of a wire diameter per layer
+  # rope radius per layer in m, innermost first; ESTIMATE beyond the first: 0.87 of a wire diameter per layer{falls}
   layer_radii: [{", ".join(f"{r:.4g}" for r in radii)}]
 inertia: {{value: {inertia:.3g}, unit: kg*m^2}}    # at the motor shaft; {source}
 wire_mass: {{value: {WIRE_MASS * wire:.3g}, unit: kg/m}}          # ESTIMATE from the diameter
@@ -124,6 +131,13 @@ wire_stiffness: {{value: {WIRE_STIFFNESS * wire:.3e}, unit: N}}  # EA, ESTIMATE 
 absolute_torque_limit: {{value: {limit:.3g}, unit: N*m}}   # bound of any feedforward: YOURS to decide
 rated_load: {{value: {f.load:g}, unit: t}}          # {rated}
 """
+
+
+def _falls_say(falls: int) -> str:
+    return (
+        f"DIVIDED by the {falls} falls of the hook; wire_mass and wire_stiffness are of {falls} wires. In runs and "
+        f"topics\n  # wire_out is the hook's depth (rope paid out / {falls}), rope_force that of all falls"
+    )
 
 
 def _of_motors(f: CraneFacts) -> tuple[str, float, str, float, str]:

@@ -1,7 +1,7 @@
 """`winch-friction watch`: the running nodes in the terminal."""
 
-import itertools
 import json
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Any
 
 import typer
@@ -10,13 +10,17 @@ from winch_friction.cli.console import finite, stdout
 from winch_friction.cli.optional import OptionalPath
 from winch_friction.physics.channels import beside
 
+DISCOVERY = 25  # frames, 5 s: nodes on a busy machine have found each other by then
+
 
 def command(
     bag: Annotated[OptionalPath, typer.Option(help="Watch a bag instead of running nodes.")] = None,
     namespace: Annotated[str, typer.Option(help="Namespace of the winch's nodes.")] = "",
     joint: Annotated[str, typer.Option(help="Joint of the speed; none: winch_motor, else the first.")] = "",
     rate: Annotated[float, typer.Option(min=0.0, help="Pace of a bag: 1 as it was, 0 at once.")] = 1.0,
-    frames: Annotated[int, typer.Option(min=0, help="End after this many frames (5 a second); 0: never.")] = 0,
+    frames: Annotated[
+        int, typer.Option(min=0, help="End after this many frames (5 a second) once nodes are heard; 0: never.")
+    ] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Frames as JSON lines.")] = False,
 ) -> None:
     """Watch the winch: state, rates and ages of inputs, torque, estimates with sigma and status, faults.
@@ -32,7 +36,7 @@ def command(
     from winch_friction.cli.live import frames as source
 
     found = source(bag, namespace, rate, joint)
-    chosen = itertools.islice(found, frames) if frames else found
+    chosen = counted(found, frames) if frames else found
     if as_json:
         for frame in chosen:
             print(json.dumps(finite(frame)), flush=True)
@@ -42,6 +46,19 @@ def command(
         for frame in chosen:
             latest.update({name: points[-1][1] for name, points in frame["points"].items()})
             live.update(view(frame, latest))
+
+
+def counted(found: Iterable[dict[str, Any]], frames: int) -> Iterator[dict[str, Any]]:
+    """So many frames, those not counted in which the nodes have not been found yet."""
+    looked = 0
+    for frame in found:
+        if looked < DISCOVERY and frame["time"] is None and not frame["status"]:
+            looked += 1
+            continue
+        looked, frames = DISCOVERY, frames - 1
+        yield frame
+        if not frames:
+            return
 
 
 def view(frame: dict[str, Any], latest: dict[str, float]) -> Any:

@@ -19,7 +19,7 @@ from winch_friction.commissioning.kinematics import (
     excesses,
     range_score,
 )
-from winch_friction.commissioning.mistakes import RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
+from winch_friction.commissioning.mistakes import MOST_FALLS, RARELY, Mistake, delayed, fixed_mistakes, free_mistakes
 from winch_friction.commissioning.view import RunView, select
 from winch_friction.physics.channels import GRAVITY, RPM
 from winch_friction.physics.friction import FrictionModel
@@ -66,6 +66,7 @@ UNITS = {
     "shaft_angle": ((180.0 / np.pi, "deg under [rad]"), (0.5 / np.pi, "turns under [rad]")),
     "speed_reference": ((1.0 / RPM, "rpm under [rad/s]"), (RPM, "rad/s under [rpm]")),
 }
+PAID_OUT = tuple((n, f"the rope of {n} falls, where wire_out is the hook's depth") for n in range(2, MOST_FALLS + 1))
 HELPED = 3.0  # a run holds a mistake when undoing it lowers the score by this
 DELAYS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 2.8, 4.0)  # s, tried in both directions; a smaller one is for `gap` to name
 PAIR_RUNS = 2  # on these every pair of mistakes is tried: there are hundreds
@@ -258,6 +259,10 @@ def _ratio(x: np.ndarray, y: np.ndarray) -> float:
     return float(np.sum(x * y)) / size if size > 0.0 else float("nan")
 
 
+def _factor_says(ratio: float, known: Sequence[tuple[float, str]]) -> str:
+    return next((said for factor, said in known if abs(ratio / factor - 1.0) < EXACT), "")
+
+
 def _companions(views: Sequence[RunView]) -> list[Mistake]:
     """Channels that merely tell the speed again may be wrong themselves: without them the rest fits."""
     found = []
@@ -273,8 +278,9 @@ def _companions(views: Sequence[RunView]) -> list[Mistake]:
         odd = {name: a.ratio for name, a in told if a.score >= ODD * worst}
         ratio = float(np.median(list(odd.values()))) if odd else 1.0
         where = f" in {', '.join(odd)}" if 0 < len(odd) < len(told) else ""
-        unit = next((said for f, said in UNITS.get(channel, ()) if abs(ratio / f - 1.0) < EXACT), "")
+        unit = _factor_says(ratio, UNITS.get(channel, ()))
+        likely = unit or _factor_says(ratio, PAID_OUT if channel == "wire_out" else ())
         words = f"{channel} contradicts motor_speed{where}: it tells {ratio:.3g} times the speed"
-        words += f" ({unit}?)" if unit else ""
+        words += f" ({likely}?)" if likely else ""
         found.append(Mistake("unit" if unit else "companion", channel, words, COMPANION, undo, ratio))
     return found

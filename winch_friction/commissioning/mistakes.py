@@ -16,6 +16,7 @@ from winch_friction.commissioning.repairs import (
     Repair,
     displacement_times,
     drop_times,
+    in_falls,
     load_times,
     motor_torque_times,
     port_times,
@@ -28,6 +29,7 @@ from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
 UNIT, SIGN, PORTS, SWAP, CRANE, LAYER, DELAY, TARE, SCALE = 0.0, 1.0, 2.0, 3.0, 2.0, 5.0, 12.0, 6.0, 12.0  # prior costs
+FALLS, MOST_FALLS = 4.0, 4  # dearer than a unit, cheaper than a layer: load and drum stand in two documents
 
 RARELY, RARE = ("deg/s", "1/s", "lb", "l/rev", "mm^3", "kPa", "kN under [kg]", "t under [kN]"), 4.0
 # channel -> factor to the true value, what is written in the log and under which unit it stands
@@ -83,6 +85,9 @@ def fixed_mistakes(views: Sequence[RunView], crane: Crane, others: Mapping[str, 
     yield from _swaps(views, groups)
     yield from _cranes(views, crane, others)
     yield from _layers(views, crane)
+    for n in range(2, MOST_FALLS + 1) if any(np.isfinite(view.load).any() for view in views) else ():
+        words = f"the hook hangs in {n} falls and the crane file counts one: divide layer_radii by {n}, as init crane"
+        yield Mistake("falls", "drum", f"{words} --falls {n} does", FALLS, in_falls(n), n)
 
 
 def _units(views: Sequence[RunView], crane: Crane, groups: tuple[str, ...]) -> Iterator[Mistake]:

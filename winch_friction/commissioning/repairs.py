@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from winch_friction.commissioning.view import GroupView, RunView
 
 Repair = Callable[[RunView], RunView]
@@ -72,3 +74,19 @@ def displacement_times(factor: float, only: str = "") -> Repair:
 def motor_torque_times(factor: float) -> Repair:
     """The motor torque times a factor."""
     return lambda v: v if v.motor_torque is None else replace(v, motor_torque=v.motor_torque * factor)
+
+
+def in_falls(number: int) -> Repair:
+    """The hook in so many falls of rope: its weight, way and inertia at the drum; a force in the rope is what it is.
+
+    `wire_out` may be the rope paid out or the hook's depth, a part of it: the speed tells which.
+    """
+
+    def undo(view: RunView) -> RunView:
+        rates = dict(view.rates)
+        if "wire_out" in rates:
+            told, lever = np.nansum(np.abs(rates["wire_out"])), np.nansum(np.abs(view.speed * view.lever))
+            rates["wire_out"] = rates["wire_out"] / (number if told**2 * number > lever**2 else 1)
+        return replace(view, radius=view.radius / number, rates=rates, bounce=view.bounce * number)
+
+    return undo

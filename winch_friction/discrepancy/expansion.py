@@ -17,6 +17,7 @@ from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
 from winch_friction.discrepancy.preparation.wire_mode import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes, swinging_along
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction import FrictionModel
@@ -26,6 +27,7 @@ from winch_friction.physics.winch import Crane
 
 LOAD_ROUNDS = 6  # friction depends on the load that is sought: the fixed point is reached to 0.1 % by then
 LOAD_CONVERGED = 1e-5  # relative; a tenth of what any load cell tells
+EDGE = 0.999  # of the room around a prior: what a fit took so far would go further
 WEIGHED = {"hook_load", "rope_force", "load_torque"}  # columns that say what hangs there
 
 
@@ -228,6 +230,23 @@ def _prepared_around(
         own = new if not turning else replace(new, seen=None)  # nobody prepares again what was turned
         prepared.append(replace(own, corrections=old.corrections).sharing(old))
     return tuple(prepared), model
+
+
+def with_room(
+    prior: FrictionModel, fitted: FrictionModel, loose: Mapping[str, float], seed: FrictionModel
+) -> FrictionModel:
+    """The prior of a fit with the room of what is free (looser than the seed has it) laid around where the fit brought
+    it, if that is where the room ends.
+
+    How far the draft was off it does not know: a shape from a grid moves its neighbours by many of their deviations.
+    """
+    known, at = dict(zip(seed.parameter_names, seed.std, strict=True)), fitted.as_dict()
+    values = prior.as_dict()
+    for name, value in values.items():
+        ended = abs(at[name] - value) >= EDGE * LIMITS.prior_bound * loose[name]
+        if ended and loose[name] > known.get(name, 0.0):
+            values[name] = at[name]
+    return prior.with_values(values)
 
 
 def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:

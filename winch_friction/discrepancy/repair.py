@@ -22,7 +22,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.estimates import InFile, agreed, estimates_of, in_file, of_part, together
-from winch_friction.discrepancy.expansion import Given, meet, meet_again
+from winch_friction.discrepancy.expansion import Given, meet, meet_again, with_room
 from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -38,8 +38,7 @@ REPAIRED, REFITTED = "_repaired", "_refitted"  # behind the name of the given mo
 
 @dataclass(frozen=True)
 class Repair:
-    """The repaired model, the parameters of each effect, what was cut at a bound, and which corrections of the model
-    say the parameters of an effect."""
+    """The repaired model, the parameters of each effect, what was cut at a bound, which corrections say an effect's."""
 
     model: FrictionModel
     parameters: dict[str, dict[str, ParameterEstimate]]
@@ -100,12 +99,9 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
     base = cross.problem.base
     count = base.parameters
     names = search.expansion.model.parameter_names
+    place = np.array(search.expansion.model.values) + value[:count]
     own = _Draft(
-        list(seed.terms),
-        dict(zip(names, np.array(search.expansion.model.values) + value[:count], strict=True)),
-        dict(zip(names, std[:count], strict=True)),
-        [],
-        {},
+        list(seed.terms), dict(zip(names, place, strict=True)), dict(zip(names, std[:count], strict=True)), [], {}
     )
     for k, each in enumerate(seed.corrections, start=len(base.names) - len(seed.corrections)):
         own.corrections.append(_changed(each, each.value + value[k], float(std[k])))
@@ -196,21 +192,25 @@ def polished(
 
     All runs are prepared at first, for all of them decide whether their wire gives, and by fewer it may be otherwise.
     The draft comes from a linear problem around the seed: melted curves, pressures that depend on what was found and
-    shapes from a grid leave a second order, which a few Gauss-Newton steps on the model take away. Steps that do not
-    shrink the gap are not taken. The covariance is the last fit's, wider where more than noise is left.
+    shapes from a grid leave a second order, which Gauss-Newton steps on the model take away, as long as they shrink the
+    gap. The covariance is the last fit's, wider where more than noise is left.
     """
     best = drafted
     now = meet(runs, crane, best.model, train, known).only(train)
     prior, loose = _prior(drafted, seed)
     for _ in range(LIMITS.polishing):
         step, covariance, deviations = _step(now, prior, loose)
-        tried = _stepped(best.model, step, covariance, deviations)
-        new = meet_again(now, runs, crane, tried)
+        for share in (1.0, 0.5, 0.25):
+            tried = _stepped(best.model, share * step, covariance, deviations)
+            new = meet_again(now, runs, crane, tried)
+            if LIMITS.worth_polishing * _misfit(new) <= _misfit(now):
+                break  # else it went too far, as the width of a curve from a grid may
         if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
             # no better, but the uncertainty is this fit's all the same
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))
             break
         now, best = new, replace(best, model=tried)
+        prior = with_room(prior, tried, loose, seed)
     best = replace(best, model=_as_found(best.model, drafted.model, seed))
     return replace(best, parameters=_reported(best, seed))
 

@@ -158,7 +158,7 @@ class Thresholds:
     # -- refinement
     most_expansions: int = 2  # preparations around what was found; a third changes nothing (campaign)
     shape_std: float = 0.1  # relative; a shape is chosen from a grid
-    polishing: int = 3  # Gauss-Newton steps on the repaired model itself; more change nothing
+    polishing: int = 10  # Gauss-Newton steps on the repaired model itself at most; few are ever worth taking
     worth_polishing: float = 0.999  # of the misfit: a step that does not get below it is not taken
     loosened: float = 10.0  # times its first deviation: what was just found is fitted freely
     # -- next experiment

@@ -14,6 +14,7 @@ SCHEMA = "winch_friction.map/1"
 LARGEST = 1 << 18  # bytes: a map of a thousand columns has a quarter of it
 BAD_CELLS = ("missing", "refuse")
 PLACES = ("motor", "drum", "rope")
+OF_CRANE = "crane: "  # how a question begins that is of no channel: what in the logs cannot be the crane's
 _NUMBERS = ("names_row", "unit_row", "first_row")
 _TEXTS = ("kind", "encoding", "delimiter", "decimal", "thousands", "sheet", "namespace", "clocks")
 
@@ -219,9 +220,10 @@ def _content(entry: Entry) -> dict[str, Any]:
 
 
 def refuse_if_open(log_map: LogMap, where: str) -> None:
-    """Raise `InputError` with every open question of a map."""
-    if log_map.questions:
+    """Raise `InputError` with every open question of a map; not what contradicted the crane when it was proposed, which
+    is judged anew of what is imported, by the map, the settings and the crane file as they are by then."""
+    if still_open := [each for each in log_map.questions if not each.startswith(OF_CRANE)]:
         raise InputError(
-            f"{where}: {' | '.join(log_map.questions)} (answer by --set CHANNEL.FIELD=VALUE, or in the map and "
+            f"{where}: {' | '.join(still_open)} (answer by --set CHANNEL.FIELD=VALUE, or in the map and "
             "remove the question; --accept imports as it stands)"
         )

@@ -11,7 +11,7 @@ from winch_friction.importing.draft import Draft
 from winch_friction.importing.guess import Match, group_sets, matches
 from winch_friction.importing.layers import ask_layers
 from winch_friction.importing.log import Log, listed
-from winch_friction.importing.mapping import Entry, LogMap
+from winch_friction.importing.mapping import OF_CRANE, Entry, LogMap
 from winch_friction.importing.names import NAMED, name_concepts, name_score
 from winch_friction.importing.orientation import settle_orientation, speed_by_motion
 from winch_friction.importing.own_clocks import CLOCKS
@@ -256,7 +256,7 @@ def _settle_contradictions(draft: Draft) -> None:
     if draft.questions or draft.problems:
         return  # what is open already may be the cause
     logs = {log.path.name: done.columns for log, done in zip(draft.logs, draft.converted(), strict=True)}
-    draft.questions += [f"crane: {text}" for text in contradictions(logs, draft.crane)]
+    draft.questions += [f"{OF_CRANE}{text}" for text in contradictions(logs, draft.crane)]
 
 
 def _bad_cells(logs: Sequence[Log], log_map: LogMap) -> list[str]:

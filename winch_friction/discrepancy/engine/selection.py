@@ -156,14 +156,14 @@ def _in_order(cross: CrossFit, current: Explanation, trials: Sequence[Explanatio
 
 
 def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator) -> Explanation:
-    """What every machine has and a bare model lacks, all of it at once and then without what is not needed.
-
-    Inertia, Coulomb and viscous friction and a gain stand in for each other: one by one, the first takes what belongs
-    to two others, which then bring nothing alone.
-    """
+    """What every machine has and a bare model lacks, all at once and then without what is not needed: inertia, Coulomb
+    and viscous friction and a gain stand in for each other; one by one, the first takes what is two others'."""
     plain = [slot for slot in cross.problem.slots if slot.plain and not slot.brings]
-    best = {slot.name: slot for slot in sorted(plain, key=lambda each: -cross.train_loss((each,))[0])}
-    return _pruned(cross, cross.explain(tuple(best.values())), rng) if len(best) > 1 else base
+    ways = {each.name: [slot for slot in plain if slot.name == each.name] for each in plain}
+    # a shape is chosen beside what has but one: alone, a Stribeck curve wide enough is Coulomb friction
+    one = tuple(own[0] for own in ways.values() if len(own) == 1)
+    shaped = [min(own, key=lambda each: cross.train_loss((*one, each))[0]) for own in ways.values() if len(own) > 1]
+    return _pruned(cross, cross.explain((*one, *shaped)), rng) if len(ways) > 1 else base
 
 
 def _no_worse(plain: Explanation, other: Explanation, rng: np.random.Generator) -> bool:

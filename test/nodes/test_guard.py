@@ -6,10 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from winch_friction.nodes import run
+from winch_friction.nodes import loop, run
 from winch_friction.nodes.inputs import ROS, Inputs
-from winch_friction.nodes.loop import Guarded, answered
-from winch_friction.nodes.run import Ending
+from winch_friction.nodes.loop import Guarded, answered, said_aloud
+from winch_friction.nodes.run import BAD_INPUT, Ending
 from winch_friction.physics.errors import InputError
 from winch_friction.records.topics import TopicMap, joint_state, stamp_header
 
@@ -96,3 +96,86 @@ def test_defects_end_a_node_only_in_a_row(monkeypatch: pytest.MonkeyPatch, good:
     monkeypatch.setattr(run, "Loop", Turning)
     monkeypatch.setattr(run.rclpy, "ok", lambda: True)
     assert run._spin(SimpleNamespace(report_defect=lambda where: None), ending) == status
+
+
+def test_a_service_says_what_was_done_and_of_a_defect_what_it_was() -> None:
+    response = answered(lambda: "", SimpleNamespace())
+    assert (response.success, response.message) == (True, "")
+    for error, said in ((InputError("no model"), "no model"), (OSError("no disk"), "no disk"),
+                        (RuntimeError("oh"), "RuntimeError: oh")):  # fmt: skip
+        assert raised(error).message == said
+
+
+def raised(error: Exception) -> SimpleNamespace:
+    def action() -> str:
+        raise error
+
+    return answered(action, SimpleNamespace())
+
+
+def test_defects_are_counted_between_two_lines_of_the_log(monkeypatch: pytest.MonkeyPatch) -> None:
+    node, now = Node(), [100.0]
+    monkeypatch.setattr(loop.time, "monotonic", lambda: now[0])
+
+    def failing() -> None:
+        raise RuntimeError("oh")
+
+    for at in (100.0, 100.5, 100.9, 101.0, 101.5, 102.1):
+        now[0] = at
+        node.guarded(failing)()
+    assert [each.partition(":")[0] for each in node.logged] == [f"failing failed ({n} so far)" for n in (1, 4, 6)]
+
+
+def test_a_transition_that_raises_is_said_by_its_name_and_raises_still() -> None:
+    node = Node()
+
+    @said_aloud
+    def on_configure(node: Node, state: str) -> None:
+        if state == "bad":
+            raise RuntimeError("oh")
+
+    assert on_configure(node, "good") is None
+    with pytest.raises(RuntimeError, match="oh"):
+        on_configure(node, "bad")
+    assert len(node.logged) == 1
+    assert node.logged[0].startswith("on_configure failed:")
+
+
+@pytest.mark.parametrize(("configured", "activated", "ended", "status", "asked"), [
+    ("SUCCESS", "SUCCESS", False, 0, ["configure", "activate"]),
+    ("FAILURE", "SUCCESS", False, BAD_INPUT, ["configure"]),
+    ("SUCCESS", "FAILURE", False, BAD_INPUT, ["configure", "activate"]),
+    ("SUCCESS", "SUCCESS", True, 0, []),
+])  # fmt: skip
+def test_a_node_starts_as_far_as_it_comes(
+    configured: str, activated: str, ended: bool, status: int, asked: list[str]
+) -> None:
+    calls: list[str] = []
+
+    def transition(name: str, done: str) -> SimpleNamespace:
+        calls.append(name)
+        return SimpleNamespace(name=done)
+
+    node = SimpleNamespace(
+        options=SimpleNamespace(autostart=True), trigger_configure=lambda: transition("configure", configured),
+        trigger_activate=lambda: transition("activate", activated),
+    )  # fmt: skip
+    assert run._start(node, SimpleNamespace(asked=ended)) == status
+    assert calls == asked
+    node.options.autostart = False
+    assert run._start(node, SimpleNamespace(asked=False)) == 0
+    assert calls == asked
+    node.options.autostart = True
+    ending = SimpleNamespace(asked=False)
+    node.trigger_configure = lambda: setattr(ending, "asked", True) or transition("configure", "SUCCESS")
+    assert run._start(node, ending) == 0
+    assert calls == [*asked, "configure"]  # told to end meanwhile
+
+
+def test_bad_input_is_one_line_a_problem_and_status_2(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run.rclpy, "try_shutdown", lambda: None)
+    assert run._refuse(InputError("no  crane", "no model")) == 2
+    assert run._refuse(RuntimeError("of\n two lines")) == 2
+    assert capsys.readouterr().err.splitlines() == ["error: no crane", "error: no model", "error: of two lines"]

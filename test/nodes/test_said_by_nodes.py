@@ -348,10 +348,11 @@ def test_a_pressure_group_is_one_of_those_that_there_are(name: str, groups: tupl
 
 @pytest.mark.parametrize(("timeout", "latest"), [(0.1, 0.25), (5.0, math.inf)])
 def test_what_comes_late_is_dropped_at_the_pace_of_a_machine_alone(timeout: float, latest: float) -> None:
-    node = bare(CompensatorNode, options=NodeOptions(watchdog_timeout=timeout), own=CompensatorNodeOptions())
+    node = bare(CompensatorNode, options=NodeOptions(watchdog_timeout=timeout, stamp_window=0.75))
+    node.own = CompensatorNodeOptions(model_delay=0.25)
     assert node._latest(CompensatorConfig(max_age=0.25)) == latest
     options = node._service_options()
-    assert (options.watchdog_timeout, options.stamp_window, options.model_delay) == (timeout, 0.5, 0.5)
+    assert (options.watchdog_timeout, options.stamp_window, options.model_delay) == (timeout, 0.75, 0.25)
 
 
 # -- the estimator

@@ -13,6 +13,8 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from std_srvs.srv import SetBool, Trigger
 
 from winch_friction.nodes import doctor
+from winch_friction.nodes import load as of_load
+from winch_friction.nodes import remote as of_remote
 from winch_friction.nodes.load import handed_over
 from winch_friction.nodes.remote import CHANGING, QUESTIONS, RemoteNode
 from winch_friction.physics.errors import InputError
@@ -81,7 +83,9 @@ def test_a_switch_is_set_as_asked_and_its_words_come_back(on: bool) -> None:
 
 
 def test_a_trigger_says_what_was_done_or_why_not_and_a_parameter_is_asked_by_name() -> None:
-    node = Asked(reset=[done(True, ""), done(False, "not active")], get_parameters=[SimpleNamespace(values=["first"])])
+    node = Asked(
+        reset=[done(True, ""), done(False, "not active")], get_parameters=[SimpleNamespace(values=["first", "another"])]
+    )
     assert node.trigger("reset") == ""
     assert node.calls[0][0] is Trigger
     with pytest.raises(InputError, match="^compensator: reset: not active$"):
@@ -205,3 +209,62 @@ def test_the_doctor_says_the_seconds_or_that_nothing_was_heard(
     monkeypatch.setattr(doctor, "seconds_to_hear", lambda: heard)
     assert doctor.main() == status
     assert capsys.readouterr().out.strip() == said
+
+
+@pytest.mark.parametrize(
+    ("refusal", "out", "err", "status"), [(None, "in use", "", 0), ("no model", "", "no model", 2)]
+)
+def test_a_model_that_is_loaded_is_said_and_a_refused_one_is_status_2(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], refusal: str | None, out: str, err: str,
+    status: int,
+) -> None:  # fmt: skip
+    ended: list[str] = []
+
+    def hand_over(remote: RemoteNode, model: str, terms_file: str) -> str:
+        assert (remote.name, remote._patience, model, terms_file) == ("other", of_load.PATIENCE, "m.yaml", "t.py")
+        if refusal:
+            raise InputError(refusal)
+        return "in use"
+
+    executor = SimpleNamespace(add_node=lambda node: None, shutdown=lambda: ended.append("executor"))
+    node = SimpleNamespace(destroy_node=lambda: ended.append("node"))
+    monkeypatch.setattr(of_load, "looking_on", lambda name, namespace: ended.append(namespace) or node)
+    monkeypatch.setattr(of_load, "SingleThreadedExecutor", lambda: executor)
+    monkeypatch.setattr(of_load.rclpy, "try_shutdown", lambda: ended.append("context"))
+    monkeypatch.setattr(of_load, "handed_over", hand_over)
+    given = ["load", "m.yaml", "--terms-file", "t.py", "--namespace", "port", "--node", "other"]
+    monkeypatch.setattr("sys.argv", given)
+    assert of_load.main() == status
+    said = capsys.readouterr()
+    assert (said.out.strip(), said.err.strip()) == (out, err)
+    assert ended == ["port", "executor", "node", "context"]
+
+
+@pytest.mark.parametrize(("namespace", "looked"), [("", "/"), ("port", "/port"), ("/port", "/port")])
+def test_a_namespace_is_looked_at_as_a_whole_before_anything_begins(
+    monkeypatch: pytest.MonkeyPatch, namespace: str, looked: str
+) -> None:
+    calls: list[Any] = []
+    monkeypatch.setattr(of_remote, "validate_namespace", lambda name: calls.append(name))
+    monkeypatch.setattr(of_remote.rclpy, "init", lambda args: calls.append("init"))
+    monkeypatch.setattr(of_remote.rclpy, "create_node", lambda name, **given: calls.append((name, given)) or "a node")
+    assert of_remote.looking_on("watch", namespace) == "a node"
+    assert calls == [looked, "init", ("watch", {"namespace": namespace, "start_parameter_services": False})]
+
+
+def test_what_rclpy_refuses_is_one_line_and_a_defect_of_ours_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended: list[int] = []
+    monkeypatch.setattr(of_remote.rclpy, "try_shutdown", lambda: ended.append(1))
+    with pytest.raises(InputError, match="Invalid namespace") as refused:
+        of_remote.looking_on("watch", "a b")
+    assert "\n" not in str(refused.value)
+    assert not str(refused.value).endswith("^")
+    assert ended == [1]
+
+    def defect(name: str) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(of_remote, "validate_namespace", defect)
+    with pytest.raises(ZeroDivisionError):
+        of_remote.looking_on("watch", "")
+    assert ended == [1]

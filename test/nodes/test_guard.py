@@ -179,3 +179,77 @@ def test_bad_input_is_one_line_a_problem_and_status_2(
     assert run._refuse(InputError("no  crane", "no model")) == 2
     assert run._refuse(RuntimeError("of\n two lines")) == 2
     assert capsys.readouterr().err.splitlines() == ["error: no crane", "error: no model", "error: of two lines"]
+
+
+class Answering(Guarded):
+    """A lifecycle node's part that is asked for transitions; `change` is the library's answer."""
+
+    def __init__(self, change: object) -> None:
+        self.logged: list[tuple[str, str]] = []
+        self.steady_clock = None
+        self._service_change_state = SimpleNamespace(callback=change)
+        self._state_machine = SimpleNamespace(
+            current_state=(2, "inactive"), available_transitions=[(3, "activate", 0, ""), (2, "cleanup", 0, "")]
+        )
+        self.answer_every_transition()
+
+    def get_logger(self) -> SimpleNamespace:
+        return SimpleNamespace(
+            error=lambda text: self.logged.append(("error", text)),
+            warning=lambda text, **_: self.logged.append(("warning", text)),
+        )
+
+
+@pytest.mark.parametrize(
+    ("number", "label", "answered", "said"),
+    [
+        (3, "", True, []),
+        (0, "activate", True, []),
+        (2, "cleanup", True, []),
+        (7, "", False, [("warning", "refused transition 7: not one of state 'inactive'")]),
+        (3, "deactivate", False, [("warning", "refused transition deactivate: not one of state 'inactive'")]),
+    ],
+)
+def test_a_transition_is_asked_for_by_its_name_or_else_its_number(
+    number: int, label: str, answered: bool, said: list[tuple[str, str]]
+) -> None:
+    asked: list[object] = []
+    node = Answering(lambda request, response: asked.append(request) or response)
+    request = SimpleNamespace(transition=SimpleNamespace(id=number, label=label))
+    response = node._service_change_state.callback(request, SimpleNamespace(success=True))
+    assert (response.success, asked, node.logged) == (answered, [request] if answered else [], said)
+
+
+def test_a_transition_that_the_library_raises_on_is_refused() -> None:
+    def raises(request: object, response: object) -> None:
+        raise RuntimeError("oh")
+
+    node = Answering(raises)
+    request = SimpleNamespace(transition=SimpleNamespace(id=3, label="activate"))
+    response = node._service_change_state.callback(request, SimpleNamespace(success=True))
+    assert not response.success
+    assert node.logged == [("error", "refused transition 'activate': oh")]
+
+
+@pytest.mark.parametrize(
+    ("ready", "found"), [((), False), (("timer",), True), (("service",), True), (("client",), True),
+                         (("subscription",), False), (("guard_condition",), False)]
+)  # fmt: skip
+def test_timers_services_and_clients_wake_a_node(ready: tuple[str, ...], found: bool) -> None:
+    waiting = SimpleNamespace(get_ready_entities=lambda kind: [1] if kind in ready else [])
+    assert loop._ready(waiting) is found
+
+
+def test_a_message_goes_with_its_info_and_none_goes_nowhere() -> None:
+    class Handle:
+        def __enter__(self) -> None: ...
+        def __exit__(self, *_: object) -> None: ...
+        def take_message(self, kind: object, raw: bool) -> object:
+            return left.pop(0)
+
+    left, heard = [("message", "info"), None], []
+    speed = SimpleNamespace(handle=Handle(), msg_type=None, raw=False, callback=lambda *of: heard.append(of))
+    loop._take(speed), loop._take(speed)
+    assert heard == [("message", "info")]
+    assert loop._speed(SimpleNamespace()) is None
+    assert loop._speed(SimpleNamespace(inputs=SimpleNamespace(speed=speed))) is speed

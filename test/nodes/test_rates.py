@@ -204,7 +204,9 @@ def test_publishers_of_another_type_are_told_by_it(
 ) -> None:
     watched.heeded.found = {topic: (0, len(types), types)}
     watched.hear(0.5)
-    assert f"{topic}: {said}" in watched.health.report().summary.split("; " if "; or" not in said else "\n")
+    summary = watched.health.report().summary
+    assert f"{topic}: {said}" in summary.split("; " if "; or" not in said else "\n")
+    assert ("float64_inputs" in summary) is ("float64_inputs" in said)
 
 
 def test_the_speed_is_called_by_its_first_channel_and_heard_by_none_of_its_own_name(watched: Heard) -> None:
@@ -246,7 +248,8 @@ def test_what_is_refused_is_counted_with_its_reason_and_its_ages_grow(heard: Hea
     values = heard.health.report().values
     assert values[f"{topic} age"] == pytest.approx(0.05)
     assert values["silence"] == pytest.approx(0.05)
-    assert values["active.pressure_a age"] == pytest.approx(0.0, abs=0.021)
+    heard.hear(0.5, without=(LOAD,))
+    assert heard.health.report().values["hook_load age"] == pytest.approx(0.55)
 
 
 @pytest.mark.parametrize(("topic", "behind", "said"), [(PRESSURE, 0.3, True), (PRESSURE, 0.08, False)])
@@ -266,3 +269,31 @@ def test_messages_that_come_after_their_speed_are_counted_anew_by_each_report(he
     for _ in range(2):
         heard.hear(0.4)  # twenty messages, none behind its speed
         assert "comes after the speed" not in heard.health.report().summary
+
+
+def test_what_is_behind_or_ahead_is_told_by_its_worst_channel_beyond_its_own_limit(
+    heard: Heard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of channels that may be a tenth of a second old, and of a load that may be two."""
+    heard.hear(0.1)
+    gate, health = heard.gate, heard.health
+    for ages, lag in (
+        ({"motor_speed": 0.15, "shaft_angle": 0.5, "motor_torque": 0.09}, 0.5), ({"motor_speed": 0.12}, 0.12),
+        ({"motor_speed": 0.09}, 0.0), ({"hook_load": 9.0}, 0.0),
+    ):  # fmt: skip
+        monkeypatch.setattr(gate, "ages", lambda ages=ages: ages)
+        assert health._lag(SPEED) == lag
+    stamps = {"motor_speed": 1000.4, "shaft_angle": 1000.7, "hook_load": 1001.5}
+    monkeypatch.setattr(gate.hold, "stamp", lambda column, time: stamps.get(column, float("nan")))
+    gate.last_stamp, gate.last_arrival = 1000.0, 70.0
+    assert health._ahead(SPEED, 70.0) == pytest.approx(0.7)
+    assert health._ahead(SPEED, 70.25) == pytest.approx(0.45)  # it came as much later
+    assert health._ahead(SPEED, 69.0) == pytest.approx(0.7)
+    assert health._ahead(SPEED, 70.65) == 0.0
+    assert health._ahead(LOAD, 70.0) == 0.0
+
+
+def test_no_silence_is_said_before_the_watchdogs_own_patience(heard: Heard) -> None:
+    patient = InputHealth(heard.gate, heard.health._inputs, lambda: {PRESSURE}, lambda: heard.now, patience=0.7)
+    assert [patient._limit(PRESSURE, needed) for needed in (True, False)] == [0.7, 0.7]
+    assert patient._limit(LOAD, True) == 2.0

@@ -152,11 +152,15 @@ def test_a_sea_that_repeats_begins_again_at_its_end() -> None:
 def test_a_sea_is_dated_by_its_origin_or_by_the_clock_that_there_is(clock: bool, begun: tuple[float, float]) -> None:
     node = made(publish_clock=clock)
     node._said, node._started = 0.7, 3.0
+    node.answers.take(FEEDFORWARD, 1e9)
     assert node._begin() == "scenario 'a sea' from its start"
     assert node.voyage.begun == [begun]
     assert (node._said, node._started, node._running, node._ready_since) == (0.0, None, True, math.inf)
     assert topics(node) == ["cleared"]
     assert node.ticking == ["reset"]
+    node.answers.topics = (FEEDFORWARD,)
+    node.answers.expect(1.0, 70.0)
+    assert not node.answers.complete  # what was answered before is no answer to this sea
 
 
 @pytest.mark.parametrize(
@@ -313,3 +317,24 @@ def test_its_health_is_how_far_it_is() -> None:
     (sea,) = node.health()
     assert (sea.part, sea.level, sea.summary) == ("sea", OK, "at sea")
     assert sea.values == {"progress": 0.25, "time": 1025.0, "samples": 1250, "unanswered": 0}
+
+
+@pytest.mark.parametrize(("lockstep", "complete", "goes_on"), [(True, True, 1), (True, False, 0), (False, True, 0)])
+def test_an_answer_brings_the_next_sample_in_lockstep_where_none_is_missing(
+    lockstep: bool, complete: bool, goes_on: int
+) -> None:
+    node, calls = made(lockstep=lockstep), []
+    node._go_on = lambda: calls.append(1)
+    node.answers.expect(1000.0 if complete else 2000.0, 70.0)
+    node._answer_taker(FEEDFORWARD)(joint_state(ROS, stamp_header(1000.0, ROS), "winch_motor"))
+    assert len(calls) == goes_on
+
+
+def test_in_lockstep_one_tick_brings_one_sample_however_late_it_is() -> None:
+    node = made(lockstep=True)
+    node._tick()
+    node.answers.expect(-math.inf, 70.0)  # answered
+    node._publish = lambda sample: None  # nothing new is waited for
+    node.steady, before = 1e6, node.voyage.samples
+    node._tick()
+    assert node.voyage.samples == before + 1

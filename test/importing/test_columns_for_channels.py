@@ -124,6 +124,7 @@ def score(name, unit, channel, crane=CRANE, note=""):
         ("xyzzy", "degC", "oil_temperature", 0.22, "unit 'degC' alone, the name 'xyzzy' says nothing known"),
         ("valve", "degC", "oil_temperature", 0.0, ""),
         ("xyzzy", "t", "hook_load", 0.22, "unit 't' alone, the name 'xyzzy' says nothing known"),
+        ("alarm", "t", "hook_load", 0.0, "name 'alarm', unit 't'"),
         ("energy", "t", "hook_load", 0.0, "name 'energy', unit 't'"),
         ("oil temperature", "t", "hook_load", 0.0, "name 'oil temperature', unit 't'"),  # another channel's name
         ("xyzzy", "%", "motor_speed", 0.0, ""),
@@ -221,6 +222,8 @@ def test_each_column_is_taken_once_and_by_what_fits_best():
     text = replace(load, text=np.array(["a", "b"], object))
     assert found(text) == {}
     assert found(column("xyzzy", 1e9, 2e9)) == {}
+    assert found(column("xyzzy", 55.0, 56.0, unit="t")) == {"hook_load": "xyzzy"}  # by its unit alone
+    assert found(column("winch load", 55.0, np.nan, unit="t")) == {"hook_load": "winch load"}
     assert found() == {}
 
 
@@ -238,6 +241,7 @@ def test_the_confidence_is_a_share_of_certainty():
     ("pairs", "kept"),
     [
         ([("pressure_a", "P #1", 0.5), ("pressure_b", "P #2", 0.9)], {"pressure_a", "pressure_b"}),
+        ([("pressure_a", "P #1", 0.9), ("pressure_b", "P #2", 0.5)], {"pressure_a", "pressure_b"}),
         ([("hook_load", "T #1", 0.5), ("oil_temperature", "T #2", 0.9)], {"oil_temperature"}),
         ([("hook_load", "T #1", 0.9), ("oil_temperature", "T #2", 0.5)], {"hook_load"}),
         ([("hook_load", "T", 0.9), ("oil_temperature", "U", 0.5)], {"hook_load", "oil_temperature"}),
@@ -273,3 +277,10 @@ def test_a_plain_log_is_read_whatever_order_its_columns_have(drawn):
     columns = [column(name, value, 1.01 * value, unit=unit) for name, (unit, value) in UNITS.items()]
     rng.shuffle(columns)
     assert found(*columns) == {channel: name for name, channel in CHANNELS.items()}
+
+
+def test_a_group_lacks_what_no_column_shows():
+    """Of a motor group one of three says less than no group at all, two say more."""
+    one, other = column("Hochdruck", 200.0, 210.0, unit="bar"), column("Niederdruck", 25.0, 26.0, unit="bar")
+    assert found(one, crane=None) == {}
+    assert found(one, other, crane=None) == {"main.pressure_a": "Hochdruck", "main.pressure_b": "Niederdruck"}

@@ -23,6 +23,7 @@ from winch_friction.importing.names import name_concepts, name_score, tokens
         ("Tromle Hørsel Målt", ["tromle", "horsel", "malt"]),
         ("Temp2 45°C", ["temp", "2", "45", "c"]),
         ("café", ["cafe"]),
+        ("Maalt Trykk", ["malt", "trykk"]),
         ("", []),
     ],
 )
@@ -36,6 +37,9 @@ def test_a_name_is_cut_into_folded_words(name, words):
         ("hook_load", [{"load": 1.0}]),  # two words that are one of the list
         ("paid out", [{"out": 1.0}]),
         ("ground_tether 7", [{"rope": 1.0}]),
+        ("couche de cable", [{"layer": 1.0}]),
+        ("rp m", [{"rope": 0.9}, {"motor": 0.9}]),  # what makes a short word together does not by chance
+        ("v ol", [{"speed": 0.9}, {"oil": 1.0}]),
         ("the speed of the motor", [{"speed": 1.0}, {"motor": 1.0}]),  # words without a meaning are left out
         ("load 12", [{"load": 1.0}]),
         ("mot n", [{"motor": 0.9}, {"speed": 0.9}]),  # short forms as they stand
@@ -91,6 +95,9 @@ def test_a_misspelt_word_says_less_the_more_letters_are_wrong():
         ("ps", "pressure", 0.0),  # less than a third of the word
         ("prse", "pressure", 0.0),  # a vowel that is not the first
         ("tpr", "pressure", 0.0),
+        ("rss", "pressure", 0.0),  # another first letter
+        ("alrm", "alarm", 0.6),
+        ("loxad", "load", 0.0),
     ],
 )
 def test_how_alike_two_words_are(token, word, quality):
@@ -119,6 +126,7 @@ def test_of_words_that_are_alike_the_nearest_are_meant():
         ("motor_speed", "n", 0.75 * 0.9 + 0.15),
         ("motor_speed", "load", 0.0),
         ("drum_speed", "drum speed", 0.75 + 0.15),
+        ("drum_speed", "winch speed", (0.75 / 2 + 0.25) * 0.5),  # what is liked helps no half of it
         ("drum_speed", "speed", (0.75 / 2 + 0.25) * 0.5),  # half of what it must say
         ("pressure_a", "pressure a", 0.75 * 1.9 / 2 + 0.15),
         ("pressure_a", "pressure b", (0.75 / 2 + 0.25) * 0.5),
@@ -141,3 +149,13 @@ def test_no_name_fits_better_for_a_word_more_that_is_not_liked():
                   for more in ("", "xyzzy", "temperature", "reference")]  # fmt: skip
         assert scores == sorted(scores, reverse=True)
         assert len(set(scores)) == 4
+
+
+def test_a_concept_is_meant_as_surely_as_its_nearest_word_says_and_none_that_is_further(monkeypatch):
+    words = {"motor": ("a",), "motorenwerk": ("a", "b"), "motorem": ("c",)}
+    known = of_importing.Vocabulary(words, {}, {}, frozenset())
+    monkeypatch.setattr(of_importing, "vocabulary", lambda: known)
+    assert of_importing._alike("motoren") == {"a": 0.85}
+    assert of_importing._alike("motorenw") == {"a": 0.85}
+    known.words.pop("motor")
+    assert of_importing._alike("motorenwer") == {"a": 0.75, "b": 0.75}

@@ -170,6 +170,7 @@ def test_a_unit_tells_the_channel_where_few_are_logged_in_it(unit, told):
     [
         ("motor_speed", "rpm", 60.0, 2.0 * np.pi),
         ("oil_temperature", "kelvin", 313.15, 40.0),
+        ("oil_temperature", "degF", 104.0, 40.0),
         ("hook_load", "kN", 9.81, 1000.0),
         ("displacement", "%", 50.0, 0.5 * CRANE.max_displacement),
         ("motor_speed", "%", 50.0, 0.5),

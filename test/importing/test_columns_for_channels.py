@@ -285,3 +285,13 @@ def test_a_group_lacks_what_no_column_shows():
     one, other = column("Hochdruck", 200.0, 210.0, unit="bar"), column("Niederdruck", 25.0, 26.0, unit="bar")
     assert found(one, crane=None) == {}
     assert found(one, other, crane=None) == {"main.pressure_a": "Hochdruck", "main.pressure_b": "Niederdruck"}
+
+
+@pytest.mark.parametrize("name", ["Druck A", "Pressure A", "pressure_a"])
+def test_a_port_is_no_ampere_where_a_row_of_units_says_another(name):
+    """A brake's pressure beside a torque was taken for the motor's current."""
+    pressure = column(name, 20.0, 21.0, unit="bar")
+    assert found(pressure, crane=WORM) == {}
+    assert found(pressure, column("Motor current [A]", 20.0, 21.0), crane=WORM) == {
+        "motor_current": "Motor current [A]"
+    }

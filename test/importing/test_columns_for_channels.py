@@ -295,3 +295,19 @@ def test_a_port_is_no_ampere_where_a_row_of_units_says_another(name):
     assert found(pressure, column("Motor current [A]", 20.0, 21.0), crane=WORM) == {
         "motor_current": "Motor current [A]"
     }
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "unit", "channel"),
+    [
+        ("winch load [kg]", "", "kg", "hook_load"),
+        ("hookload_t", "", "t", "hook_load"),
+        ("motor speed [rpm]", "rad/s", "rpm", "motor_speed"),  # what stands at the name itself
+        ("motor speed", "rad/s", "rad/s", "motor_speed"),
+        ("motor speed", "", "", "motor_speed"),
+    ],
+)
+def test_a_unit_is_that_of_the_header_or_else_of_the_row_of_units(header, row, unit, channel):
+    value = 55e3 if unit == "kg" else 55.0
+    log = Log(Path("log.csv"), (column(header, value, 1.01 * value, unit=row),), {}, str)
+    assert {name: match.unit for name, match in matches(log, CRANE).items()} == {channel: unit}

@@ -201,6 +201,7 @@ def test_each_log_of_a_draft_has_times_of_its_own():
         ([720_001.0, 720_002.0], "matlab", "day"),
         ([759_998.0, 759_999.0], "matlab", "day"),
         ([760_001.0, 760_002.0], "seconds", "s"),
+        ([719_000.0, 719_001.0], "seconds", "s"),
         ([739_000.0, 739_061.0], "seconds", "ms"),
         ([6.31e8, 6.31e8 + 1.0], "unix", "s"),
         ([6.29e8, 6.29e8 + 1.0], "seconds", "s"),
@@ -257,6 +258,8 @@ def test_rows_that_share_a_tick_are_spread_and_their_number_is_said():
         ([0.0, 1.0, 2.0], True),
         ([0.0, np.nan, 2.0], True),
         ([2.0, 1.0, 0.0], False),
+        ([5.0, 5.0, 5.0], False),
+        ([*range(100), -1.0], False),  # where it ends before it began
         ([0.0, 1.0, 0.0], False),
         ([*range(50), 48.5, *range(50, 100)], True),  # one row that is late
         ([*range(20), 18.5, *range(20, 30)], False),  # three in a hundred
@@ -292,6 +295,8 @@ def test_a_guess_of_texts_shows_the_first_and_says_what_is_open():
     assert one.because.endswith("; day or month first is open, which dates the run but changes no duration")
     several = guess_form([texts("03/04/2024 10:00:00", "03/05/2024 10:00:00")], "")
     assert several.question == "is '03/04/2024 10:00:00' day or month first? set time.order to dmy or mdy"
+    years = guess_form([texts("03/04/2024 10:00:00", "03/04/2025 10:00:00")], "")
+    assert years.question == several.question
     zoned = guess_form([texts("2024-03-04T10:00:00Z", "2024-03-04T10:00:01+01:00")], "")
     assert zoned.because == "dates such as '2024-03-04T10:00:00Z', order ymd, with its zone"
 
@@ -330,7 +335,8 @@ def test_stamps_of_a_library_are_seconds_and_what_is_none_of_them_is_missing():
          "log: time.zone 'Nowhere/Atall' is not known; write e.g. UTC or Europe/Oslo"),
         (TimeBase("datetime", order="ymd"), [texts("2024-06-15 12:00:00", "12:00:01")],
          "log: 1: '12:00:01' is no time of the form 'datetime'"),
-        (TimeBase("seconds"), [numbers([1.0], "a"), numbers([1.0], "b")], "log: time.from: a date and a time of day"),
+        (TimeBase("datetime"), [texts("2024-06-15"), numbers([1.0], "clock")],
+         "log: time.from: a date and a time of day are joined where both are texts; column 'clock' holds plain"),
     ],
 )  # fmt: skip
 def test_what_is_no_time_is_told_with_its_row_and_the_form(base, columns, said):
@@ -351,3 +357,26 @@ def test_the_unit_of_numbers_and_the_spread_of_ticks_are_applied():
     assert seconds(TimeBase("seconds", ""), numbers([0.0, 1.5])) == pytest.approx([0.0, 1.5])
     ticks = numbers(np.repeat(np.arange(8.0), 5))
     assert np.diff(seconds(TimeBase("seconds", spread=True), ticks)) == pytest.approx(0.2, rel=0.02)
+
+
+@pytest.mark.parametrize(("zone", "ahead"), [("", 0.0), ("UTC", 0.0), ("Europe/Oslo", 2.0), ("America/Houston", None)])
+def test_a_date_in_six_columns_is_of_its_zone(zone, ahead):
+    parts = [numbers([value]) for value in (2024, 6, 15, 12, 0, 0)]
+    if ahead is None:
+        with pytest.raises(InputError, match="time.zone 'America/Houston' is not known"):
+            seconds(TimeBase("parts", zone=zone), *parts)
+    else:
+        assert seconds(TimeBase("parts", zone=zone), *parts) == pytest.approx([NOON - 3600.0 * ahead])
+
+
+def test_a_time_of_day_has_no_zone():
+    assert seconds(TimeBase("clock", zone="Europe/Oslo"), texts("12:00:00")) == pytest.approx([43_200.0])
+    assert seconds(TimeBase("clock", zone="Nowhere"), texts("12:00:00")) == pytest.approx([43_200.0])
+
+
+@pytest.mark.parametrize(("form", "origin"), [("filetime", 11_644_473_600.0), ("dotnet", 62_135_596_800.0)])
+def test_nobody_counts_ticks_of_before_the_century_or_after_its_first_half(form, origin):
+    for year, told in (("1985", False), ("2005", True), ("2045", True), ("2060", False)):
+        since = np.datetime64(f"{year}-01-01", "s").astype(float)
+        guess = guess_form([numbers(1e7 * (since + origin + 0.1 * np.arange(5)))], "")
+        assert (guess.base.form == form) is told

@@ -311,3 +311,12 @@ def test_a_unit_is_that_of_the_header_or_else_of_the_row_of_units(header, row, u
     value = 55e3 if unit == "kg" else 55.0
     log = Log(Path("log.csv"), (column(header, value, 1.01 * value, unit=row),), {}, str)
     assert {name: match.unit for name, match in matches(log, CRANE).items()} == {channel: unit}
+
+
+@pytest.mark.parametrize("names", [("DRUCKA", "DRUCKB"), ("drucka_bar", "druckb_bar"), ("pressurea", "pressureb")])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_port_that_is_written_together_with_the_pressure_is_that_port(names, turned):
+    """Both were a pressure of some port, and the first of them was A."""
+    columns = [column(name, 200.0, 210.0, unit="bar") for name in names]
+    taken = found(*(columns[::-1] if turned else columns))
+    assert taken == {"main.pressure_a": names[0], "main.pressure_b": names[1]}

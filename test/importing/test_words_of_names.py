@@ -54,6 +54,9 @@ def test_a_name_is_cut_into_folded_words(name, words):
         ("Windengeschwindigkiet", [{"winch": 0.95}, {"speed": 0.95}]),  # the second word misspelt
         ("druckhakenlast", [{"pressure": 0.95}, {"load": 0.95}]),
         ("Motortrommeldruck", [{"motor": 0.95}, {"drum": 0.95}, {"pressure": 0.95}]),
+        ("DRUCKA", [{"pressure": 0.95}, {"port_a": 0.95}]),
+        ("pressureb", [{"pressure": 0.95}, {"port_b": 0.95}]),
+        ("druckp", [{"pressure": 0.85}]),
         ("drucksb", [{"pressure": 0.95}, {"port_b": 0.95}]),
         ("drucksp", [{"pressure": 0.85}]),  # a letter that is no port only follows a word
         ("dp", [{"displacement": 0.95}, {"pressure": 0.95}]),

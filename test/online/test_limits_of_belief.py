@@ -20,7 +20,6 @@ from winch_friction.online.agreement import (
 )
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import (
-    HEARTBEAT,
     CompensatorService,
     ModelSchedule,
     mark,
@@ -184,6 +183,10 @@ def test_what_is_near_zero_for_its_channel_differs_by_no_share_of_itself():
     assert not voices._differ({"motor_speed": 0.45 * near}, {"motor_speed": -0.45 * near})
     assert voices._differ({"motor_speed": 0.55 * near}, {"motor_speed": -0.55 * near})
     assert not voices._differ({"motor_speed": 100.0}, {"hook_load": -100.0})  # nothing that both say
+    for column in ("active.pressure_a", "oil_temperature", "hook_load"):  # whose range is not as far both ways
+        lower, upper = RANGES.range(column)
+        assert abs(lower) < upper
+        assert voices._reach(column) == upper
 
 
 @pytest.mark.parametrize(
@@ -367,8 +370,8 @@ def test_the_ramp_is_stamped_on_a_grid_from_the_age_limit_on_and_then_beats_now_
     assert own.law.output.at_rest
     silent = [own.tick(now + 0.1 + 0.02 * steps + 0.001) for steps in range(len(stamps) + 1, 400)]
     beats = [len(stamps) + 1 + k for k, each in enumerate(silent) if each is not None]
-    assert np.diff(beats).tolist() == [HEARTBEAT] * (len(beats) - 1)
-    assert all(each % HEARTBEAT == 0 for each in beats)
+    assert np.diff(beats).tolist() == [25] * (len(beats) - 1)  # half a second
+    assert all(each % 25 == 0 for each in beats)
     assert len(beats) > 5
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sea import CRANE, SEED, TOPICS
+from sea import CRANE, SEED, TOPICS, swell
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online import before_doubt, intake
@@ -363,9 +363,11 @@ def test_a_silence_is_stepped_through_in_watch_periods_after_the_time_out():
 def test_the_ramp_is_stamped_on_a_grid_from_the_age_limit_on_and_then_beats_now_and_then():
     own = service()
     for k in range(200):
-        own.take_row(row(1000.0 + 0.02 * k), 70.0 + 0.02 * k)
+        own.take_row(swell(1000.0 + 0.02 * k), 70.0 + 0.02 * k)
     last, now = 1000.0 + 0.02 * 199, 70.0 + 0.02 * 199
+    assert abs(own.law.output.torque) > 50.0
     stamps = [each.time for each in own.catch_up(now + 20.0)]
+    assert len(stamps) > 5
     assert stamps == pytest.approx([last + 0.1 + 0.02 * (k + 0.5) for k in range(len(stamps))])
     assert own.law.output.at_rest
     silent = [own.tick(now + 0.1 + 0.02 * steps + 0.001) for steps in range(len(stamps) + 1, 400)]
@@ -548,3 +550,118 @@ def test_another_load_is_one_that_differs_by_a_twentieth(load, other):
     assert balance._is_other(load, sample) is other
     sample.groups = {"active": sample.groups["active"]}
     assert balance._is_other(55e3, sample)
+
+
+# -- what the services say of themselves
+@pytest.mark.parametrize(
+    ("silence", "heard", "missing", "contradiction", "accepted", "state", "lacks"),
+    [
+        (0.05, True, (), "", True, "steady", ""),
+        (0.05, True, (), "", False, "rejected", ""),
+        (0.05, True, (), "a load", False, "contradicted", ""),
+        (0.05, True, ("a load", "a port"), "a load", True, "waiting", "a load, a port"),
+        (0.11, True, (), "a load", True, "waiting", "the speed"),
+        (0.05, False, (), "", True, "waiting", "the speed"),
+    ],
+)
+def test_an_estimator_says_true_what_it_does(silence, heard, missing, contradiction, accepted, state, lacks):
+    own = learner(contradiction=contradiction, missing=missing, _enabled=False)
+    own.law.status, own.law.load_apart = (lambda: {"state": "steady", "lateness": "late"}), 0.25
+    own.inputs = SimpleNamespace(silence=lambda now: silence, without_speed=lambda now: "the speed")
+    own.last = SimpleNamespace(accepted=accepted) if heard else None
+    own._balance = SimpleNamespace(suspicion="a load cell")
+    found = own.status(70.0)
+    assert (found["state"], found["missing"], found["contradictions"]) == (state, lacks, contradiction)
+    assert (found["enabled"], found["load_apart"], found["suspicion"]) == (False, 0.25, "a load cell; late")
+    own._balance.suspicion = ""
+    assert own.status(70.0)["suspicion"] == "late"
+
+
+def test_that_no_friction_is_known_is_said_once_in_a_silence_and_at_the_end():
+    own, silence = learner(_stands=True), [0.05]
+    own.inputs = SimpleNamespace(silence=lambda now: silence[0])
+    assert own.ending() is None  # nothing was ever said
+    own.last = SimpleNamespace(time=12.0)
+    assert own.tick(70.0) is None
+    silence[0] = 0.11
+    said = own.tick(70.0)
+    assert (said.time, said.accepted, said.state) == (12.0, False, "waiting")
+    assert math.isnan(said.friction_torque)
+    assert own.tick(70.0) is own.ending() is None
+
+
+@pytest.mark.parametrize(("wanted", "contradiction", "learns"), [
+    (True, "", True), (False, "", False), (True, "a load", False), (False, "a load", False),
+])  # fmt: skip
+def test_an_estimator_learns_where_it_is_to_and_nothing_contradicts(wanted, contradiction, learns):
+    own, calls = learner(contradiction=contradiction), []
+    own.law.set_enabled = calls.append
+    own.set_enabled(wanted)
+    assert (own._enabled, calls) == (wanted, [learns])
+
+
+def test_under_a_doubt_what_was_learned_is_invalid_and_what_is_kept_was_known_before():
+    known = [SimpleNamespace(name="C3", status="learned"), SimpleNamespace(name="C6", status="seed")]
+    own = learner()
+    own.law.parameters, own.law.snapshot = (lambda: known), (lambda: "now")
+    own._before.believed.content = "before"
+    assert (own.parameters(), own.snapshot()) == (known, "now")
+    own._gain = SimpleNamespace(pending=True)
+    assert (own.parameters(), own.snapshot()) == (known, "before")
+
+
+@pytest.mark.parametrize(("silence", "state", "missing"), [(0.05, "active", "none"), (0.11, "stale", "the speed")])
+def test_a_feedforward_says_true_what_it_does(monkeypatch, silence, state, missing):
+    own = service()
+    monkeypatch.setattr(own.law, "status", lambda: {"state": "active", "missing": "none"})
+    monkeypatch.setattr(own.inputs, "without_speed", lambda now: "the speed")
+    assert own.status(70.0)["missing"] == "the speed"  # before the first
+    own._last_stamp, own.contradictions = 12.0, ("a load", "a command")
+    own.refuse("old")
+    monkeypatch.setattr(own.inputs, "silence", lambda now: silence)
+    found = own.status(70.0)
+    assert (found["state"], found["missing"]) == (state, missing)
+    assert (found["contradictions"], found["learned_model_refused"]) == ("a load; a command", "old")
+    own.load_model(SEED)
+    assert own.status(70.0)["learned_model_refused"] == ""
+
+
+def test_the_last_ramp_goes_on_from_where_the_torque_is_in_watch_periods():
+    own = service()
+    assert list(own.ending(70.0)) == []
+    for k in range(200):
+        own.take_row(swell(1000.0 + 0.02 * k), 70.0 + 0.02 * k)
+    last, now, torque = 1000.0 + 0.02 * 199, 70.0 + 0.02 * 199, own.law.output.torque
+    assert abs(torque) > 50.0
+    ramp = list(own.ending(now + 0.06))
+    assert [after for after, _ in ramp] == pytest.approx([0.02 * (k + 1) for k in range(len(ramp))])
+    assert [each.time for _, each in ramp] == pytest.approx([last + 0.06 + 0.02 * (k + 1) for k in range(len(ramp))])
+    assert {each.state for _, each in ramp} == {"ending"}
+    sizes = [abs(torque), *(abs(each.friction_torque) for _, each in ramp)]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[-1] == 0.0
+    assert list(own.ending(now + 1.0)) == []
+
+
+def test_an_input_that_arrived_too_long_ago_is_lost_whatever_its_stamp_says():
+    gate = service().inputs
+    gate._came = {"hook_load": 68.1, "active.pressure_a": 69.95, "active.pressure_b": 69.85, "speed_reference": 69.89,
+                  "gone.pressure_a": 1.0}  # fmt: skip
+    sample = row(1000.0)
+    gate._without_stale(sample, 70.0)
+    assert (sample.hook_load, sample.motor_speed, sample.groups["active"].pressure_a) == (55e3, 50.0, 2e7)
+    assert math.isnan(sample.speed_reference)
+    assert math.isnan(sample.groups["active"].pressure_b)
+    simulated = row(1000.0)
+    gate.options = ServiceOptions(5.0)
+    gate._without_stale(simulated, 170.0)
+    assert simulated.speed_reference == 50.0
+
+
+def test_what_is_refused_is_counted_by_its_kind():
+    gate = service().inputs
+    arrivals = gate.arrivals[TOPICS.speed_topic]
+    for reason in ("hook_load: 1 kg is outside", "hook_load: 2 kg is outside", "stamp far behind"):
+        gate._refuse(arrivals, reason)
+    assert (arrivals.refused, arrivals.reason) == (3, "stamp far behind")
+    assert arrivals.reasons == {"hook_load": 2, "stamp far behind": 1}

@@ -253,3 +253,81 @@ def test_a_message_goes_with_its_info_and_none_goes_nowhere() -> None:
     assert heard == [("message", "info")]
     assert loop._speed(SimpleNamespace()) is None
     assert loop._speed(SimpleNamespace(inputs=SimpleNamespace(speed=speed))) is speed
+
+
+# -- from the beginning to the end of a process
+class Library:
+    """rclpy as far as a process begins and ends it; `refuses` are what its first beginnings raise."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *refuses: Exception) -> None:
+        self.calls: list[object] = []
+        self.refuses = list(refuses)
+        monkeypatch.setattr(run.rclpy, "init", self.init)
+        monkeypatch.setattr(run.rclpy, "try_shutdown", lambda: self.calls.append("shutdown"))
+        monkeypatch.setattr(run, "get_default_context", lambda shutting_down: self.calls.append("another context"))
+
+    def init(self, args: list[str] | None, signal_handler_options: object) -> None:
+        assert signal_handler_options == run.SignalHandlerOptions.NO
+        self.calls.append(args)
+        if self.refuses:
+            raise self.refuses.pop(0)
+
+
+def test_a_process_that_cannot_write_its_log_begins_without_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    library = Library(monkeypatch, RuntimeError("failed to initialize logging: no\n space, at ./src/rcl.c:1"))
+    run._begin(["node", "--x"])
+    assert library.calls == [
+        ["node", "--x"],
+        "another context",
+        ["node", "--x", "--ros-args", "--disable-external-lib-logs"],
+    ]
+    assert capsys.readouterr().err == (
+        "warning: no log file is kept (failed to initialize logging: no space); set ROS_LOG_DIR to a folder that can "
+        "be written\n"
+    )
+    monkeypatch.setattr(run.sys, "argv", ["own"])
+    library.refuses.append(RuntimeError("initialize logging"))
+    run._begin(None)
+    assert library.calls[-1] == ["own", "--ros-args", "--disable-external-lib-logs"]
+    library.refuses.append(RuntimeError("another"))
+    with pytest.raises(RuntimeError, match="another"):
+        run._begin([])
+
+
+@pytest.mark.parametrize(("started", "spun", "status"), [(0, 0, 0), (BAD_INPUT, 0, BAD_INPUT), (0, 1, 1)])
+def test_a_node_is_ended_whatever_became_of_it(
+    monkeypatch: pytest.MonkeyPatch, started: int, spun: int, status: int
+) -> None:
+    library, ending = Library(monkeypatch), SimpleNamespace(asked=False)
+    node = SimpleNamespace(
+        end=lambda: library.calls.append("end"), destroy_node=lambda: library.calls.append("destroy")
+    )
+    monkeypatch.setattr(run, "_start", lambda *of: library.calls.append("start") or started)
+    monkeypatch.setattr(run, "_spin", lambda *of: library.calls.append("spin") or spun)
+    assert run._run(lambda: node, ("a", "b"), ending) == status
+    assert library.calls == [["a", "b"], "start", *([] if started else ["spin"]), "end", "destroy", "shutdown"]
+    assert not node.told_to_end()
+    ending.asked = True
+    assert node.told_to_end()
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(InputError("no crane"), 2), (run.rclpy.exceptions.ROSInterruptException(), 0),
+     (run.rclpy.exceptions.InvalidParameterException("p"), 2), (ZeroDivisionError("a defect"), None)],
+)  # fmt: skip
+def test_a_node_that_cannot_be_made_is_one_line_unless_that_is_a_defect(
+    monkeypatch: pytest.MonkeyPatch, error: Exception, status: int | None
+) -> None:
+    Library(monkeypatch)
+
+    def make() -> None:
+        raise error
+
+    if status is None:
+        with pytest.raises(ZeroDivisionError):
+            run._run(make, None, SimpleNamespace(asked=False))
+    else:
+        assert run._run(make, None, SimpleNamespace(asked=False)) == status

@@ -513,3 +513,81 @@ def test_the_last_torque_does_not_stand_and_timers_are_as_often_as_they_are_set(
     assert calls[3:] == ["save", "open", 0.2, 45.0]
     node.stop()
     assert calls[7:] == ["close", "no torque"]
+
+
+# -- what a node is made of
+@pytest.mark.parametrize(
+    ("raises", "logged"),
+    [((), []), (("crane",), ["no crane"]), (("crane", "model"), ["no crane", "no model"]), (("build",), ["no build"])],
+)
+def test_all_files_that_are_bad_are_said_at_once_and_leave_nothing_built(
+    monkeypatch: pytest.MonkeyPatch, raises: tuple[str, ...], logged: list[str]
+) -> None:
+    def load(what: str) -> Any:
+        def loaded(*of: Any) -> str:
+            if what in raises:
+                raise InputError(f"no {what}")
+            return f"{what} {of[0]}"
+
+        return loaded
+
+    calls: list[Any] = []
+    for name in ("crane", "model"):
+        monkeypatch.setattr(of_base, f"load_{name}", load(name))
+    monkeypatch.setattr(of_base, "check_qualities", lambda node: None)
+    monkeypatch.setattr(of_base, "unknown_parameters", lambda node, settings: ["what is x?"])
+    node = bare(WinchNode, _built=False, _settings=(), load_terms=lambda: calls.append("terms"))
+    node._node_parameters = Given(read=lambda node: NodeOptions(crane="c", model_file="m"))
+    node.build = lambda *of: calls.append(of) or load("build")("")
+    node._take_down = lambda: calls.append("down")
+    node.publisher = lambda kind, topic, qos: topic
+    assert node.on_configure(Given(label="unconfigured")).name == ("FAILURE" if raises else "SUCCESS")
+    assert node.log == [("warning", "what is x?"), *(("error", each) for each in logged)]
+    built = [("crane c", "model m")] if raises in ((), ("build",)) else []
+    assert calls == ["terms", *built, *(["down"] if raises else [])]
+    assert node._built is (not raises)
+
+
+def test_publishers_timers_and_subscriptions_of_a_node_go_with_it() -> None:
+    calls: list[Any] = []
+    node = bare(
+        WinchNode, _publishers_made=[], _active_entities=[], _unwatched="unwatched", steady_clock="steady",
+        create_lifecycle_publisher=lambda *of, **more: calls.append((of, more)) or "a publisher",
+        create_timer=lambda period, action, clock: calls.append((period, clock)) or "a timer",
+        destroy_timer=lambda each: calls.append(("gone", each)), guarded=lambda action: action,
+        destroy_subscription=lambda each: calls.append(("gone", each)),
+    )  # fmt: skip
+    assert node.publisher(String, "/topic", 10) == "a publisher"
+    assert (calls.pop(), node._publishers_made) == (
+        ((String, "/topic", 10), {"callback_group": "unwatched"}),
+        ["a publisher"],
+    )
+    assert node.publisher(String, "/topic", of_compensator.OUTPUT) == "a publisher"
+    (_, _, qos), _ = calls.pop()
+    assert qos is not of_compensator.OUTPUT  # an override would change it for every topic
+    assert qos.depth == of_compensator.OUTPUT.depth
+    assert node.every(0.5, print) == "a timer"
+    node.while_active("a subscription")
+    for end in node._active_entities:
+        end()
+    assert calls == [(0.5, "steady"), ("gone", "a timer"), ("gone", "a subscription")]
+
+
+def test_changed_parameters_are_taken_over_and_a_defect_in_that_ends_nothing() -> None:
+    calls: list[Any] = []
+    node = bare(
+        WinchNode, _node_parameters=Given(read=lambda node: "the options"), apply_settings=lambda: calls.append(1)
+    )
+    node._on_post_set([])
+    assert (node.options, calls, node.log) == ("the options", [1], [])
+
+    def fails() -> None:
+        raise ZeroDivisionError
+
+    node.apply_settings = node.forget = fails
+    node._on_post_set([])
+    node.steady_clock, node._raised_at = Given(clock_type=None), -math.inf
+    node._on_clock_jump(None)
+    assert [each.partition(" failed")[0] for level, each in node.log if level == "error"] == [
+        "parameter change", "jump of the clock",
+    ]  # fmt: skip

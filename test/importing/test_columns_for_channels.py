@@ -33,6 +33,7 @@ def test_groups_drive_alone_or_those_that_are_not_more_than_the_largest():
     assert group_sets(CRANE) == [("main",), ("active",), ("passive",), ("active", "passive")]
     assert group_sets(None) == [("main",), ("active", "passive"), ()]
     assert group_sets(WORM) == [()]
+    assert group_sets(replace(WORM, groups={"main": 2})) == [()]  # an electric drive has none, whatever its file says
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,13 @@ def test_a_reading_changes_no_faster_than_it_can_unless_a_second_has_passed(pass
     assert watch.refusal("wire_layer", 100.0 + passed, value) == ""
 
 
+def test_how_far_a_reading_jumped_is_told_from_the_last():
+    watch = plausible()
+    watch.refusal("motor_speed", 100.0, 2.0)
+    assert watch.refusal("motor_speed", 100.0, 9.0) == "9 rad/s is 7 from the last"
+    assert watch.refusal("motor_speed", 100.0, -9.0) == "-9 rad/s is 11 from the last"
+
+
 def test_a_run_is_believed_where_every_reading_of_it_is():
     """The first row is the first there is; some runs by chance are smooth, some jump, pause or leave the range."""
     rng, outcomes = np.random.default_rng(3), set()
@@ -404,7 +411,9 @@ def test_what_is_missing_without_a_speed_is_told_with_the_reason_where_some_stil
     gate = service().inputs
     arrivals = gate.arrivals[TOPICS.speed_topic]
     assert gate.without_speed(70.0) == "motor_speed ('inputs' says why)"
-    arrivals.arrived, arrivals.reason = 70.0, "stamp far behind"
+    arrivals.arrived = 70.0
+    assert gate.without_speed(70.05) == "motor_speed ('inputs' says why)"  # none was refused
+    arrivals.reason = "stamp far behind"
     assert gate.without_speed(70.05) == "motor_speed, refused: stamp far behind"
     assert gate.without_speed(70.15) == "motor_speed ('inputs' says why)"
 

@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
 
+from winch_friction.nodes import beside as of_nodes
 from winch_friction.nodes.beside import LONGEST, Beside, read_terms
 from winch_friction.physics.errors import InputError
 
@@ -53,7 +54,7 @@ def test_whoever_is_told_to_end_waits_for_no_file() -> None:
 
 
 def test_the_last_ramp_is_published_before_whoever_ends_the_process_loses_patience() -> None:
-    assert LONGEST < 5.0
+    assert 3.0 < LONGEST < 5.0  # and a file has its time
 
 
 def test_a_file_of_terms_that_ends_the_program_does_not(tmp_path) -> None:
@@ -62,3 +63,35 @@ def test_a_file_of_terms_that_ends_the_program_does_not(tmp_path) -> None:
     with pytest.raises(InputError, match="SystemExit"):
         read_terms(str(file))
     assert read_terms("") == []
+
+
+class Strange(BaseException):
+    """What an author may derive from the root of all exceptions."""
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(SystemExit(3), "x.py: it wants to end the program (sys.exit)"),
+     (KeyboardInterrupt(), "x.py: it wants to end the program (sys.exit)"),
+     (GeneratorExit(), "x.py: it wants to end the program (sys.exit)"), (Strange("odd"), "x.py: Strange: odd"),
+     (InputError("as it is"), "as it is")],
+)  # fmt: skip
+def test_whatever_reading_terms_raises_is_bad_input(monkeypatch, error, said) -> None:
+    def fails(path: str) -> None:
+        raise error
+
+    monkeypatch.setattr(of_nodes, "load_file", fails)
+    with pytest.raises(InputError) as refused:
+        read_terms("x.py")
+    assert str(refused.value) == said
+
+
+@pytest.mark.parametrize("error", [KeyError("gone"), SystemExit(3), Strange("odd")])
+def test_an_error_of_the_work_comes_as_it_is(error) -> None:
+    def fails() -> None:
+        raise error
+
+    with pytest.raises(type(error)) as raised:
+        Beside[None]().get(fails, lambda: None)
+    assert raised.value is error
+    assert Beside[None]().get(lambda: None, lambda: None) is None  # nothing is an answer too

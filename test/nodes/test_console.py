@@ -5,11 +5,13 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from types import SimpleNamespace
 
 import pytest
 
 pytest.importorskip("rclpy", reason="needs rclpy: pip install '.[ros]'")
 
+from winch_friction.nodes import console as of_nodes
 from winch_friction.nodes.console import Console
 
 
@@ -81,3 +83,52 @@ def test_a_traceback_of_the_end_is_printed() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stdout == "said\n"
     assert "ZeroDivisionError" in done.stderr
+
+
+def test_a_console_that_takes_a_line_in_pieces_gets_all_of_it(monkeypatch) -> None:
+    given, taken, waits = [b"a line", b"and more\n", b""], [], []
+    full = iter([False, True, False, False, True, True])
+
+    def write(console: int, text: bytes) -> int:
+        assert console == 11
+        if next(full, False):
+            raise BlockingIOError
+        taken.append(text[:4])
+        return 4 if len(text) > 4 else len(text)
+
+    monkeypatch.setattr(of_nodes.os, "read", lambda source, most: given.pop(0))
+    monkeypatch.setattr(of_nodes.os, "write", write)
+    monkeypatch.setattr(of_nodes.os, "close", lambda source: taken.append(source))
+    monkeypatch.setattr(of_nodes.time, "sleep", waits.append)
+    of_nodes._pump(10, 11)
+    assert taken == [b"a li", b"ne", b"and ", b"more", b"\n", 10]
+    assert waits == [of_nodes.AGAIN] * 3
+
+
+@pytest.mark.parametrize(("descriptor", "terminal", "before", "after"), [
+    (2, True, None, "1"), (2, True, "0", "0"), (2, False, None, None), (1, True, None, None),
+])  # fmt: skip
+def test_colours_are_kept_where_the_errors_go_to_a_terminal_and_nobody_chose_otherwise(
+    monkeypatch, descriptor: int, terminal: bool, before: str | None, after: str | None
+) -> None:
+    name = "RCUTILS_COLORIZED_OUTPUT"
+    monkeypatch.setenv(name, before) if before else monkeypatch.delenv(name, raising=False)
+    calls = []
+    stand_in = SimpleNamespace(
+        dup=lambda d: d + 40, isatty=lambda d: terminal, pipe=lambda: (50, 51), close=calls.append, environ=os.environ,
+        set_blocking=lambda *of: calls.append(of), dup2=lambda *of: calls.append(of),
+    )  # fmt: skip
+    monkeypatch.setattr(of_nodes, "os", stand_in)
+    started = []
+    monkeypatch.setattr(of_nodes.threading, "Thread", lambda **of: SimpleNamespace(start=lambda: started.append(of)))
+    console = Console((descriptor,))
+    assert os.environ.get(name) == after
+    assert calls == [(51, False), (51, descriptor), 51]
+    assert (started[0]["args"], started[0]["daemon"]) == ((50, descriptor + 40), True)
+    monkeypatch.delenv(name, raising=False)
+    calls.clear()
+    console._led = [(d, c, SimpleNamespace(join=calls.append, is_alive=lambda hangs=hangs: hangs))
+                    for d, c, hangs in ((1, 41, False), (2, 42, True))]  # fmt: skip
+    console.end()
+    assert calls == [(41, 1), (42, 2), 0.5, 41, 0.5]  # one that still hangs is left open
+    assert console._led == []

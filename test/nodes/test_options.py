@@ -1,13 +1,16 @@
 """Parameters come from the option dataclasses, bounded and described."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import pytest
-from rclpy.exceptions import ParameterUninitializedException
+from rclpy.exceptions import InvalidParameterValueException, ParameterUninitializedException
 
 from winch_friction.compensation import CompensatorConfig
-from winch_friction.nodes.options import NodeOptions
-from winch_friction.nodes.parameters import OptionParameters, check_qualities
+from winch_friction.nodes.options import FIXED, NodeOptions
+from winch_friction.nodes.parameters import OptionParameters, check_qualities, declare, declare_all, unknown_parameters
 from winch_friction.nodes.simulator import SimulatorNodeOptions
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Limits, check, option
 
 
 class Board:
@@ -127,3 +130,167 @@ def test_a_list_without_entries_is_told_by_its_parameter(name: str, said: str) -
     """ROS tells no type of [], and of the parameter that has none it said "is not initialized: groups"."""
     with pytest.raises(InputError, match=rf"^board: parameter '{name}' {said}"):
         OptionParameters(NodeOptions).declare(Board({name: None}))
+
+
+# -- what is said of a parameter
+@dataclass(frozen=True)
+class Few:
+    """Options of every kind."""
+
+    plain: float = option(1.0, doc="any number")
+    share: float = option(0.5, lower=0.0, upper=1.0, doc="a share")
+    wait: float = option(2.0, lower=0.5, unit="s", doc="how long")
+    unset: float = option(float("nan"), lower=0.0, upper=9.0, unit="m", may_be_nan=True, doc="perhaps")
+    count: int = option(3, lower=1, upper=7, doc="how many")
+    many: int = option(3, lower=-2, doc="at least")
+    flag: bool = option(False, lower=0, upper=1, doc="whether")
+    word: str = option("one", choices=("one", "two"), doc="which")
+    some: tuple[str, ...] = option((), doc="names")
+    gains: dict[str, float] = option({"a": 1.0, "b": 2.0}, lower=0.0, upper=5.0, doc="by name")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+def declared(*, overrides: dict | None = None, **arguments: Any) -> tuple[Board, OptionParameters[Few]]:
+    board, options = Board(overrides), OptionParameters(Few, **arguments)
+    options.declare(board)
+    return board, options
+
+
+def test_a_description_has_what_it_is_its_unit_its_choices_and_its_range() -> None:
+    found = declared(fixed=("share", "count"))[0].descriptors
+    assert {name: each.description for name, each in found.items()} == {
+        "plain": "any number", "share": "a share", "wait": "how long [s]", "unset": "perhaps [m]", "count": "how many",
+        "many": "at least", "flag": "whether", "word": "which One of: one, two.", "some": "names", "gains.a": "by name",
+        "gains.b": "by name",
+    }  # fmt: skip
+    assert [name for name, each in found.items() if each.read_only] == ["share", "count"]
+    floats = {n: (r[0].from_value, r[0].to_value) for n, each in found.items() if (r := each.floating_point_range)}
+    assert floats == {"share": (0.0, 1.0), "wait": (0.5, float("inf")), "gains.a": (0.0, 5.0), "gains.b": (0.0, 5.0)}
+    whole = {n: (r[0].from_value, r[0].to_value) for n, each in found.items() if (r := each.integer_range)}
+    assert whole == {"count": (1, 7), "many": (-2, 2**62)}
+
+
+def test_a_mapping_has_the_keys_of_its_default_and_those_that_are_known_now() -> None:
+    known = {"gains": {"b": 3, "c": 4}}
+    board, options = declared(keys=lambda: known, skip=("plain", "word"))
+    assert {name: value for name, value in board.values.items() if "gains" in name} == {
+        "gains.a": 1.0, "gains.b": 3.0, "gains.c": 4.0,
+    }  # fmt: skip
+    assert all(type(value) is float for name, value in board.values.items() if "gains" in name)
+    assert "plain" not in board.values
+    assert "word" not in options.names
+    board.values["gains.a"], known["gains"]["d"] = 0.25, 5
+    options.declare(board)  # what is declared keeps its value
+    assert options.read(board).gains == {"a": 0.25, "b": 3.0, "c": 4.0, "d": 5.0}
+    assert options.read(board, {"gains.c": 4.5, "share": 0.75, "elsewhere": 9}) == Few(
+        share=0.75, unset=board.values["unset"], gains={"a": 0.25, "b": 3.0, "c": 4.5, "d": 5.0}
+    )
+    assert options.read(board, {}).share == 0.5
+
+
+def test_a_bad_setting_is_told_by_the_nodes_name() -> None:
+    board, options = declared()
+    with pytest.raises(InputError, match=r"^board: parameters: share must be 0 \.\.\. 1 1, found 2$"):
+        options.read(board, {"share": 2.0})
+
+
+class Refusing(Board):
+    """As rclpy: an override of another type, or out of its range, is refused."""
+
+    def __init__(self, **given: object) -> None:
+        super().__init__()
+        self._parameter_overrides = {name: Override(value) for name, value in given.items()}
+
+    def declare_parameter(self, name: str, default: object, descriptor: object) -> None:
+        if name in self._parameter_overrides:
+            value = self._parameter_overrides[name].value
+            raise InvalidParameterValueException(name, value, "range")
+        super().declare_parameter(name, default, descriptor)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("share", 7.5, "0 ... 1, found 7.5"),
+        ("share", "much", "a number 0 ... 1, found 'much'"),
+        ("wait", 1, "a number 0.5 ... inf s, found 1: write 1.0"),
+        ("wait", 0, "a number 0.5 ... inf s, found 0"),
+        ("wait", True, "a number 0.5 ... inf s, found True"),
+        ("count", 9, "1 ... 7, found 9"),
+        ("count", 2.0, "a whole number 1 ... 7, found 2.0"),
+        ("flag", 1, "true or false, found 1"),
+        ("word", 1, "a text, found 1"),
+        ("some", "one", "a list of texts, found 'one'"),
+        ("plain", "one", "a number -inf ... inf, found 'one'"),
+    ],
+)
+def test_an_override_is_refused_with_what_it_must_be(name: str, value: object, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        OptionParameters(Few).declare(Refusing(**{name: value}))
+    assert str(refused.value) == f"board: parameter '{name}' must be {said}"
+
+
+def test_all_bad_overrides_of_all_settings_are_said_at_once() -> None:
+    board = Refusing(share=7.5, count=9, rate=-1.0)
+    with pytest.raises(InputError) as refused:
+        declare_all(board, [OptionParameters(Few), OptionParameters(SimulatorNodeOptions)])
+    assert [each.split("'")[1] for each in refused.value.problems] == ["share", "count", "rate"]
+    assert "wait" in board.values  # the others are declared
+
+
+def test_what_rclpy_refuses_for_another_reason_is_said_in_its_words() -> None:
+    class Other(Refusing):
+        def declare_parameter(self, name: str, default: object, descriptor: object) -> None:
+            raise InvalidParameterValueException("share", 1.0, "two\n  lines")
+
+    with pytest.raises(InputError, match="^board: parameter 'plain': .*two lines"):
+        OptionParameters(Few, skip=[name for name in Few.__dataclass_fields__ if name != "plain"]).declare(Other())
+
+
+@pytest.mark.parametrize("word", ["", "one", "two"])
+def test_a_choice_is_one_of_those_or_the_default(word: str) -> None:
+    board, limits = Board({"word": word}), Limits(choices=("one", "two"))
+    declare(board, "word", "", limits)
+    assert board.values["word"] == word
+    with pytest.raises(InputError, match="^board: parameter 'word' must be one of one, two, found 'three'$"):
+        declare(Board({"word": "three"}), "word", "", limits)
+
+
+def test_an_override_that_is_no_parameter_is_said_with_what_may_be_meant() -> None:
+    board, options = declared()
+    given = ("wiat", "gains", "share", "qos_overrides./x.publisher.depth", "elsewhere")
+    board._parameter_overrides = {name: Override(1) for name in given}
+    assert unknown_parameters(board, [options]) == [
+        "parameter 'elsewhere' is not known and has no effect",
+        "parameter 'gains' is not known and has no effect; did you mean gains.b or gains.a?",
+        "parameter 'wiat' is not known and has no effect; did you mean wait?",
+    ]
+
+
+@pytest.mark.parametrize(("depth", "taken"), [(0, True), (100_000, True), (100_001, False), (-1, False)])
+def test_a_queue_is_at_most_as_deep_as_the_middleware_takes(depth: int, taken: bool) -> None:
+    if taken:
+        check_qualities(overridden("depth", depth))
+    else:
+        with pytest.raises(InputError, match=r"a whole number 0 \.\.\. 100000, found"):
+            check_qualities(overridden("depth", depth))
+
+
+def test_only_qualities_of_service_are_looked_at_and_all_bad_ones_are_said() -> None:
+    board = Board()
+    board._parameter_overrides = {
+        "mine.depth": Override("deep"), "qos_overrides./b.publisher.depth": Override(-1),
+        "qos_overrides./a.publisher.history": Override("all"),
+        "qos_overrides./a.publisher.durability": Override("volatile"),
+    }  # fmt: skip
+    with pytest.raises(InputError) as refused:
+        check_qualities(board)
+    assert [each.split("'")[1] for each in refused.value.problems] == [
+        "qos_overrides./a.publisher.history", "qos_overrides./b.publisher.depth",
+    ]  # fmt: skip
+
+
+def test_what_is_read_with_the_model_may_change_and_everything_else_of_a_node_may_not() -> None:
+    assert set(FIXED) == set(NodeOptions.__dataclass_fields__) - {"crane", "model_file", "terms_file"}

@@ -4,7 +4,15 @@ import math
 
 import pytest
 
-from winch_friction.nodes.inputs import ROS, diagnostic_status, plain_value
+from winch_friction.nodes.inputs import (
+    ROS,
+    clock_message,
+    diagnostic_array,
+    diagnostic_status,
+    plain_value,
+    pressure_message,
+    ros_time,
+)
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.records.sample_stream import InputHold, SampleStream
 from winch_friction.records.topics import crane_topics
@@ -41,3 +49,20 @@ def test_diagnostics_are_plain_numbers() -> None:
     assert [(pair.key, pair.value) for pair in status.values] == [("torque", "1.5"), ("enabled", "1")]
     assert status.level == b"\x01"
     assert plain_value(1.0e-14) == "1e-14"
+
+
+def test_a_status_says_whose_it_is_of_what_and_in_how_many_digits() -> None:
+    status = diagnostic_status(
+        "compensator: inputs", "crane 7", 2, "silent", {"age": 1234.56789, "reason": "no", "n": 7}
+    )
+    assert (status.name, status.hardware_id, status.message) == ("compensator: inputs", "crane 7", "silent")
+    assert [pair.value for pair in status.values] == ["1234.56789", "no", "7"]
+    made = diagnostic_array(ros_time(12.5), [status])
+    assert (made.header.stamp.sec, made.header.stamp.nanosec, list(made.status)) == (12, 500_000_000, [status])
+
+
+def test_a_pressure_and_a_clock_say_when_and_how_much() -> None:
+    message = pressure_message(1000.75, 2.5e6, "valid 7")
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1000, 750_000_000)
+    assert (message.header.frame_id, message.fluid_pressure, message.variance) == ("valid 7", 2.5e6, 0.0)
+    assert (clock_message(3.25).clock.sec, clock_message(3.25).clock.nanosec) == (3, 250_000_000)

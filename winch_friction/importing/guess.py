@@ -138,6 +138,8 @@ def _match(column: LogColumn, slot: Slot, crane: Crane | None, groups: int) -> M
     for bare, unit in sorted(readings, key=lambda reading: not reading[1]):
         if not unit and any(says_unit(name, said) for _, said in readings if said):
             break  # a unit that is said is no word of the name; a single letter may be a port
+        if unit and column.unit and not says_unit(name, unit):
+            continue  # where a row of units says bar, the A of `Druck A` is no ampere
         unit = unit or column.unit
         score, why = _reading_score(column, bare, unit, slot, groups, crane.groups if crane else _GROUPS)
         if score <= 0.0:

@@ -114,7 +114,7 @@ def _compound(token: str) -> list[tuple[str, ...]] | None:
     words, short = vocabulary().words, vocabulary().short
     if len(token) == 2 and all(letter in short for letter in token):
         return [short[letter] for letter in token]
-    for cut in range(len(token) - 2, 2, -1):
+    for cut in range(len(token) - 1, 2, -1):
         head, rest = token[:cut], token[cut:]
         if head not in words:
             continue

@@ -1,5 +1,5 @@
-"""How long a contradiction must last before it counts, and how long an agreement before it is over; whether the
-readings live; and whether load, torque and what the filter finds can be of one machine.
+"""How long a contradiction must last before it counts, and how long an agreement before it is over; whether readings
+live; and whether the speed and the wire, the load and the drive's torque can be of one machine.
 
 A controller that hangs may go on sending what it read last, with new stamps, for ever. One sensor that stands still may
 have nothing to say; all that tell of the drive together, to the last digit, cannot while the winch turns: pumps
@@ -124,8 +124,7 @@ def _readings(sample: Sample) -> tuple[object, ...]:
 # -- the speed and the wire that is paid out
 # s between two readings that are compared: a counter has steps and comes late; and s of motion that are remembered
 WIRE_STEP, WIRE_MEMORY = 1.0, 20.0
-# m that the wire must have gone, some steps of any counter, and comparisons: the first some always lie on a line
-LEAST_WAY, LEAST_STEPS = 1.0, 8
+LEAST_WAY, LEAST_STEPS = 1.0, 8  # m of wire, some steps of any counter, and comparisons: a few always lie on a line
 FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
 # times that one may be the other: falls, a layer or a gear ratio that is not the crane's. Revolutions a minute are 9.5
 MOST_APART = 3.0
@@ -142,38 +141,39 @@ class WireAgainstSpeed:
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
-        passed, self._time, wrong = sample.time - self._time, sample.time, None
-        if self._crane.drum.has(sample.wire_layer):
-            lever = self._crane.drum.radius(sample.wire_layer) / self._crane.gear_ratio  # m of wire per rad
-            self._passed += passed
-            self._way -= lever * sample.motor_speed * passed
-            most = lever * self._largest * (self._passed + LONGEST_SPAN)
-            # after a gap, or a counter that was set, nobody knows how far it turned; NaN is not below
-            if not (abs(sample.wire_out - self._last) <= most and 0.0 <= passed <= LONGEST_SPAN):
-                self._begin(sample.wire_out)
-            elif sample.wire_out != self._last and self._passed >= WIRE_STEP:
-                self._count(sample.wire_out)
-            wrong = self._differ() if abs(sample.motor_speed) > self._moving else None
+        passed, self._time = sample.time - self._time, sample.time
+        self._passed += passed
+        self._turned += sample.motor_speed * passed
+        if not 0.0 <= passed <= LONGEST_SPAN:  # over a gap nobody knows how far it turned
+            self._begin(sample.wire_out)
+        elif self._passed >= WIRE_STEP and sample.wire_out != self._last:
+            self._compare(sample)
+        wrong = self._wrong if abs(sample.motor_speed) > self._moving else None
         return f"motor_speed contradicts wire_out: {self._how}" if self._doubt.step(wrong, dt) else ""
 
     def _begin(self, reading: float) -> None:
-        """Compare from a reading on, m; what was summed up before is forgotten."""
-        self._last, self._way, self._passed = reading, 0.0, 0.0
+        """Compare from a reading on, m, without what was summed up before."""
+        self._wrong: bool | None = None
+        self._last, self._turned, self._passed = reading, 0.0, 0.0
         self._speeds = self._wires = self._both = 0.0  # sums of squares and of products, m2
         self._gone, self._steps = 0.0, 0  # m, comparisons
 
-    def _count(self, reading: float) -> None:
-        kept = math.exp(-self._passed / WIRE_MEMORY)
-        way, wire = self._way, reading - self._last
+    def _compare(self, sample: Sample) -> None:
+        """One step more of both ways; a counter that was set, or shows nothing, begins anew."""
+        wire, drum = sample.wire_out - self._last, self._crane.drum
+        lever = drum.radius(sample.wire_layer) / self._crane.gear_ratio if drum.has(sample.wire_layer) else 0.0  # m/rad
+        if not abs(wire) <= lever * self._largest * self._passed:  # NaN as well
+            self._begin(sample.wire_out)
+            return
+        kept, way = math.exp(-self._passed / WIRE_MEMORY), -lever * self._turned
         self._speeds = self._speeds * kept + way * way
         self._wires = self._wires * kept + wire * wire
         self._both = self._both * kept + way * wire
         self._gone, self._steps = self._gone * kept + max(abs(way), abs(wire)), self._steps + 1
-        self._last, self._way, self._passed = reading, 0.0, 0.0
+        self._last, self._turned, self._passed, self._wrong = sample.wire_out, 0.0, 0.0, self._differ()
 
     def _differ(self) -> bool | None:
-        """Whether the one that the speed tells is another motion; None where the wire does not follow, or too little
-        of it is known."""
+        """Whether the two are not one motion; None where the wire does not follow, or too little of it is known."""
         size = math.sqrt(self._speeds * self._wires)
         known = self._gone >= LEAST_WAY and self._steps >= LEAST_STEPS
         if not known or size == 0.0 or abs(self._both) < FOLLOWS * size:

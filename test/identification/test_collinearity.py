@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.identification.collinearity import identifiable, ties, unseen_directions
+from winch_friction.identification.collinearity import _signed, identifiable, ties, unseen_directions
 
 NAMES = ("K1", "C5", "C6")
 DATA = SimpleNamespace(
@@ -59,6 +59,7 @@ def test_a_direction_is_named_by_its_large_components_the_largest_of_which_is_po
     information = 4.0 * (np.eye(3) - np.outer(sign * vector, sign * vector))
     (found,) = unseen_directions(SimpleNamespace(information=information, model=SimpleNamespace(parameter_names=NAMES)))
     assert str(found) == "- 0.60 K1 + 0.75 C5"
+    assert _signed(sign * vector) == pytest.approx(-vector)
     assert found.components == pytest.approx(dict(zip(NAMES, -vector, strict=True)), abs=1e-9)
     assert found.seen == pytest.approx(0.0, abs=1e-6)
 

@@ -303,6 +303,14 @@ def test_what_no_observation_saw_is_as_unsure_as_its_size(unit):
     assert found[0, 1] == pytest.approx(0.0, abs=1e-9)
 
 
+def test_a_parameter_that_was_fitted_to_nothing_is_as_unsure_as_it_typically_is():
+    """At rest there is no viscous torque, and its parameter comes to zero."""
+    still = winch_points(np.zeros(6), np.full(6, 1e7), np.full(6, 3e-5), np.full(6, 1e4), 5)
+    found = fit(VISCOUS, replace(data(), points=still, torque=np.zeros(3))).model
+    assert found.values == (0.0,)
+    assert found.std[0] == pytest.approx(VISCOUS.parameters[0].typical)
+
+
 def test_what_one_cluster_alone_saw_has_an_error_that_all_its_observations_share():
     """The second column is seen in the last two rows alone: their common error has the size of all errors."""
     errors = np.array([1.0, -1.0, 2.0, -2.0, 1.0, 1.0])

@@ -264,10 +264,11 @@ def test_a_population_is_drawn_anew_by_another_seed():
 
 
 def test_as_many_observations_as_parameters_are_enough_and_one_less_is_not():
-    data = bent_data()
-    assert fit(VISCOUS, data.where(np.arange(8) == 3)).observations == 1
+    bent = bent_data()
+    assert fit(VISCOUS, bent.where(np.arange(8) == 3)).observations == 1
+    assert fit(VISCOUS, data()).observations == 3  # one of both ways
     with pytest.raises(InputError, match="bent: 2 observations cannot determine the 4 parameters of 'bent'"):
-        fit(BENT, data.where(np.arange(8) < 2))
+        fit(BENT, bent.where(np.arange(8) < 2))
 
 
 def spread_of(design, target, labels, weight=None):
@@ -303,6 +304,15 @@ def test_what_no_observation_saw_is_as_unsure_as_its_size(unit):
     assert found[0, 1] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e6])
+def test_what_two_columns_leave_open_is_as_unsure_as_both_sizes_whatever_their_unit(unit):
+    """Sizes of 6 and 8 of two that do the same: of what one gains and the other loses nothing is known."""
+    where = np.arange(4)
+    blind = FitData("blind", (), np.zeros(4), np.ones(4), where, where)
+    found = clustered_covariance(np.full((4, 2), unit), np.zeros(4), blind, np.array([6.0, 8.0]))
+    np.testing.assert_allclose(found, [[25.0, -25.0], [-25.0, 25.0]], rtol=1e-6)
+
+
 def test_a_parameter_that_was_fitted_to_nothing_is_as_unsure_as_it_typically_is():
     """At rest there is no viscous torque, and its parameter comes to zero."""
     still = winch_points(np.zeros(6), np.full(6, 1e7), np.full(6, 3e-5), np.full(6, 1e4), 5)
@@ -336,10 +346,11 @@ def test_what_can_be_exchanged_is_named_by_every_parameter_that_takes_part():
 
 def test_a_shape_is_looked_for_in_all_of_its_bounds():
     """What a term alone could need says nothing of a speed at which a curve bends."""
-    lower, upper = search_box(BENT, bent_data())
-    for k, each in enumerate(BENT.parameters):
-        if each.shape:
-            assert (lower[k], upper[k]) == BENT.bounds_of(each.name)
+    sharp = BENT.with_values({"C4": 2.0})  # a torque that bends away at once changes much with its bend
+    lower, upper = search_box(sharp, replace(bent_data(), torque=modelled(sharp, bent_data())))
+    assert [each.shape for each in sharp.parameters] == [False, False, True, False]
+    assert (lower[2], upper[2]) == BENT.bounds_of("C4")
+    assert upper[1] < 1e3 < BENT.bounds_of("C5")[1]
     held = replace(VISCOUS, values=(60.0,), bounds={VISCOUS.parameter_names[0]: (50.0, 90.0)})  # beyond what is needed
     assert [each.tolist() for each in search_box(held, data())] == [[50.0], [50.0]]
 

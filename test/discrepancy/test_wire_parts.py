@@ -190,8 +190,7 @@ def run_of(frequency=8.0, damping=0.0, left=(), noise=False, dt=0.02, **more):
 
 
 @pytest.mark.parametrize(
-    ("frequency", "dt", "slow", "told"),
-    [(8.0, 0.02, True, True), (60.0, 0.02, True, False), (80.0, 0.02, False, False), (0.0, 0.02, False, False)],
+    ("frequency", "slow", "told"), [(8.0, True, True), (60.0, True, False), (80.0, False, False), (0.0, False, False)]
 )
 def test_a_mode_is_followed_by_four_samples_and_told_by_six(frequency, slow, told):
     run = run_of(frequency)

@@ -417,6 +417,7 @@ def test_what_is_taken_anew_owes_nothing_to_sensor_errors_of_before(kind, seed):
     assert not each.sensitivity[:, [SPEED, ENCODER]].any()
     assert each.sensitivity[:, [LOAD, DISTURBANCE]].all()
     assert not np.delete(each.P[SPEED], SPEED).any()
+    assert not np.delete(each.P[:, SPEED], SPEED).any()
     assert each.P[SPEED, SPEED] == 0.5
 
 

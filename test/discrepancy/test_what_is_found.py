@@ -34,6 +34,7 @@ def explained(slots, loss, segments=40):
     ("gain", "inside", "worth", "outcome"),
     [
         (0.3, 0.3, 50.0, "taken"),
+        (0.3, 0.3, 1.5, "taken"),  # of what the first one took, not of all that there was
         (0.005, 0.3, 50.0, "gains only"),
         (0.3, 0.001, 50.0, "only steadies the fit of another effect"),
         (0.3, 0.3, 0.5, "its second order"),

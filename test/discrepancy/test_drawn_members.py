@@ -240,6 +240,7 @@ def test_every_curve_and_surface_has_a_name_of_its_own():
     assert len(set(names)) == len(names)
     assert all(name.startswith(f"free_{row.cause}") for name, row in zip(names, rows, strict=True))
     assert {"free_wear_drift", "free_wear_drift_falling", "free_wear_drift_convex"} < set(names)
+    assert {"free_low_displacement_loss_pressure", "free_low_displacement_loss_falling"} < set(names)
     assert {"free_line_pressure_drop_displacement_hoisting", "free_line_pressure_drop_displacement_lowering"} < set(
         names
     )

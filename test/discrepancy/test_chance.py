@@ -276,3 +276,73 @@ def test_what_a_signal_predicts_has_the_size_of_its_wave():
     assert found.size == pytest.approx(2.0 * rms(wave), rel=0.1)
     assert found.share == pytest.approx(1.0, abs=0.1)
     assert found.signal == "speed"
+
+
+def test_the_least_needed_of_three_is_what_the_whole_lacks_least_without():
+    third = Slot("third", "", (4,))
+    cross = crossed({(): 100.0, (A, B, third): 10.0, (B, third): 40.0, (A, third): 37.0, (A, B): 55.0}, (A, B, third))
+    names = ("found", "other", "third")
+    assert least_part(cross, cross.explain((A, B, third)), names) == pytest.approx(0.3)
+    assert least_part(cross, cross.explain((A, B, third)), names[:1]) == pytest.approx(1.0 / 3.0)
+
+
+def test_rivals_stand_by_what_they_leave_each_cause_once(monkeypatch):
+    """Found is a curve: of another cause both the law that speaks for it and its own curve would do."""
+    own = replace(A, free=True)
+    slots = (replace(B, law="law"), replace(B, law="curve", free=True), Slot("third", "", (5,)), Slot("bad", "", (6,)))
+    losses = dict(zip(slots, (20.0, 19.0, 15.0, 200.0), strict=True))
+    cross = crossed({(): 100.0, (own,): 14.9, **{(slot,): loss for slot, loss in losses.items()}}, slots)
+    monkeypatch.setattr(chance, "does_as_well", lambda trial, *_: trial.loss < 100.0)
+    found, _ = rivals_of(cross, cross.explain((own,)), cross.explain(()), 0, np.random.default_rng(0))
+    assert [(slot.name, slot.law) for slot in found] == [("third", ""), ("other", "law")]
+    monkeypatch.setattr(chance, "heads", lambda cross, before, trials: list(trials))
+    again, _ = rivals_of(cross, cross.explain((own,)), cross.explain(()), 0, np.random.default_rng(0))
+    assert [slot.name for slot in again] == ["third", "other"]
+
+
+@pytest.mark.parametrize("same", [True, False])
+def test_beside_a_higher_order_nobody_asks_how_often_an_effect_wins(same):
+    """Another column leaves less in every segment: it would win always."""
+    cross = crossed({(): 100.0, (A,): 10.0, (B,): 9.0}, (A, B))
+    _, frequency = rivals_of(cross, cross.explain((A,)), cross.explain(()), 0, np.random.default_rng(0), same)
+    assert frequency == (1.0 if same else 0.0)
+
+
+def test_the_four_that_leave_least_are_looked_at_closer():
+    others = [Slot(f"no {k}", "", (k,)) for k in range(1, 7)]
+    losses = dict(zip(others, (30.0, 15.0, 25.0, 12.0, 20.0, 60.0), strict=True))
+    cross = crossed({(): 100.0, (A,): 10.0, **{(slot,): loss for slot, loss in losses.items()}}, (A, *others))
+    assert [slot.name for slot in near(cross, cross.explain((A,)))] == ["no 4", "no 2", "no 5", "no 3"]
+
+
+@pytest.mark.parametrize(("loss", "taken"), [(72.0, True), (74.0, False)])
+def test_a_good_part_of_a_gap_is_one_of_what_lies_above_the_floor(monkeypatch, loss, taken):
+    """Three tenths of the 90 above a floor of 10 are 27."""
+    monkeypatch.setattr(chance, "candidate_trials", lambda *_: [SimpleNamespace(slots=(B,), loss=loss)])
+    cross = SimpleNamespace(excess=lambda _: 10.0, floor=10.0)
+    assert (chance.most_of_it(cross, SimpleNamespace(slots=(), loss=100.0)) is B) is taken
+
+
+def test_of_a_line_and_hats_what_predicts_more_speaks_for_a_signal_and_the_best_signal_leads():
+    """A bent dependence is told by hats; and two signals stand by what they take, the surer one behind."""
+    speed = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+    phase = np.sin(np.arange(RUNS * BLOCKS) / 5.0)
+    left = 3.0 * speed + 6.0 * np.abs(speed) + 1.0 * phase + 0.2 * noise()
+    bent, other = dependences(remainder({"phase": phase, "speed": speed}), left, np.random.default_rng(0))
+    assert (bent.signal, other.signal) == ("speed", "phase")
+    assert bent.p_value > other.p_value
+    assert bent.share > other.share > 0.0
+    (line,) = dependences(remainder({"speed": speed}), 3.0 * speed + 0.2 * noise(), np.random.default_rng(0))
+    assert bent.size > 1.5 * line.size
+
+
+def test_a_block_that_turns_both_ways_is_of_neither_direction():
+    way = np.where(np.arange(RUNS * BLOCKS) % 3 == 0, 0.0, SIGN)
+    speed = np.tile(np.linspace(-1.0, 1.0, BLOCKS), RUNS)
+    for design in _designs(speed, way):
+        up, down = design[:, : design.shape[1] // 2], design[:, design.shape[1] // 2 :]
+        assert not design[way == 0.0].any()
+        assert not up[way < 0.0].any()
+        assert not down[way > 0.0].any()
+        assert up[way > 0.0].any(axis=1).all()
+        assert down[way < 0.0].any(axis=1).all()

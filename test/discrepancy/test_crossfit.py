@@ -1,14 +1,26 @@
 """Evidence that an effect has the same size whichever run is left out, and curves where no run has been."""
 
+import itertools
 from dataclasses import fields, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
-from winch_friction.discrepancy.engine.crossfit import CrossFit, far_less, fitted, other_start
+from winch_friction.discrepancy.engine.crossfit import (
+    CrossFit,
+    Explanation,
+    charged,
+    far_less,
+    fitted,
+    flip_p_values,
+    heads,
+    on_their_own,
+    other_start,
+)
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.table import Table, tabulated
@@ -237,3 +249,144 @@ def test_a_search_begins_anew_from_the_own_law_of_a_cause_whose_bent_one_leaves_
     found = other_start(cross, explained([first, EFFECT], above))
     assert (found is not None and found.slots == (PLAIN,)) is anew
     assert other_start(cross, explained([], above)) is None
+
+
+# -- what is charged, who speaks for a cause, where else to begin
+LACKED = Slot("coulomb", "", (1,), plain=True)
+LAW, CURVE = Slot("wear", "", (2, 3), law="law"), Slot("wear", "", (4,), law="curve", free=True)
+OWN, OIL = Slot("wear", "", (5,)), Slot("oil", "", (7,), law="other")
+
+
+def left(slots, loss):
+    return Explanation(tuple(slots), np.array([float(loss)]), np.zeros(0), float(loss), np.zeros((0, 0)))
+
+
+@pytest.mark.parametrize(
+    ("slot", "after", "expected"),
+    [
+        (LACKED, 600.0, 600.0),
+        (OWN, 600.0, 600.0 + 0.001 * 400.0),
+        (LAW, 600.0, 600.0 + 2 * 0.001 * 400.0),  # for each of its parameters
+        (CURVE, 600.0, 600.0 + 0.05 * 400.0),
+        (CURVE, 1200.0, 1200.0),  # who saves nothing gives nothing back
+    ],
+)
+def test_what_imitates_gives_back_a_share_of_what_it_saves(slot, after, expected):
+    assert charged(1000.0, after, slot) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("law", "curve", "speaks"),
+    [(100.0, 60.0, "law"), (100.0, 54.0, "curve"), (10.3, 10.1, "law"), (100.0, 200.0, "law")],
+)
+def test_of_a_cause_the_curve_speaks_that_leaves_less_than_half_above_the_floor_of_more_than_nothing(
+    law, curve, speaks
+):
+    """Of a floor of 10 and a block; the law comes first, for by what a curve gives back it is the better one."""
+    cross = SimpleNamespace(floor=10.0, problem=SimpleNamespace(grams=SimpleNamespace(count=np.ones(1))))
+    (own,) = heads(cross, 1000.0, [left((CURVE,), curve), left((LAW,), law)])
+    if speaks == "curve" or curve + 0.05 * (1000.0 - curve) > law + 0.002 * (1000.0 - law):
+        assert own.slots[-1].law == speaks
+    both = heads(cross, 1000.0, [left((LACKED,), 500.0), left((CURVE,), curve), left((LAW,), law)])
+    assert [each.slots[-1].name for each in both] == ["wear", "coulomb"]
+
+
+@pytest.mark.parametrize(
+    ("first", "excess", "begins"),
+    [
+        (LAW, 0.4, True),
+        (LAW, 0.3, False),
+        (OWN, 0.4, False),
+        (None, 0.4, False),
+        (Slot("oil", "", (7,), law="x"), 0.4, False),
+    ],
+)
+def test_once_more_is_begun_from_the_own_law_of_a_cause_whose_other_law_leaves_more_than_noise(first, excess, begins):
+    plain = Slot("wear", "plain", (8,), plain=True)
+    losses = {OWN: 300.0, LAW: 200.0, plain: 100.0}
+    cross = SimpleNamespace(
+        excess=lambda _: excess, problem=SimpleNamespace(slots=(plain, OWN, LAW, CURVE)),
+        explain=lambda slots: left(slots, losses[slots[0]]),
+    )  # fmt: skip
+    found = other_start(cross, left((first,) if first else (), 400.0))
+    assert (found.slots if found else None) == ((OWN,) if begins else None)
+
+
+@pytest.mark.parametrize(
+    ("count", "loss", "less"), [(2, 54.0, True), (2, 56.0, False), (1, 54.0, True), (3, 54.0, False), (3, 10.3, True)]
+)
+def test_a_set_of_as_many_laws_is_far_better_by_half_and_one_of_more_by_leaving_noise(count, loss, less):
+    """Beside two laws that leave 100, of a floor of 10."""
+    cross = SimpleNamespace(floor=10.0, excess=lambda each: each.loss - 10.0)
+    anew, current = left((OWN, LAW, CURVE)[:count], loss), left((OWN, LAW), 100.0)
+    assert far_less(cross, anew, current) is less
+
+
+def test_whatever_is_brought_along_or_a_bare_model_lacks_has_no_name_of_its_own():
+    slope, late = Slot("slope", "", (6,), brings=("level",)), Slot("late", "", (7,), brings=("early",))
+    level, early = Slot("level", "", (8,)), Slot("early", "", (9,))
+    assert on_their_own((LACKED, level, slope, early, late, OWN)) == [slope, late, OWN]
+
+
+def test_of_each_law_the_variant_is_taken_that_leaves_least_and_of_what_is_there_already_none():
+    slow, fast = Slot("wear", "slow", (2,), law="law"), Slot("wear", "fast", (3,), law="law")
+    own, of_gear = Slot("wear", "", (4,)), Slot("wear", "", (5,), part="gear")
+    losses = {slow: 30.0, fast: 20.0, own: 25.0, of_gear: 27.0, LACKED: 40.0}
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=tuple(losses)), train_loss=lambda slots: (losses[slots[-1]], None)
+    )
+    assert fitted(cross, (), set()) == [fast, own, LACKED]
+    assert fitted(cross, (), set(), by_part=True) == [fast, own, of_gear, LACKED]
+    assert fitted(cross, (fast,), {"coulomb"}) == [slow, own]
+    assert fitted(cross, (), {"wear"}) == [LACKED]
+
+
+def test_a_gain_is_a_share_of_the_error_that_is_held_out_or_fitted_beside_what_matters_to_nobody():
+    """Of losses of 91 and 16, with 9 that nobody minds: of errors of 10 and 5."""
+    cross = CrossFit(problem_with(np.ones(RUNS)))
+    cross.unresolved = 9.0
+    before, after = (
+        Explanation((), np.array([loss]), np.zeros(0), fitted_loss, np.zeros((0, 0)))
+        for loss, fitted_loss in ((91.0, 40.0), (16.0, 27.0))
+    )
+    assert float(cross.gain(before, after)) == pytest.approx(0.5)
+    assert float(cross.inside_gain(before, after)) == pytest.approx(1.0 - 6.0 / 7.0)
+
+
+def test_a_fits_loss_is_what_its_coefficients_leave():
+    problem = problem_with(np.linspace(0.5, 1.5, RUNS))
+    cross = CrossFit(problem)
+    loss, beta = cross.train_loss((EFFECT,))
+    remains = problem.blocks.y - problem.blocks.x @ beta
+    assert loss == pytest.approx(remains @ remains)
+    found = cross.explain((EFFECT,))
+    np.testing.assert_allclose(cross.remainder(found), remains, rtol=1e-9)
+    assert cross.inside_excess(found) == pytest.approx(np.mean(remains**2 - 1.0 - problem.unresolved))
+    some = np.arange(len(remains)) < 300
+    assert cross.inside_excess(found, some) == pytest.approx(np.mean((remains**2 - 1.0 - problem.unresolved)[some]))
+    assert cross.excess(found) == pytest.approx((found.loss - cross.floor) / len(remains))
+    assert cross.floor == pytest.approx(len(remains) + problem.unresolved.sum())
+
+
+@pytest.mark.parametrize("spread", [0.05, 0.3])
+def test_how_steady_a_size_is_is_the_jackknifes_student_t(spread):
+    """Of the sizes that leave one fold out: their mean over sqrt((n - 1)/n of their summed squares), both sides."""
+    cross = CrossFit(problem_with(np.linspace(1.0 - spread, 1.0 + spread, RUNS)))
+    found = cross.explain((EFFECT,))
+    sizes = found.left_out[:, 1]
+    n = len(sizes)
+    error = np.sqrt((n - 1) / n * np.sum((sizes - sizes.mean()) ** 2))
+    assert cross.jackknife_p_value(found) == pytest.approx(2.0 * student.sf(abs(sizes.mean()) / error, n - 1))
+
+
+def test_chances_of_a_family_are_those_of_its_largest_t():
+    """Counted over all signs of eight segments, of which a draw of many is a sample."""
+    gains = np.array([[3.0, 1.0, 2.0, 1.0, 4.0, 1.0, 2.0, 1.5], [1.0, -1.0, 2.0, -2.0, 3.0, 1.0, -1.0, 2.0]])
+    scaled = gains / np.linalg.norm(gains, axis=1)[:, None]
+    signs = np.array(list(itertools.product((1.0, -1.0), repeat=8)))
+    largest = (signs @ scaled.T).max(axis=1)
+    expected = [np.mean(largest >= t - 1e-12) for t in scaled.sum(axis=1)]
+    found = flip_p_values(gains, np.random.default_rng(0))
+    assert found == pytest.approx(expected, abs=4.0 * np.sqrt(0.25 / LIMITS.flips))
+    assert flip_p_values(100.0 * gains, np.random.default_rng(0)).tolist() == found.tolist()
+    assert flip_p_values(np.zeros((1, 5)), np.random.default_rng(0)).tolist() == [1.0]

@@ -1,5 +1,6 @@
 """The curves that data draw and the laws beside a cause's own: where they are looked for, and over what."""
 
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ from winch_friction.discrepancy.candidates import families as module
 from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Shape
 from winch_friction.discrepancy.candidates.families import CURVES, FLOW, LEFT, LOAD, SPEED, free_members
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import symbols, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
 from winch_friction.records.model_file import load_model
@@ -228,3 +230,51 @@ def test_a_length_adds_by_steps_as_well():
     assert [row.shape for row in own] == ["convex_rising", "rising"]
     assert len({module.name_of(row) for row in own}) == 2
     assert not any(row.opposing for row in own)
+
+
+def test_every_curve_and_surface_has_a_name_of_its_own():
+    """By which a slot is found again: by what multiplies it, its signals, its way and, where causes differ in it, its
+    shape."""
+    rows = (*CURVES, *module.SURFACES)
+    names = [module.name_of(row) for row in rows]
+    assert len(set(names)) == len(names)
+    assert all(name.startswith(f"free_{row.cause}") for name, row in zip(names, rows, strict=True))
+    assert {"free_wear_drift", "free_wear_drift_falling", "free_wear_drift_convex"} < set(names)
+    assert {"free_low_displacement_loss_pressure", "free_low_displacement_loss_falling"} < set(names)
+    assert {"free_line_pressure_drop_displacement_hoisting", "free_line_pressure_drop_displacement_lowering"} < set(
+        names
+    )
+    assert {"free_tare_load", "free_tare_load_rising", "free_notch_loss_pressure_speed_magnitude"} < set(names)
+
+
+def test_what_a_cause_may_look_like_is_said_for_each_of_its_signals():
+    assert module.shapes_over("wear_drift", "time") == {"rising", "falling", "convex_rising"}
+    assert module.shapes_over("high_pressure_mixed", SPEED) == {"falling"}
+    assert module.shapes_over("high_pressure_mixed", "pressure") == {"rising", "convex_rising"}
+    assert module.shapes_over("wear_drift", "pressure") == module.shapes_over("nothing", "time") == set()
+
+
+def test_knots_are_quantiles_the_outermost_ones_and_none_too_near_another():
+    values = np.linspace(0.0, 100.0, 1001)
+    assert module._knots(values, (0.02, 0.5, 0.98)) == pytest.approx([2.0, 50.0, 98.0])
+    assert module._knots(values, (0.0, 0.01, 0.5, 0.99, 1.0)) == pytest.approx([0.0, 50.0, 100.0])
+    assert module._knots(np.full(9, 7.0), (0.02, 0.5, 0.98)).tolist() == [7.0]
+    assert module._knots(np.array([]), (0.02, 0.98)).tolist() == []
+    assert module._knots(np.array([1.0 / 3.0, 2.0]), (0.0, 1.0)).tolist() == [0.333333333, 2.0]
+
+
+def test_a_curve_has_more_knots_than_a_surface_and_a_finer_one_has_them_in_between():
+    curve, surface = row_of(SPEED), module.SURFACES[0]
+    assert module._shares(surface) == LIMITS.surface_knots
+    fine = module._shares(curve, fine=True)
+    assert len(fine) == 2 * len(curve.knots) - 1
+    assert fine[::2] == curve.knots
+    assert fine[1::2] == pytest.approx([0.5 * (a + b) for a, b in itertools.pairwise(curve.knots)])
+
+
+@pytest.mark.parametrize(
+    ("times", "unit"),
+    [((), "N*m"), ((module.SWASH,), "Pa"), ((LEFT,), "Pa"), ((LOAD,), "1"), ((SPEED,), "N*m*s/rad")],
+)
+def test_what_multiplies_a_curve_leaves_it_the_unit_of_a_torque_less(times, unit):
+    assert module._unit(times) == unit

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.engine import grammar as module
 from winch_friction.discrepancy.engine.blocks import Blocks, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Law, Scored, _best_of_each
@@ -97,3 +98,46 @@ def test_the_best_of_each_set_of_signals_is_kept_for_either_way_of_acting():
     kept = _best_of_each(scored, 5)
     assert [(each.law.factors[0].kind, each.law.opposing) for each in kept] == [("square", True), ("square", False)]
     assert len(_best_of_each(scored, 1)) == 1
+
+
+def test_there_is_more_to_read_of_a_law_with_constants_and_a_signal_is_said_once():
+    plain, late = Factor("linear", "wire_out"), Factor("decay", "wire_out", (("tau", 2.0), ("after", 1.0)))
+    assert (plain.weight, late.weight) == (1, 3)
+    assert Law((plain, late), opposing=True).weight == 4
+    assert Law((plain, late, LEVELS), opposing=True).signals == ("wire_out", "wire_layer")
+
+
+@pytest.mark.parametrize("opposing", [True, False])
+def test_a_torque_of_one_direction_is_found_as_surely_as_a_friction(opposing):
+    best = grammar(3.0 * TORQUE * WIRE * (DIRECTION if opposing else 1.0)).search({WIRES: WIRE[None]})[0]
+    assert (best.law, best.amount) == (Law((WIRES,), opposing=opposing), pytest.approx(3.0, rel=1e-6))
+
+
+def test_laws_stand_by_what_they_leave_of_runs_that_they_were_not_fitted_to():
+    gap = TORQUE * np.random.default_rng(2).normal(size=len(AT)) * np.where(RUN == 2, 5.0, 1.0)
+    found = grammar(gap).search(VALUES)
+    losses, inside = [each.loss for each in found], [each.inside for each in found]
+    assert losses == sorted(losses)
+    assert inside != sorted(inside)
+    assert {len(each.law.factors) for each in found} == {1, 2}
+
+
+def test_a_product_with_what_differs_by_group_acts_once_per_motor_whichever_factor_comes_first(monkeypatch):
+    """From the wire's length on, alone: the pressures are what makes it one per motor."""
+    only = lambda scored, most: [each for each in scored if each.law.factors[0] is WIRES or len(each.law.factors) > 1]
+    monkeypatch.setattr(module, "_best_of_each", only)
+    search, tried = grammar(TORQUE * WIRE), []
+    screened = search.screened
+    search.screened = lambda law, values: tried.append(law) or screened(law, values)
+    search.search({WIRES: WIRE[None], GROUPS: PRESSURES})
+    pairs = [law for law in tried if len(law.factors) == 2]
+    assert pairs
+    assert all(law.each for law in pairs)
+
+
+@pytest.mark.parametrize("weight", [1.0, 4.0])
+def test_what_the_base_explains_is_no_laws_whatever_the_noise(weight):
+    """A level of 1 that the base has room for, of blocks that are as sure as they may be."""
+    found = grammar(np.ones(len(AT)), shift=1.0, weight=weight).screened(Law((WIRES,), opposing=True), VALUES)
+    assert found.inside < 0.01 * weight**2 * len(AT)
+    assert found.amount == pytest.approx(0.0, abs=0.01)

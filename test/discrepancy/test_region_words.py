@@ -156,3 +156,25 @@ def test_no_region_is_a_band_of_one_signal():
     for each in find_regions(SimpleNamespace(y=gap, direction=np.zeros(600), features={"p": pressure}), gap, {}):
         assert each.signals == ("p",)
         assert " and " not in each.where
+
+
+def test_a_condition_that_is_mostly_of_one_direction_does_not_say_it():
+    """Three quarters of the high pressures are of hoisting, and the gap is in all of them alike."""
+    often = np.where(np.arange(600) % 8 < 6, 1.0, -1.0)
+    pressure = np.where(np.arange(600) % 20 < 7, 150.0, 50.0) + RNG.uniform(-1.0, 1.0, 600)
+    blocks = SimpleNamespace(y=None, direction=often, features={"active.pressure": pressure})
+    gap = np.where(pressure > 100.0, 4.0, 0.0)
+    blocks.y = gap
+    (first, *_) = find_regions(blocks, gap, READ_AS)
+    assert first.where.startswith("active.pressure > ")
+    assert "ing" not in first.where
+    assert first.signals == ("active.pressure",)
+
+
+def test_of_runs_of_one_direction_no_condition_says_it():
+    pressure = RNG.uniform(50.0, 150.0, 600)
+    gap = np.where(pressure > 120.0, 3.0, 0.0)
+    blocks = SimpleNamespace(y=gap, direction=np.ones(600), features={"active.pressure": pressure})
+    found = find_regions(blocks, gap, READ_AS)
+    assert found
+    assert all("direction" not in each.signals for each in found if "active.pressure" in each.signals)

@@ -131,3 +131,49 @@ def test_a_second_law_stands_for_another_name_within_the_noise_and_never_for_wha
     assert (left - floor < 2.0 * least) is (left < 3.0)
     found = _of_fewest_causes(cross, cross.explain((GEAR, brake)), RNG)
     assert [slot.name for slot in found.slots] == causes
+
+
+def test_what_is_exchanged_stands_where_the_other_stood_and_is_looked_at_once_more():
+    """First the decoy makes way, and only beside what came for it does the gear: two rounds."""
+    cross = table((DECOY, GEAR, BRAKE, CURVE), {
+        "": 1000.0, "d": 400.0, "g": 600.0, "b": 500.0, "c": 550.0, "dg": 100.0, "bd": 101.0, "bg": 90.0, "cd": 300.0,
+        "cg": 95.0, "bc": 20.0,
+    })  # fmt: skip
+    found = _exchanged(cross, cross.explain((GEAR, DECOY)))
+    assert set(found.slots) == {BRAKE, CURVE}
+    assert found.loss == 20.0
+
+
+def test_trials_that_come_to_the_same_stand_in_the_order_in_which_they_are_listed():
+    """But for rounding: a cause's own law leads before its others, and what leaves clearly more comes behind both."""
+    cross = table((GEAR, DECOY, BRAKE), {})
+    trials = [explained((BRAKE,), 50.0), explained((DECOY,), 100.0 * (1.0 - 5e-6)), explained((GEAR,), 100.0)]
+    order = _in_order(cross, explained((), 1000.0), trials[1:])
+    assert [trials[1:][k].slots[0] for k in order] == [GEAR, DECOY]
+    assert [trials[k].slots[0] for k in _in_order(cross, explained((), 1000.0), trials)][0] is BRAKE
+    apart = [explained((DECOY,), 100.0 * (1.0 - 5e-5)), explained((GEAR,), 100.0)]
+    assert [apart[k].slots[0] for k in _in_order(cross, explained((), 1000.0), apart)] == [DECOY, GEAR]
+
+
+def test_of_two_names_the_one_that_came_last_gives_way_to_a_second_law_and_never_what_another_brings():
+    """Either would do; what a higher order brings along goes with that alone."""
+    gear, brake = (Slot(name, "", (k,)) for k, name in ((2, "gear"), (3, "brake")))
+    bent, dragged = Slot("gear", "", (5,), law="bent"), Slot("brake", "", (6,), law="bent")
+    slope = Slot("gear", "", (2,), brings=("brake",))
+    for first, expected in ((gear, (gear, bent)), (slope, (slope, brake))):
+        losses = {(first,): 40.0, (brake,): 40.0, (first, brake): 2.01, (first, bent): 2.02}
+        losses[(brake, dragged)] = losses[(dragged, brake)] = 2.02 if first is gear else 50.0
+        cross = SimpleNamespace(
+            problem=SimpleNamespace(slots=(first, brake, bent, dragged)),
+            excess=lambda each: each.loss - 2.0, floor=2.0,
+            explain=lambda own, losses=losses: explained(own, losses[tuple(own)]),
+            train_loss=lambda own, losses=losses: (losses[tuple(own)], None),
+        )  # fmt: skip
+        assert _of_fewest_causes(cross, cross.explain((first, brake)), RNG).slots == expected
+
+
+def test_the_last_effect_of_a_set_is_never_superfluous(monkeypatch):
+    """Whether it stands at all is asked by what added it."""
+    monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1.0]))
+    cross = table((DECOY,), {"": 101.0, "d": 100.0})
+    assert _pruned(cross, cross.explain((DECOY,)), RNG).slots == (DECOY,)

@@ -1,5 +1,6 @@
 """What is taken into a set of effects and what falls out of it, each rule on explanations of which all is known."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,18 @@ import pytest
 from winch_friction.discrepancy.engine import selection as module
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import Explanation
-from winch_friction.discrepancy.engine.selection import _evidence, _forward, _found, _no_worse, _pruned, _with_company
+from winch_friction.discrepancy.engine.selection import (
+    Finding,
+    Selection,
+    _considered,
+    _evidence,
+    _forward,
+    _found,
+    _no_worse,
+    _pruned,
+    _with_company,
+)
+from winch_friction.discrepancy.thresholds import LIMITS
 
 ONE, TWO = Slot("one", "", (1,)), Slot("two", "", (2,))
 RNG = np.random.default_rng(0)
@@ -22,6 +34,7 @@ def explained(slots, loss, segments=40):
     ("gain", "inside", "worth", "outcome"),
     [
         (0.3, 0.3, 50.0, "taken"),
+        (0.3, 0.3, 1.5, "taken"),  # of what the first one took, not of all that there was
         (0.005, 0.3, 50.0, "gains only"),
         (0.3, 0.001, 50.0, "only steadies the fit of another effect"),
         (0.3, 0.3, 0.5, "its second order"),
@@ -91,3 +104,81 @@ def test_the_worth_of_what_is_brought_along_is_what_it_takes_without_its_higher_
     assert _found(cross, whole, 0, {"two": 0.0}, RNG).gain == pytest.approx(0.75)
     assert _found(cross, whole, 1, {"slope": 0.0}, RNG).gain == pytest.approx(0.8)
     assert asked == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("worthy", "best", "gain", "inside", "p", "said"),
+    [
+        (True, True, 0.3, 0.3, 1e-4, "taken"),
+        (True, False, 0.3, 0.3, 1e-4, "outdone in held-out loss"),
+        (False, False, 0.3, 0.3, 0.06, "not significant on held-out segments (p = 0.06)"),
+        (False, False, 0.005, 0.3, 1e-4, "gains only 0.5 % of the held-out error, less than 1 %"),
+        (False, False, 0.3, 0.001, 1e-4, "only steadies the fit"),
+        (False, False, 0.3, 0.3, 1e-4, "explains less than 0.2 % of what the first effect did"),
+    ],
+)
+def test_what_was_not_taken_is_said_with_the_first_reason_that_holds(worthy, best, gain, inside, p, said):
+    own = Slot("one", "its shape", (1,))
+    found = _considered(explained((TWO, own), 1.0), gain, inside, p, 2, worthy, best)
+    assert (found.name, found.variant, found.gain, found.p_value, found.stage) == ("one", "its shape", gain, p, 2)
+    assert said.replace("0.2 %", f"{100 * LIMITS.least_share:g} %") in found.verdict
+
+
+@pytest.mark.parametrize(("start", "most", "stages"), [((), 3, [0, 1, 2]), ((ONE,), 3, [1, 2]), ((ONE, TWO), 2, [])])
+def test_effects_are_added_until_a_set_has_as_many_as_it_may(monkeypatch, start, most, stages):
+    """From what a search begins with on; each of them says how sure it was when it came."""
+    more = [Slot(f"more {k}", "", (5 + k,)) for k in range(4)]
+    cross = SimpleNamespace(gain=lambda *_: 0.3, inside_gain=lambda *_: 0.3, problem=SimpleNamespace(slots=more))
+    tried = lambda _cross, own, _names: [explained((*own.slots, more[len(own.slots)]), 0.5 * own.loss)]
+    monkeypatch.setattr(module, "candidate_trials", tried)
+    monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1e-4]))
+    monkeypatch.setattr(module, "_exchanged", lambda _, own: own)
+    considered, p_values = [], {}
+    after = _forward(cross, explained((), 3000.0), explained(start, 1000.0), RNG, most, considered, p_values)
+    assert [each.stage for each in considered] == stages
+    assert len(after.slots) == max(most, len(start))
+    assert p_values == {each.name: 1e-4 for each in considered}
+
+
+def test_the_surer_of_two_ways_to_be_sure_counts():
+    """Most segments show it, though its size differs from run to run; or few do, and all runs agree on it."""
+    trial = explained((ONE,), 0.0)
+    for steady, gains, least in ((1.0, np.ones((1, 40)), 2e-3), (1e-3, np.zeros((1, 40)), 1e-3)):
+        cross = SimpleNamespace(jackknife_p_value=lambda _, p=steady: p)
+        assert _evidence(cross, [trial], gains, RNG)[0] <= least
+
+
+def test_what_is_brought_along_is_there_once():
+    slope, curve = (Slot(name, "", (k,), brings=("two",)) for k, name in ((3, "slope"), (4, "curve")))
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=(ONE, TWO, slope)), explain=lambda slots: explained(slots, 1.0)
+    )
+    assert _with_company(cross, explained((slope, curve), 2.0)).slots == (TWO, slope, curve)
+    whole = explained((slope, TWO), 2.0)
+    assert _with_company(cross, whole) is whole
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_an_effect_has_as_many_names_as_a_set_has_room_for_and_says_which_others_do_as_well(monkeypatch, count):
+    """Three names at most: its own and two more. Beyond three left out nobody is told anything."""
+    rivals = tuple(Slot(f"rival {k}", "", (k,)) for k in range(count))
+    losses = {(): 400.0, (ONE,): 100.0}
+    cross = SimpleNamespace(
+        explain=lambda slots: explained(slots, losses[tuple(slots)]), inside_gain=lambda *_: 0.1,
+        gain=lambda before, after: 1.0 - np.sqrt(after.loss / before.loss),
+    )  # fmt: skip
+    monkeypatch.setattr(module, "rivals_of", lambda *_, same: (rivals, 0.7))
+    own = _found(cross, cross.explain((ONE,)), 0, {"one": 0.004}, RNG)
+    assert (own.rivals, own.no_room) == (rivals[:2], tuple(each.name for each in rivals[2:]))
+    assert (own.p_value, own.gain, own.selection_frequency) == (0.004, pytest.approx(0.5), 0.7)
+    assert not Selection(explained((), 1.0), explained((ONE,), 1.0), (own,)).untold
+
+
+def test_a_set_that_leaves_out_more_names_than_it_has_room_for_tells_them_all():
+    base, final = explained((), 1.0), explained((ONE, TWO), 1.0)
+    three, four = (tuple("abcd"[:count]) for count in (3, 4))
+    crowd = Finding(ONE, (Slot("r", "", (7,)),), 0.0, 0.1, 1.0, four)
+    assert Selection(base, final, (replace(crowd, no_room=three),)).untold == ""
+    assert Selection(base, final, (crowd, replace(crowd, slot=TWO, rivals=()))).untold == (
+        "one is not told from r, a, b, c, d; two is not told from a, b, c, d"
+    )

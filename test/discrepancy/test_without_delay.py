@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
-from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED
+from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED, tau
 from winch_friction.discrepancy.detectors import delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.search import long_delay
@@ -140,3 +140,47 @@ def test_a_small_delay_as_long_as_one_may_be_is_taken_out_of_the_runs(value, lon
     assert long_delay([slot], cross, SimpleNamespace(slots=(slot,))) == (slot if long else None)
     # what is only near to what was found has no size of its own
     assert long_delay([slot], cross, SimpleNamespace(slots=())) is None
+
+
+@pytest.mark.parametrize("side", [SPEED, PRESSURES])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_shape_says_which_side_is_late_or_early_how_long_and_by_what(side, sign):
+    """Its bounds reach half way to the next size on either side, in units of the delay's typical one."""
+    plain = delay._shape(0.1 * sign, side)
+    late = "late" if (sign > 0.0) == (side == SPEED) else "early"
+    of = "speed" if side == SPEED else "pressures"
+    assert plain.label == f"{of} {late}, looked at with 100 ms"
+    assert plain.values == {"ahead": max(0.1 * sign, 0.0), "behind": max(-0.1 * sign, 0.0), "late": side,
+                            "delay": 0.1 * sign}  # fmt: skip
+    reach = sorted((0.1 * sign / 1.1 / tau.typical, 0.1 * sign * 1.1 / tau.typical))
+    assert plain.bounds == pytest.approx(reach)
+    assert delay._shape(0.1 * sign, side, by_time=1.0).label == f"{of} {late}, looked at with 100 ms after 100 s"
+    assert delay._shape(0.1 * sign, side, filtered=1.0).label == f"{of} {late} by a filter, looked at with 100 ms"
+    both = delay._shape(0.1 * sign, side, filtered=0.5)
+    assert both.label == f"{of} {late} by a filter and a delay, looked at with 100 ms"
+    assert (both.values["filtered"], both.values["delay"]) == (0.5, 0.1 * sign)
+
+
+def test_delays_clocks_and_filters_are_tried_around_the_first_estimate_and_at_it():
+    """A clock's delay is what it has grown to after a hundred seconds, where the estimate is of the middle."""
+    kinds = delay._ways(0.1, SPEED, 50.0)
+    assert [len(each) for each in kinds] == [8, 3, 3]
+    sizes = [[shape.values["delay"] for shape in each] for each in kinds]
+    assert sizes[0] == pytest.approx([0.07, 0.085, 0.1, 0.115, 0.13, 0.16, 0.2, 0.25])
+    assert sizes[1] == sizes[2] == pytest.approx([0.08, 0.1, 0.125])
+    assert ["by_time" in shape.values for shape in kinds[0]] == [False] * 5 + [True] * 3
+    assert [each[0].values["filtered"] for each in kinds[1:]] == [1.0, 0.5]
+    early = delay._ways(-0.1, SPEED, 50.0)
+    assert [each[0].values["late"] for each in early] == [SPEED, PRESSURES, PRESSURES, PRESSURES]
+
+
+@pytest.mark.parametrize(("values", "fitted", "size"), [
+    ({"ahead": 0.06, "behind": 0.0}, None, 0.06), ({"ahead": 0.0, "behind": 0.06}, None, -0.06),
+    ({"ahead": 0.06, "behind": 0.0}, -0.02, -0.02), ({"ahead": 0.06, "behind": 0.0, "by_time": 1.0}, None, 0.03),
+    ({"ahead": 0.06, "behind": 0.0, "by_time": 1.0}, 0.02, 0.01),
+])  # fmt: skip
+def test_a_suspects_size_is_as_fitted_or_as_its_shape_has_it_in_the_middle_of_a_run(values, fitted, size):
+    slot = Slot("signal_delay", "", (0,), origin=(None, Shape("", values)))
+    cross = SimpleNamespace(size=lambda *_: fitted)
+    explained = SimpleNamespace(slots=(slot,) if fitted is not None else ())
+    assert delay._size(slot, cross, explained, 50.0) == pytest.approx(size)

@@ -2,6 +2,7 @@
 
 import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,10 +21,12 @@ from winch_friction.estimation.dynamics import (
     ENCODER_CHANGE,
     FIRST_PARAMETER,
     LOAD,
+    LOAD_SPEED,
     SPEED,
     STRETCH,
     Propagation,
     Step,
+    fresh_motion,
     noise_variances,
     wire_step,
 )
@@ -414,6 +417,7 @@ def test_what_is_taken_anew_owes_nothing_to_sensor_errors_of_before(kind, seed):
     assert not each.sensitivity[:, [SPEED, ENCODER]].any()
     assert each.sensitivity[:, [LOAD, DISTURBANCE]].all()
     assert not np.delete(each.P[SPEED], SPEED).any()
+    assert not np.delete(each.P[:, SPEED], SPEED).any()
     assert each.P[SPEED, SPEED] == 0.5
 
 
@@ -536,3 +540,137 @@ def test_the_rope_force_says_the_hanging_mass_where_no_hook_load_is(crane_150t):
     assert load.following(Sample(0.0, 0.0, rope_force=30e3 * GRAVITY), 0.02) == pytest.approx(30e3)
     assert load.following(Sample(0.0, 0.0, rope_force=30e3 * GRAVITY, hook_load=20e3), 0.02) == 20e3
     assert math.isnan(load.following(Sample(0.0, 0.0), 0.02))
+
+
+# -- what a filter tells and what it takes from outside
+def test_a_state_that_was_asked_for_stays_as_it_was(kind, seed):
+    each, step = some_filter(seed, kind=kind)
+    x, covariance = each.state
+    kept = x.copy(), covariance.copy()
+    each.predict_step(step, True, False)
+    each.correct(*each.innovation(3.0), True)
+    assert (x == kept[0]).all()
+    assert (covariance == kept[1]).all()
+    assert (each.state[0] != x).any()
+
+
+def test_what_sensors_may_add_is_their_variance_through_their_sensitivity(kind, seed):
+    """The deviations of two errors, 0.01 and 1e5, squared: 1e-4 and 1e10."""
+    each, _ = some_filter(seed, kind=kind)
+    each.sensitivity[0], each.sensitivity[1] = 30.0, 1e-5
+    each.sensitivity[1, -1] = -2e-5
+    added = np.full((len(each.phi), len(each.phi)), 0.09 + 1.0)
+    added[-1, :] = added[:, -1] = 0.09 - 2.0
+    added[-1, -1] = 0.09 + 4.0
+    assert each.considered_covariance - each.phi_covariance == pytest.approx(added)
+    assert each.considered_variances == pytest.approx(each.phi_covariance.diagonal() + added.diagonal())
+    bare = kind(each.config, each.parameters)
+    assert bare.considered_covariance == pytest.approx(bare.phi_covariance)
+    assert bare.considered_variances == pytest.approx(bare.phi_covariance.diagonal())
+
+
+def test_a_measured_speed_is_as_unsure_as_all_noises_are_scaled(kind, seed):
+    each, step = some_filter(seed, EstimatorConfig(speed_noise=0.3), kind=kind)
+    each.adapt(3.0, each.config.adaptation_time)
+    assert each.noise_factor == pytest.approx(3.0)
+    assert each.speed_variance == pytest.approx(3.0 * 0.09)
+    each.predict_step(step, True, False)
+    _, variance = each.innovation(0.0)
+    seen = each._ahead_P[SPEED] + each._ahead_P[ENCODER_CHANGE]
+    assert variance == pytest.approx(seen[SPEED] + seen[ENCODER_CHANGE] + 0.27)
+
+
+@pytest.mark.parametrize(
+    ("learning", "stick", "told"), [(True, False, True), (True, True, False), (False, False, False)]
+)
+def test_of_a_sensors_error_only_what_is_learned_tells(kind, seed, learning, stick, told):
+    each, step = some_filter(seed, kind=kind)
+    each.predict_step(step, learning, False)
+    each.correct(*each.innovation(1.0), learning, stick)
+    assert np.isfinite(each.considered.lateness[0]) == told
+
+
+@pytest.mark.parametrize(("late", "damped", "place"), [(0.15, 0.3, 1), (0.0, 0.3, 1), (0.15, 0.0, -1)])
+def test_which_error_is_a_lateness_and_which_the_wires_damping(kind, seed, late, damped, place):
+    config = EstimatorConfig(speed_delay_std=late, wire_damping_std=damped)
+    each = kind(config, ScaledParameters(seed, config), SENSORS)
+    assert each._damping == place
+    assert each.considered._late == (late > 0.0)
+    assert kind(config, ScaledParameters(seed, config))._damping == -1
+
+
+def test_parameters_fade_once_a_second_by_all_of_the_learning_since(kind, seed):
+    """Steps of 0.02 s that show nothing: fifty of them at a time, those of rest not counted."""
+    each, step = some_filter(seed, EstimatorConfig(forgetting_time=100.0), kind=kind)
+    each.state = np.zeros((each.size, 1)), np.eye(each.size) * 1e-9
+    seen = step._replace(by_parameters=[0.0] * len(seed.values), by_sensors=(0.0, 0.0))
+    grown, before = [], 0.0
+    for k in range(160):
+        learning = k >= 5
+        each.predict_step(seen, learning, True)
+        each.correct(0.0, each.innovation(0.0)[1], learning)
+        now = each.phi_covariance[0, 0]
+        if now > before + 1e-6:
+            grown.append((k, now - before))
+        before = now
+    assert [k for k, _ in grown] in ([54, 104, 154], [55, 105, 155])  # the fiftieth, or that after rounding
+    first = each.parameters.prior[0, 0] * each.config.forgetting_time**-1
+    assert grown[0][1] == pytest.approx(first, rel=0.03)
+
+
+def test_parameters_that_are_taken_from_elsewhere_owe_nothing_to_what_moves(kind, seed):
+    """... and stand inside their range, where what the range had moved and what innovations told is forgotten."""
+    each, step = some_filter(seed, kind=kind)
+    each.predict_step(step, True, False)
+    each.correct(*each.innovation(1.0), True)
+    size, rng = each.size, np.random.default_rng(5)
+    x, root, sensitivity = np.zeros(size), 0.1 * rng.normal(size=(size, size)), rng.normal(size=(2, size))
+    covariance, before = root @ root.T, [part.copy() for part in (*each.state, each.sensitivity)]
+    x[-1] = each.parameters.upper[-1] + 1.0
+    each._moved[:] = 1.0
+    each.take_parameters(x, covariance, sensitivity)
+    phi = slice(FIRST_PARAMETER, size)
+    expected = each.parameters.projected(x, covariance, FIRST_PARAMETER)
+    assert each.phi == pytest.approx(expected[phi])
+    assert each.phi[-1] == pytest.approx(each.parameters.upper[-1])
+    assert (each.x[:FIRST_PARAMETER] == before[0][:FIRST_PARAMETER]).all()
+    assert each.P[phi, phi] == pytest.approx(covariance[phi, phi])
+    assert not each.P[phi, :FIRST_PARAMETER].any()
+    assert not each.P[:FIRST_PARAMETER, phi].any()
+    assert (each.P[:FIRST_PARAMETER, :FIRST_PARAMETER] == before[1][:FIRST_PARAMETER, :FIRST_PARAMETER]).all()
+    assert (each.sensitivity[:, phi] == sensitivity[:, phi]).all()
+    assert (each.sensitivity[:, :FIRST_PARAMETER] == before[2][:, :FIRST_PARAMETER]).all()
+    assert not each._moved[phi].any()
+    assert each._moved[:FIRST_PARAMETER].all()
+    assert np.isnan(each.considered.lateness[0])
+
+
+@pytest.mark.parametrize("doubted", [False, True])
+def test_a_load_in_doubt_walks_twenty_times_as_far(seed, doubted):
+    config, step = EstimatorConfig(load_noise=3.0), some_filter(seed)[1]._replace(doubted=doubted)
+    walk = 20.0 * 3.0 if doubted else 3.0
+    assert noise_variances(step, config, 2.0, False)[3] == pytest.approx(2.0 * walk**2 * step.duration)
+
+
+def test_what_moves_begins_with_the_speed_as_measured_and_the_load_along_with_its_wire(crane):
+    config, layer = EstimatorConfig(speed_step=0.6), 2.0
+    fresh = {state: rest for state, *rest in fresh_motion(Sample(0.0, 50.0, wire_layer=layer), crane, config, 0.25)}
+    lever = crane.drum.radius(layer) / crane.gear_ratio
+    assert fresh[SPEED] == [50.0, pytest.approx(0.25 + 2.0 * 0.03)]
+    assert fresh[STRETCH] == [0.0, pytest.approx(1e-6)]
+    assert fresh[LOAD_SPEED] == [pytest.approx(50.0 * lever), pytest.approx(lever**2 * 0.31 + 4e-4)]
+    assert fresh[DISTURBANCE] == [0.0, config.disturbance_std**2]
+    assert fresh[ENCODER] == [0.0, pytest.approx(0.03)]
+    assert fresh[ENCODER_CHANGE] == [0.0, 0.0]
+    moved = fresh_motion(Sample(0.0, 50.0, heave_velocity=-0.4, wire_layer=layer), crane, config, 0.25)
+    assert {state: value for state, value, _ in moved}[LOAD_SPEED] == pytest.approx(50.0 * lever - 0.4)
+
+
+@pytest.mark.parametrize("stiffness", [math.inf, 3.0e8])
+def test_a_wire_of_unknown_stiffness_rings_at_forty_rad_per_second_at_most(crane, stiffness):
+    """Of a load held still, a stretch comes back by the cosine of w dt."""
+    mass, dt = 2e3, 1e-4
+    stiff = replace(crane, wire_stiffness=stiffness, inertia=1e12)
+    step = np.array(wire_step(stiff, mass, 6.0, 50.0, 0.0, dt))
+    assert 3.0e8 / 50.0 / mass > 1600.0
+    assert step[2, 1] / dt == pytest.approx(1600.0, rel=1e-3)  # m/s^2 per m

@@ -109,3 +109,15 @@ def test_each_window_has_its_own_mean_and_counts_where_it_is_inside_both_ends_of
         assert each.inside == inside
     assert each.windows == 6
     assert each.share_inside == pytest.approx(4.0 / 6.0)
+
+
+def test_samples_that_pass_between_rejected_ones_are_no_run_of_them():
+    gate = InnovationGate(CONFIG)
+    shut_out(gate)
+    gate.restarted(10.0)
+    for _ in range(3):
+        for _ in range(RESTART_AFTER - 1):
+            gate.accepted()
+        gate.rejected(20.0)
+    shut_out(gate)
+    assert gate.exhausted_again

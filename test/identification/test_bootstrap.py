@@ -41,3 +41,23 @@ def test_a_prior_of_parameters_of_all_sizes_is_drawn_as_it_is(monkeypatch, crane
     found = bootstrap([[]], crane_150t, SimpleNamespace(prior=prior, model=prior), spread, resamples=1000)
     assert found.std / std == pytest.approx(np.ones(size), rel=0.1)
     assert np.corrcoef(found.estimates.T) == pytest.approx(alike, abs=0.1)
+
+
+def test_tests_are_drawn_with_replacement_and_a_prior_without_a_covariance_stays(monkeypatch, crane_150t, spread):
+    """Of five tests a redraw has five again, some of them twice; what it is said beside is the fit's own sigma."""
+    drawn, priors = [], []
+    monkeypatch.setattr(module, "observations", lambda tests, crane: drawn.append(sorted(each[0] for each in tests)))
+
+    def fit(data, prior, spread):
+        priors.append(prior)
+        return SimpleNamespace(model=prior)
+
+    monkeypatch.setattr(module, "joint_fit", fit)
+    prior, model = PRIOR.with_covariance(None), PRIOR
+    found = bootstrap([[k] for k in range(5)], crane_150t, SimpleNamespace(prior=prior, model=model), spread)
+    assert len(drawn) == len(found.estimates) == 40
+    assert {len(each) for each in drawn} == {5}
+    assert sum(len(set(each)) < 5 for each in drawn) > 30
+    assert all(each is prior for each in priors)
+    assert found.linearised_std == pytest.approx(model.std)
+    assert found.names == model.parameter_names

@@ -52,3 +52,33 @@ def test_seedable():
 def test_budget_is_kept(budget):
     result = complex_method(rosenbrock, LOWER[:2], UPPER[:2], seed=1, restarts=1, max_evaluations=budget, tolerance=0)
     assert budget <= result.evaluations <= budget + 12
+
+
+def test_a_cost_in_another_unit_is_minimised_by_the_same_designs():
+    """The population has settled where its costs agree to a share of themselves, however large or small these are."""
+    few = {"seed": 4, "restarts": 1, "population": 8, "tolerance": 1e-3}
+    found = [complex_method(lambda x, s=s: s * (1.0 + bowl(x)), LOWER, UPPER, **few) for s in (1.0, 2.0**-50, 2.0**50)]
+    for each in found[1:]:
+        np.testing.assert_array_equal(each.x, found[0].x)
+        assert (each.evaluations, each.converged) == (found[0].evaluations, 1)
+
+
+@pytest.mark.parametrize("reflection", [1.0, 1.3, 1.7])
+def test_the_worst_design_is_mirrored_and_retracts_to_the_others_centroid_and_then_to_the_best(reflection):
+    """By hand, of a population of four whose mirrored one is always worse: half as far from the centroid each time, and
+    after six times of the best."""
+    seen = []
+
+    def cost(x):
+        seen.append(np.array(x))
+        return float(len(seen)) if len(seen) <= 4 else 100.0
+
+    wide = np.full(2, 50.0)
+    complex_method(cost, -wide, wide, seed=6, population=4, reflection=reflection, restarts=1, max_evaluations=5)
+    best, *others, worst = seen[:4]
+    centroid = np.mean([best, *others], axis=0)
+    trial = np.clip(centroid + reflection * (centroid - worst), -wide, wide)
+    for attempt, design in enumerate(seen[4:16]):
+        np.testing.assert_allclose(design, trial, rtol=1e-12)
+        trial = 0.5 * (trial + (centroid if attempt < 6 else best))
+    assert len(seen) == 16

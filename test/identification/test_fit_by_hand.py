@@ -5,17 +5,34 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from winch_friction.identification import least_squares as module
 from winch_friction.identification.complex_method import complex_method
-from winch_friction.identification.fit import search_box
+from winch_friction.identification.fit import (
+    METHODS,
+    clustered_covariance,
+    condition_number,
+    exchangeable,
+    fit,
+    search_box,
+)
 from winch_friction.identification.fit_data import CountedModel, FitData, contributions, modelled
 from winch_friction.identification.friction_curve import FrictionCurve, curve_data, winch_points
-from winch_friction.identification.joint_fit import observations
+from winch_friction.identification.joint_fit import (
+    SENSOR_ERRORS,
+    Observations,
+    _Problem,
+    joint_fit,
+    observations,
+    winch_prior,
+)
+from winch_friction.identification.least_squares import bounded_linear, least_squares
 from winch_friction.identification.motor_models import initial_model, motor_model_named, room
 from winch_friction.identification.plateaus import Plateau
 from winch_friction.identification.prior import UnitSpread
 from winch_friction.identification.supplier_table import FitRange, SupplierTable
 from winch_friction.identification.verification import _even, _through_standstill, inertia_torque
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import Run
 
@@ -201,3 +218,284 @@ def test_what_accelerates_is_the_winch_and_the_load_on_its_wire(winch, tip, cran
     lever = 0.867 / 250.0
     np.testing.assert_allclose(acceleration, winch, atol=1e-9)
     np.testing.assert_allclose(torque, 1.54 * winch + 3e4 * lever * (lever * winch + tip), rtol=1e-6)
+
+
+# -- what a fit says of itself
+BENT = FrictionModel("bent", (term_named("stribeck"), term_named("viscous")), (1e-3, 10.0, 20.0, 0.5))
+
+
+def bent_data(weight=None):
+    """Eight speeds of a friction that falls and rises again, with errors of a tenth of it."""
+    speed = np.array([2.0, 5.0, 9.0, 15.0, 25.0, 40.0, 70.0, 120.0])
+    n = len(speed)
+    points = winch_points(speed, np.full(n, 1e7), np.full(n, 3e-5), np.where(np.arange(n) % 2, 2e4, 5e3), 1)
+    clusters = np.arange(n) // 2
+    found = FitData("bent", points, np.zeros(n), np.ones(n) if weight is None else weight, clusters, clusters)
+    torque = modelled(BENT, found)
+    return replace(found, torque=torque * (1.0 + 0.1 * np.sin(3.0 * np.arange(n))))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_fit_says_its_errors_and_its_jacobian_where_it_ends(method):
+    """Not where it began: a Stribeck curve's columns move with its speed."""
+    data = bent_data(np.linspace(0.5, 2.0, 8))
+    options = {"restarts": 1, "max_evaluations": 300} if method == "complex" else {}
+    found = fit(BENT.with_values((5e-4, 3.0, 60.0, 0.1)), data, method, seed=1, **options)
+    errors = data.torque - modelled(found.model, data)
+    values = np.array(found.model.values)
+    columns = np.empty((8, 4))
+    for k, step in enumerate(1e-5 * values):
+        ends = (found.model.with_values(values + sign * step * (np.arange(4) == k)) for sign in (1.0, -1.0))
+        one, other = (modelled(each, data) for each in ends)
+        columns[:, k] = (one - other) / (2.0 * step)
+    weighted = columns * np.sqrt(data.weight)[:, None]
+    assert found.cost == pytest.approx(float(data.weight @ errors**2))
+    assert found.rms == pytest.approx(float(np.sqrt(np.mean(errors**2))))
+    assert found.condition == pytest.approx(np.linalg.cond(weighted / np.linalg.norm(weighted, axis=0)), rel=1e-4)
+    sizes = np.maximum(np.abs(values), [abs(each.typical) for each in found.model.parameters])
+    expected = clustered_covariance(columns, errors, data, sizes)
+    np.testing.assert_allclose(found.model.covariance, expected, rtol=1e-3)
+    assert (found.observations, found.parameter_count, found.method) == (8, 4, method)
+
+
+def test_a_population_is_drawn_anew_by_another_seed():
+    ends = [fit(BENT, bent_data(), "complex", seed=s, restarts=1, max_evaluations=40).model.values for s in (1, 1, 2)]
+    assert ends[0] == ends[1] != ends[2]
+
+
+def test_as_many_observations_as_parameters_are_enough_and_one_less_is_not():
+    bent = bent_data()
+    assert fit(VISCOUS, bent.where(np.arange(8) == 3)).observations == 1
+    assert fit(VISCOUS, data()).observations == 3  # one of both ways
+    with pytest.raises(InputError, match="bent: 2 observations cannot determine the 4 parameters of 'bent'"):
+        fit(BENT, bent.where(np.arange(8) < 2))
+
+
+def spread_of(design, target, labels, weight=None):
+    n = len(target)
+    data = FitData("clusters", (), target, np.ones(n) if weight is None else weight, labels, labels)
+    return clustered_covariance(np.asarray(design, float), np.asarray(target, float), data, np.ones(len(design[0])))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e9])
+def test_the_spread_of_a_mean_is_that_of_the_means_that_leave_a_cluster_out(unit):
+    """One parameter, the mean: three clusters of two; the jackknife is (n - 1)/n times the sum of squared shifts."""
+    values = np.array([1.0, 3.0, 5.0, 4.0, 9.0, 8.0])
+    labels = np.array([0, 0, 1, 1, 2, 2])
+    left_out = np.array([values[labels != k].mean() for k in range(3)])
+    (found,) = spread_of(np.full((6, 1), unit), values - values.mean(), labels)
+    assert found[0] * unit**2 == pytest.approx(2.0 / 3.0 * ((left_out - values.mean()) ** 2).sum())
+    both = spread_of(np.full((6, 1), unit), values - values.mean(), np.column_stack([labels, labels]))
+    assert both[0, 0] == pytest.approx(2.0 * found[0])  # the spreads over both ways of clustering are added
+
+
+def test_of_one_cluster_alone_the_spread_is_that_of_its_errors():
+    errors = np.array([1.0, -1.0, 3.0, -3.0])
+    found = spread_of(np.ones((4, 1)), errors, np.zeros(4, int))
+    assert found[0, 0] == pytest.approx(np.var(errors) / 4.0)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
+def test_what_no_observation_saw_is_as_unsure_as_its_size(unit):
+    design = np.column_stack([np.full(4, unit), np.zeros(4)])
+    data = FitData("blind", (), np.zeros(4), np.ones(4), np.arange(4), np.arange(4))
+    found = clustered_covariance(design, np.array([1.0, -1.0, 2.0, -2.0]), data, np.array([7.0, 30.0]))
+    assert found[1, 1] == pytest.approx(900.0)
+    assert found[0, 1] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e6])
+def test_what_two_columns_leave_open_is_as_unsure_as_both_sizes_whatever_their_unit(unit):
+    """Sizes of 6 and 8 of two that do the same: of what one gains and the other loses nothing is known."""
+    where = np.arange(4)
+    blind = FitData("blind", (), np.zeros(4), np.ones(4), where, where)
+    found = clustered_covariance(np.full((4, 2), unit), np.zeros(4), blind, np.array([6.0, 8.0]))
+    np.testing.assert_allclose(found, [[25.0, -25.0], [-25.0, 25.0]], rtol=1e-6)
+
+
+def test_a_parameter_that_was_fitted_to_nothing_is_as_unsure_as_it_typically_is():
+    """At rest there is no viscous torque, and its parameter comes to zero."""
+    still = winch_points(np.zeros(6), np.full(6, 1e7), np.full(6, 3e-5), np.full(6, 1e4), 5)
+    found = fit(VISCOUS, replace(data(), points=still, torque=np.zeros(3))).model
+    assert found.values == (0.0,)
+    assert found.std[0] == pytest.approx(VISCOUS.parameters[0].typical)
+
+
+def test_what_one_cluster_alone_saw_has_an_error_that_all_its_observations_share():
+    """The second column is seen in the last two rows alone: their common error has the size of all errors."""
+    errors = np.array([1.0, -1.0, 2.0, -2.0, 1.0, 1.0])
+    design = np.column_stack([[1.0, 1.0, 1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
+    found = spread_of(design, errors, np.array([0, 0, 1, 1, 2, 2]))
+    assert found[1, 1] == pytest.approx(np.mean(errors**2))
+
+
+@pytest.mark.parametrize(("slant", "expected"), [(1e-3, True), (3e-15, False)])
+def test_two_columns_that_are_one_but_for_rounding_have_no_condition(slant, expected):
+    columns = np.array([[1.0, 1.0], [0.0, slant]])
+    assert np.isfinite(condition_number(columns)) == expected
+    assert condition_number(columns * [1e6, 1e-6]) == pytest.approx(condition_number(columns), rel=1e-6)
+
+
+def test_what_can_be_exchanged_is_named_by_every_parameter_that_takes_part():
+    """The third column is made of the first two, to unlike parts; the fourth stands alone, the fifth is nothing."""
+    a, b, c = np.eye(5)[:3]
+    jacobian = np.column_stack([a, b, 0.1 * a + 0.9 * b, c, 0.0 * a])
+    assert exchangeable(jacobian, ["A", "B", "C", "D", "E"]) == ("A", "B", "C")
+    assert exchangeable(jacobian[:, [0, 1, 3, 4]], ["A", "B", "D", "E"]) == ()
+
+
+def test_a_shape_is_looked_for_in_all_of_its_bounds():
+    """What a term alone could need says nothing of a speed at which a curve bends."""
+    sharp = BENT.with_values({"C4": 2.0})  # a torque that bends away at once changes much with its bend
+    lower, upper = search_box(sharp, replace(bent_data(), torque=modelled(sharp, bent_data())))
+    assert [each.shape for each in sharp.parameters] == [False, False, True, False]
+    assert (lower[2], upper[2]) == BENT.bounds_of("C4")
+    assert upper[1] < 1e3 < BENT.bounds_of("C5")[1]
+    held = replace(VISCOUS, values=(60.0,), bounds={VISCOUS.parameter_names[0]: (50.0, 90.0)})  # beyond what is needed
+    assert [each.tolist() for each in search_box(held, data())] == [[50.0], [50.0]]
+
+
+def test_every_column_of_a_jacobian_is_counted_and_every_observation_has_all_its_columns():
+    counting = CountedModel(BENT, bent_data())
+    counting.columns(BENT.values)
+    assert counting.evaluations == 4
+    counting.torque(BENT.values)
+    counting.cost(BENT.values)
+    assert counting.evaluations == 6
+    for name in ("torque", "weight", "group", "cluster"):
+        with pytest.raises(InputError, match="bent: torque, weight, group and cluster must have one entry per"):
+            replace(bent_data(), **{name: np.ones(7)})
+
+
+# -- least squares
+def test_every_square_counts_by_its_weight():
+    noisy = replace(data(), torque=data().torque * np.array([1.0, 1.3, 0.8]))
+    column, weight = data().torque / 2.0, noisy.weight
+    found = least_squares(VISCOUS, noisy)
+    assert found.values[0] == pytest.approx((weight * column) @ noisy.torque / ((weight * column) @ column))
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e9])
+def test_what_would_fit_best_beyond_a_bound_ends_on_it_whatever_the_size_of_its_column(size):
+    """Two columns at right angles of which each is wanted five times, one that is in the way of none, and nothing."""
+    columns = np.column_stack([[size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size], np.zeros(3)])
+    lower, upper = np.array([0.0, 0.0, -1.0, 0.0]) / size, np.array([2.0, 9.0, 1.0, 1.0]) / size
+    found = bounded_linear(columns, np.array([5.0, 5.0, -5.0]), lower, upper)
+    np.testing.assert_allclose(found[:3] * size, [2.0, 5.0, -1.0], rtol=1e-9)
+    assert ((found >= lower) & (found <= upper)).all()
+
+
+@pytest.mark.parametrize("bend", [1.5, 3.0, 8.0, 20.0, 60.0, 180.0])
+def test_a_bend_is_found_wherever_it_is_and_the_columns_that_are_used_are_counted(monkeypatch, bend):
+    """A viscous column once, and for each bend that is tried the two of the Stribeck term, not the bend's own."""
+    solved = []
+    real = module.bounded_linear
+    monkeypatch.setattr(module, "bounded_linear", lambda *given: solved.append(1) or real(*given))
+    truth = BENT.with_values({"C4": bend})
+    found = least_squares(BENT, replace(bent_data(), torque=modelled(truth, bent_data())))
+    assert found.values == pytest.approx(truth.values, rel=1e-3)
+    assert found.evaluations == 1 + 2 * len(solved)
+
+
+def test_two_bends_are_looked_for_together():
+    both = (term_named("stribeck"), term_named("churning_viscous"))
+    start = FrictionModel("two", both, tuple(p.typical for term in both for p in term.parameters))
+    assert sum(each.shape for each in start.parameters) == 2
+    found = least_squares(start, bent_data())
+    one = least_squares(start.subset(["stribeck"]), bent_data())
+    assert found.cost < one.cost
+
+
+# -- the joint fit
+MOTORS, GEAR = 11, 250.0
+PRIOR = FrictionModel(
+    "prior",
+    (term_named("coulomb"), term_named("viscous")),
+    (20.0, 0.5),
+    covariance=np.array([[16.0, 0.3], [0.3, 0.01]]),
+)
+SPREAD = UnitSpread({"C2": 0.2, "C5": 0.2}, 0.01, 0.002, 5e4, 0.03)
+
+
+def joint_data(errors=0.0, error=2e4, model=PRIOR):
+    """Two tests of other loads, both ways, whose drops carry load and friction, and so much more, Pa."""
+    speed = np.array([20.0, 60.0, 120.0, -20.0, -60.0, -120.0] * 2)
+    test, displacement = np.repeat([0, 1], 6), np.full(12, 3e-5)
+    drum = np.where(test == 0, 2e5, 6e5)
+    friction = np.array([model.value("C2") + model.value("C5") * abs(each) for each in speed])
+    drop = (drum / (GEAR * MOTORS) + np.sign(speed) * friction) / displacement + errors  # friction is per motor
+    return Observations(speed, drop, np.full(12, error), displacement, drum, test, MOTORS, GEAR)
+
+
+def unknowns(problem, theta):
+    return np.concatenate([np.array(theta) / problem.scale, np.zeros(5)])
+
+
+def test_what_load_and_friction_do_not_explain_is_an_error_per_motor_either_way():
+    shift = np.linspace(-3e5, 4e5, 12)
+    problem = _Problem(joint_data(shift), PRIOR, SPREAD)
+    left = problem.torque_error(unknowns(problem, PRIOR.values))
+    np.testing.assert_allclose(left, shift * 3e-5, rtol=1e-9)
+    loads = unknowns(problem, PRIOR.values)
+    loads[-1] = 1.0  # the second test's load is larger by its tolerance
+    more = np.where(np.repeat([0, 1], 6) == 1, 0.03 * 6e5 / (GEAR * MOTORS), 0.0)
+    np.testing.assert_allclose(problem.torque_error(loads), shift * 3e-5 - more, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("error", "sigma"), [(2e4, 2e4), (10.0, 1e3)])
+def test_the_noise_is_that_of_the_plateaus_beside_what_their_errors_say(error, sigma):
+    """Twelve plateaus, of which two parameters, three sensors and two loads take seven; 0.01 bar at least."""
+    shift = np.linspace(-3e5, 4e5, 12)
+    problem = _Problem(joint_data(shift, error), PRIOR, SPREAD)
+    expected = np.sqrt(np.sum((shift / sigma) ** 2) / 5.0)
+    assert problem.noise(unknowns(problem, PRIOR.values)) == pytest.approx(expected)
+
+
+def test_a_prior_pulls_by_its_covariance_and_not_at_what_it_does_not_know():
+    problem = _Problem(joint_data(), PRIOR, SPREAD)
+    off = np.array([3.0, -0.2])
+    pulled = problem.residuals(unknowns(problem, PRIOR.values + off), 1.0)[12:14]
+    assert pulled @ pulled == pytest.approx(off @ np.linalg.solve(PRIOR.covariance, off))
+    free = _Problem(joint_data(), PRIOR.with_covariance(np.diag([16.0, 0.0])), SPREAD)
+    pulled = free.residuals(unknowns(free, PRIOR.values + off), 1.0)[12:14]
+    assert pulled @ pulled == pytest.approx(9.0 / 16.0)
+
+
+def test_data_that_say_nothing_leave_prior_and_tolerances_as_they_are():
+    found = joint_fit(joint_data(error=1e18), PRIOR, SPREAD)
+    np.testing.assert_allclose(found.model.values, PRIOR.values, rtol=1e-6)
+    np.testing.assert_allclose(found.model.covariance, PRIOR.covariance, rtol=1e-5)
+    for name in SENSOR_ERRORS:
+        assert found.sensor_errors[name] == (pytest.approx(0.0, abs=1e-12), pytest.approx(getattr(SPREAD, name)))
+    assert np.abs(found.information).max() < 1e-9
+
+
+def test_plateaus_that_scatter_more_than_they_say_are_believed_less():
+    """What the data alone say is the information of a fit in which sensors and loads may have their errors too."""
+    wild = 6e4 * np.where(np.arange(12) % 3 == 1, 1.0, -0.5)
+    data = joint_data(wild)
+    found = joint_fit(data, PRIOR, SPREAD)
+    problem = _Problem(data, PRIOR, SPREAD)
+    assert found.noise_scale == pytest.approx(problem.noise(problem.solve(1.0).x), rel=1e-6)
+    assert found.noise_scale > 2.0
+    solution = problem.solve(found.noise_scale)
+    errors = np.zeros((12, 7))
+    for k in range(7):
+        step = 1e-4 * (np.arange(7) == k)
+        ends = (problem.torque_error(solution.x + sign * step) for sign in (1.0, -1.0))
+        one, other = ends
+        errors[:, k] = (one - other) / 2e-4 / (problem.sigma * found.noise_scale)
+    whole = errors.T @ errors + np.diag([0.0] * 2 + [1.0] * 5)
+    alone = np.linalg.inv(np.linalg.inv(whole)[:2, :2])
+    np.testing.assert_allclose(found.information, alone, rtol=1e-3)
+    root = np.linalg.inv(PRIOR.covariance / np.outer(problem.scale, problem.scale))
+    posterior = np.linalg.inv(alone + root) * np.outer(problem.scale, problem.scale)
+    np.testing.assert_allclose(found.model.covariance, posterior, rtol=1e-3)
+    np.testing.assert_allclose(found.residuals, problem.torque_error(solution.x), atol=1e-4)
+
+
+def test_the_prior_of_a_winch_knows_the_motor_and_leaves_the_system_free():
+    motor = FrictionModel("motor", (term_named("motor_coulomb"),), (5.0,), covariance=np.array([[4.0]]))
+    found = winch_prior(motor, PRIOR, "both")
+    assert (found.name, found.parameter_names, found.values) == ("both", ("K4", "C2", "C5"), (5.0, 20.0, 0.5))
+    assert found.covariance.tolist() == [[4.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]

@@ -201,3 +201,33 @@ def test_rows_outside_the_range_of_the_fit_are_said(tmp_path, capsys):
     assert "fast.csv: 18 of 45 rows are left out: 18 by speed (400 ... 2500 rpm count)" in said
     assert run([*fit, "--speed", "400-6000"]) == 0
     assert "left out" not in capsys.readouterr().err
+
+
+def test_outside_a_map_the_nearest_row_holds_by_what_the_axes_span(write):
+    """A step of an axis counts by its share of the largest value, whatever its unit; a sign counts for nothing."""
+    rows = [
+        f"{n},{p},{d},{n / 1000 + p / 10 + d / 10}"
+        for n in (500, 1000, 2000)
+        for p in (100, 200, 300)
+        for d in (50, 100)
+    ]
+    black_box = BlackBoxMap(read_supplier_table(write(HEADER.replace("efficiency [%]", "torque_loss [N*m]"), *rows)))
+
+    def loss(speed, pressure, displacement):
+        at = speed * RPM, pressure * BAR, displacement * CM3_PER_REV
+        return float(black_box.torque_loss(*(np.array([each]) for each in at))[0])
+
+    assert loss(2500, 100, 50) == pytest.approx(2 + 10 + 5)
+    assert loss(2500, 290, 95) == pytest.approx(2 + 30 + 10)
+    assert loss(100, 340, 60) == pytest.approx(0.5 + 30 + 5)
+    inside = loss(1000, 250, 75)
+    assert inside == pytest.approx(1 + 25 + 7.5)
+    assert loss(-1000, 250, 75) == loss(1000, -250, 75) == inside
+
+
+@pytest.mark.parametrize(("part", "axes"), [(0.985, 2), (0.95, 3)])
+def test_displacements_that_differ_by_two_per_cent_are_one(write, part, axes):
+    """As a feedback shows those of a motor that does not swing."""
+    rows = [f"{n},{p},{160 * share},5" for n in (500, 1000) for p in (100, 200) for share in (1.0, part)]
+    table = read_supplier_table(write(HEADER.replace("efficiency [%]", "torque_loss [N*m]"), *rows))
+    assert BlackBoxMap(table)._varied.tolist() == [True, True, axes == 3]

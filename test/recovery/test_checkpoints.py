@@ -282,3 +282,36 @@ def _of_size(value, size):
     if not isinstance(value[0], list):
         return [value[0]] * size
     return (-np.eye(size)).tolist() if len(value) > 1 else [[value[0][0]] * size]
+
+
+@pytest.mark.parametrize(("share", "sound"), [(0.999, True), (1.0 + 1e-8, True), (1.001, False), (1.5, False)])
+@pytest.mark.parametrize("unit", [1.0, 1e-9])
+def test_two_states_are_correlated_by_one_at_most_whatever_their_unit(share, sound, unit):
+    """But for rounding."""
+    crane, seed, kept, size = kept_content()
+    covariance = np.eye(size)
+    covariance[1, 1] = unit**2
+    covariance[0, 1] = covariance[1, 0] = share * unit
+    content = filter_state(crane, seed, replace(kept, covariance=covariance))
+    if sound:
+        assert restored_state(content, crane, seed, size, 1).covariance == pytest.approx(covariance)
+    else:
+        with pytest.raises(InputError, match="not those of a filter"):
+            restored_state(content, crane, seed, size, 1)
+
+
+def test_what_is_kept_can_be_written_whatever_is_not_known():
+    crane, seed, kept, _ = kept_content()
+    content = filter_state(crane, seed, replace(kept, mass=float("nan")))
+    assert json.loads(json.dumps(content, allow_nan=False))["mass"] is None
+    assert filter_state(crane, seed, kept)["mass"] == 55e3
+
+
+@pytest.mark.parametrize("key", ["version", "terms", "seed", "seed_values", "seed_std", "groups", "layer_radii"])
+def test_a_state_is_refused_by_what_it_does_not_say_of_its_crane_and_seed(key):
+    crane, seed, kept, size = kept_content()
+    content = filter_state(crane, seed, kept)
+    assert key in content
+    del content[key]
+    with pytest.raises(InputError, match=f"checkpoint: {key} is None, but this estimator has "):
+        restored_state(content, crane, seed, size, 1)

@@ -164,6 +164,16 @@ def test_a_correction_is_moved_by_half_of_its_deviation_inside_its_bounds(monkey
     assert own.bounds[0] <= moved.value <= own.bounds[1]
 
 
+@pytest.mark.parametrize(("share", "way"), [(0.0, 2.0), (1.0, -2.0), (0.25, 1.5), (0.75, -1.5)])
+def test_a_correction_that_is_less_sure_than_its_bounds_are_wide_is_moved_to_the_farther_one(monkeypatch, share, way):
+    """A zero at its bound, of which runs of few displacements say next to nothing: by no step, nothing can be told."""
+    monkeypatch.setattr(expansion, "correction_std", lambda _: 1e9)
+    lower, upper = Correction("tare_load", 0.0).bounds
+    step, moved = expansion._moved(Correction("tare_load", lower + share * (upper - lower)))
+    assert step == pytest.approx(way * 0.5 * (upper - lower))
+    assert moved.value == (upper if way > 0.0 else lower)
+
+
 @dataclass(frozen=True)
 class Prepared:
     name: str

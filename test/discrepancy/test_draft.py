@@ -8,7 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import proposals, repair
 from winch_friction.discrepancy.answer import UNEXPLAINED, Verdict
-from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
 from winch_friction.discrepancy.repair import Repair, _changed, _Draft
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -58,8 +58,25 @@ def test_what_a_bare_model_lacks_has_room_to_move_beyond_its_usual_bound():
     candidate = SimpleNamespace(term=COULOMB, merge=None, most_in=lambda _: LIMITS.unbounded)
     own.terms.clear()
     slot = SimpleNamespace(origin=(candidate, None))
-    repair._add(own, slot, {C2.name: ParameterEstimate(2.0 * C2.upper, 1.0, "N*m")}, None, model())
-    assert own.bare[C2.name] == (C2.lower, LIMITS.bare_room * 2.0 * C2.upper)
+    repair._add(own, slot, {C2.name: ParameterEstimate(2.0 * C2.upper, 1.0, "N*m")}, None, model(), np.ones(1))
+    assert own.room[C2.name] == (C2.lower, LIMITS.bare_room * 2.0 * C2.upper)
+
+
+@pytest.mark.parametrize(
+    ("typical", "value", "upper", "inside"),
+    [(100.0, 400.0, 600.0, 400.0), (100.0, 900.0, 600.0, 600.0), (2.5, 120.0, 100.0, 100.0)],
+)
+def test_a_file_holds_what_the_search_believes_of_a_machine_beyond_the_usual_bound(typical, value, upper, inside):
+    """A slow motor's churning is stated at a speed three times its own: 400 N m there are 40 at its fastest."""
+    churning = term_named("churning")
+    own, (amount, exponent) = drafted(), churning.parameters
+    candidate = Candidate("churning", linear=(amount,), term=churning)
+    own_size = {amount.name: ParameterEstimate(value, 1.0, "N*m"), exponent.name: ParameterEstimate(1.9, 0.1, "1")}
+    repair._add(own, SimpleNamespace(origin=(candidate, None)), own_size, None, model(), np.array([typical]))
+    written = repair._model_of(own, model(), SimpleNamespace(name="crane"), {}, {})
+    assert written.model.bounds_of(amount.name) == (amount.lower, upper)
+    assert written.model.as_dict()[amount.name] == inside
+    assert len(written.cut) == (value != inside)
 
 
 def test_a_shared_ripple_is_fitted_to_the_training_runs_alone(monkeypatch):

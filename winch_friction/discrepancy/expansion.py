@@ -185,11 +185,12 @@ def with_corrections(
 
 
 def _moved(one: Correction) -> tuple[float, Correction]:
-    """A small step of a correction inside its bounds, and the correction after it."""
-    step = 0.5 * correction_std(one)
-    lower, upper = one.bounds
-    step = step if one.value + step <= upper else -min(step, one.value - lower)
-    return step, replace(one, value=one.value + step)
+    """A small step of a correction inside its bounds, and the correction after it; one less sure than these are wide
+    goes to the farther."""
+    step, (lower, upper) = 0.5 * correction_std(one), one.bounds
+    up, down = upper - one.value, one.value - lower
+    step = min(step, up) if step <= up or up >= down else -min(step, down)
+    return step, replace(one, value=min(max(one.value + step, lower), upper))
 
 
 def expand_around(

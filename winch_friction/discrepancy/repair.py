@@ -54,7 +54,7 @@ class _Draft:
     at: dict[str, float]
     std: dict[str, float]
     corrections: list[Correction]
-    bare: dict[str, tuple[float, float]]  # bounds of what a bare model lacks, of which any size is believed
+    room: dict[str, tuple[float, float]]  # bounds beyond the usual: of a bare model's lack, and of another machine
 
     def add_term(self, candidate: Candidate | None, term: Term, own: Estimates) -> None:
         """A new term, or a change of one that the model has; a curve of another shape is melted in."""
@@ -114,7 +114,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         parameters[slot.name] = together(parameters.get(slot.name, {}), of_part(slot, explanation.slots, found))
         places = of_part(slot, explanation.slots, in_file(slot, found, sides, had))
         said[slot.name] = agreed(said.get(slot.name, {}), places)
-        _add(own, slot, found, sides, seed)
+        _add(own, slot, found, sides, seed, scale[where])
     if search.reversal is not None:
         finding = search.reversal
         at = [finding.cross.problem.columns(finding.fitted.slots).index(c) for c in finding.slot.columns]
@@ -122,7 +122,7 @@ def draft(search: Search, explanation: Explanation, provenance: Mapping[str, Any
         deviation = np.sqrt(np.diag(finding.cross.covariance(finding.fitted)))[at] * size
         found = estimates_of(finding.slot, finding.fitted.beta[at] * size, deviation, finding.cross)
         parameters[finding.slot.name] = found
-        _add(own, finding.slot, found, sides, seed)
+        _add(own, finding.slot, found, sides, seed, size)
     if search.ripple and TERM not in seed.term_names and (wave := _common_wave(search, search.ripple)) is not None:
         own.add_term(None, term_named(TERM), wave)
     for lost in search.flow:
@@ -138,15 +138,16 @@ def _common_wave(search: Search, ripple: Ripple) -> dict[str, ParameterEstimate]
     return in_phase([run for run, _ in training], [p for _, p in training], search.given.crane, ripple)
 
 
-def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: FrictionModel) -> None:
+def _add(own: _Draft, slot: Slot, found: Estimates, sides: Sides, seed: FrictionModel, typical: FloatArray) -> None:
     candidate, shape = slot.origin
-    if candidate.term is not None:
-        own.add_term(candidate, candidate.term, found)
-        if candidate.most_in(seed) >= LIMITS.unbounded:
-            own.bare |= {
-                p.name: (p.lower, max(p.upper, LIMITS.bare_room * abs(own.at[p.name])))
-                for p in candidate.term.parameters
-            }
+    if (term := candidate.term) is not None:
+        own.add_term(candidate, term, found)
+        if (most := candidate.most_in(seed)) >= LIMITS.unbounded:
+            reach = {p.name: LIMITS.bare_room * abs(own.at[p.name]) for p in term.parameters}
+        else:  # as much as the search believes: 100 N m at 2000 rpm, a usual bound, is 9 at a slow motor's top speed
+            sizes = zip(candidate.linear, most * np.abs(typical), strict=True)
+            reach = {p.name: float(size) for p, size in sizes if p.name not in seed.parameter_names and size > p.upper}
+        own.room |= {p.name: (p.lower, max(p.upper, reach[p.name])) for p in term.parameters if p.name in reach}
     elif candidate.corrects is not None:
         for each in candidate.corrects(found, shape, sides):
             own.add_correction(each)
@@ -166,15 +167,14 @@ def _model_of(
     declared = unique_parameters(tuple(own.terms))
     values, deviations, cut = [], [], []
     for p in declared:
-        lower, upper = own.bare.get(p.name, (p.lower, p.upper))
-        lower, upper = seed.bounds_of(p.name) if p.name in seed.parameter_names else (lower, upper)
+        usual = own.room.get(p.name, (p.lower, p.upper))
+        lower, upper = seed.bounds_of(p.name) if p.name in seed.parameter_names else usual
         value = float(np.clip(own.at[p.name], lower, upper))
         if abs(value - own.at[p.name]) > 1e-9 * abs(p.typical):
             cut.append(f"{p.name}: {CUT} {own.at[p.name]:.4g} {p.unit}")
         values.append(value)
         deviations.append(max(own.std[p.name], 1e-12 * abs(p.typical)))
-    names = {p.name for p in declared}
-    bounds = {name: each for name, each in {**own.bare, **seed.bounds}.items() if name in names}
+    bounds = {name: each for name, each in {**own.room, **seed.bounds}.items() if name in own.at}
     model = FrictionModel(
         seed.name.removesuffix(REFITTED).removesuffix(REPAIRED) + REPAIRED, tuple(own.terms), tuple(values),
         np.diag(deviations) ** 2 if values else None,

@@ -1,6 +1,7 @@
 """`winch-friction init`: a stranger's 50 t crane, from nothing to a checked simulation, without an editor."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,29 @@ def test_what_is_written_is_read(own):
     written = {"crane_50t": "crane", "plant_crane_50t": "plant", "seed_crane_50t": "model", "log_map": "map"}
     for name, kind in {**written, "ahc_crane_50t": "scenario", "normal_crane_50t": "scenario"}.items():
         assert problems(yaml.safe_load((own / f"{name}.yaml").read_text()), schemas[kind]) == []
+
+
+def test_ratings_are_written_or_lines_to_be_filled_in(tmp_path, monkeypatch):
+    """Of a slow motor the rated speed tells motion from rest: without it no guard ever saw the winch turn."""
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "crane", *CRANE, "--rated-speed", "300", "--rated-pressure", "320"]) == 0
+    rated = load_crane("crane_50t.yaml")
+    assert (rated.rated_speed, rated.rated_pressure) == (pytest.approx(300.0 * math.pi / 30.0), pytest.approx(320e5))
+    assert run(["init", "crane", *CRANE, "--out", "bare.yaml"]) == 0
+    assert not load_crane("bare.yaml").rated_speed
+    written = Path("bare.yaml").read_text()
+    Path("bare.yaml").write_text(written.replace("# rated_speed", "rated_speed").replace("# rated_pr", "rated_pr"))
+    filled = load_crane("bare.yaml")
+    assert (filled.rated_speed, filled.rated_pressure) == (pytest.approx(100.0 * math.pi / 30.0), pytest.approx(350e5))
+
+
+def test_a_pressure_is_rated_of_hydraulic_motors_alone(capsys):
+    electric = ["--drive", "electric", "--name", "w", "--load", "5", "--motors", "1", "--gear-ratio", "90", "--radius",
+                "0.3", "--layers", "4", "--wire", "20", "--inertia", "0.4"]  # fmt: skip
+    assert run(["init", "crane", *electric, "--rated-pressure", "300", "--rated-speed", "0"]) == 2
+    assert capsys.readouterr().err.strip() == (
+        "winch-friction: init crane: --rated-pressure is not of --drive electric; --rated-speed 0.0 must be above 0"
+    )
 
 
 @pytest.mark.parametrize(

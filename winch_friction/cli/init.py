@@ -47,6 +47,10 @@ def crane(
     torque_constant: Annotated[
         OptionalFloat, typer.Option(help="Of --drive current: N m at the motor shaft per A.")
     ] = None,
+    rated_speed: Annotated[
+        OptionalFloat, typer.Option(help="Of the motor shaft, rpm; of slow motors it tells motion from rest.")
+    ] = None,
+    rated_pressure: Annotated[OptionalFloat, typer.Option(help="Of hydraulic motors, bar.")] = None,
     out: Out = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
@@ -75,7 +79,10 @@ def crane(
         "torque_constant": (torque_constant, float, "N m at the motor shaft per A"),
     }
     wanted, given = wanted_of(drive), {name: value for name, (value, *_) in asked.items() if value is not None}
-    facts = CraneFacts(drive=drive, falls=falls, **{**given, **_answered({name: asked[name] for name in wanted})})
+    facts = CraneFacts(
+        drive=drive, falls=falls, rated_speed=rated_speed, rated_pressure=rated_pressure,
+        **{**given, **_answered({name: asked[name] for name in wanted})},
+    )  # fmt: skip
     _write(out or _file_of(facts.name), crane_text(facts), overwrite, as_json)
 
 

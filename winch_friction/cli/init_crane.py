@@ -43,13 +43,17 @@ class CraneFacts:
     drive: str = HYDRAULIC
     torque_constant: float | None = None
     falls: int = 1
+    rated_speed: float | None = None  # rpm
+    rated_pressure: float | None = None  # bar
 
     def __post_init__(self) -> None:
         wanted = set(wanted_of(self.drive))
         own = [each for each in (set(_OF_ONE_DRIVE) - wanted - {"inertia"}) if getattr(self, each)]
         wrong = [f"--{_flag(each)} is not of --drive {self.drive}" for each in sorted(own)]
+        if self.rated_pressure and self.drive != HYDRAULIC:
+            wrong.append(f"--rated-pressure is not of --drive {self.drive}")
         numbers = ("load", "motors", "displacement", "gear_ratio", "radius", "layers", "wire", "inertia",
-                   "torque_constant", "falls")  # fmt: skip
+                   "torque_constant", "falls", "rated_speed", "rated_pressure")  # fmt: skip
         values = {name: getattr(self, name) for name in numbers if name in wanted or getattr(self, name) is not None}
         wrong += [f"--{_flag(name)} {value!r} must be above 0" for name, value in values.items()
                   if value is None or not 0 < value < float("inf")]  # fmt: skip
@@ -130,7 +134,20 @@ wire_mass: {{value: {WIRE_MASS * wire:.3g}, unit: kg/m}}          # ESTIMATE fro
 wire_stiffness: {{value: {WIRE_STIFFNESS * wire:.3e}, unit: N}}  # EA, ESTIMATE from the diameter
 absolute_torque_limit: {{value: {limit:.3g}, unit: N*m}}   # bound of any feedforward: YOURS to decide
 rated_load: {{value: {f.load:g}, unit: t}}          # {rated}
+{_ratings(f)}
 """
+
+
+def _ratings(f: CraneFacts) -> str:
+    """What bounds the belief in readings; a line to be filled in of each that nobody has given."""
+    slow = "of the motor shaft; of a slow motor, below 955 rpm, it also tells motion from rest"
+    known = [("rated_speed", f.rated_speed, 100, "rpm", slow)]
+    if f.displacement:
+        known.append(("rated_pressure", f.rated_pressure, 350, "bar", "peak of the motors"))
+    return "\n".join(
+        f"{'' if value else '# '}{name}: {{value: {value or such_as:g}, unit: {unit}}}   # {meaning}"
+        for name, value, such_as, unit, meaning in known
+    )
 
 
 def _falls_say(falls: int) -> str:

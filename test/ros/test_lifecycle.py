@@ -62,6 +62,7 @@ def test_a_bad_model_leaves_the_node_unconfigured(bench: Bench) -> None:
     node.set({"model_file": "a6vm215_crane1"})
     node.change("configure")
     assert node.state() == "inactive"
+    assert bench.says("compensator", "crane 'crane_150t' (hydraulic), model 'a6vm215_crane1', groups active, passive")
 
 
 def test_parameters_are_refused_with_a_reason_and_without_effect(bench: Bench) -> None:

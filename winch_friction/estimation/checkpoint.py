@@ -48,10 +48,7 @@ def restored_state(content: Mapping[str, Any], crane: Crane, seed: FrictionModel
     """
     for name, expected in {"version": VERSION, **_key(crane, seed)}.items():
         if content.get(name) != expected:
-            raise InputError(
-                f"checkpoint: {name} is {content.get(name)!r}, but this estimator has {expected!r}; "
-                "delete it to start over"
-            )
+            raise InputError(f"checkpoint: {name} is {content.get(name)!r}, but this estimator has {expected!r}")
     try:
         x = np.array(content["state"], float).reshape(size, 1)
         covariance = np.array(content["covariance"], float).reshape(size, size)
@@ -59,10 +56,10 @@ def restored_state(content: Mapping[str, Any], crane: Crane, seed: FrictionModel
         mass = float("nan") if content["mass"] is None else float(content["mass"])
         levels, widened = ([str(each) for each in content[key]] for key in ("levels", "widened"))
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"checkpoint: damaged ({error}); delete it to start over") from error
+        raise InputError(f"checkpoint: damaged ({error})") from error
     sound = _sound(x, covariance) and bool(np.isfinite(sensitivity).all()) and not mass < 0.0 and abs(mass) != np.inf
     if not sound or len(levels) != len(seed.values) or not set(widened) <= set(seed.parameter_names):
-        raise InputError("checkpoint: state and covariance are not those of a filter; delete it to start over")
+        raise InputError("checkpoint: state and covariance are not those of a filter")
     return Kept(x, 0.5 * (covariance + covariance.T), sensitivity, mass, levels, widened)
 
 

@@ -75,6 +75,8 @@ class CompensatorNode(WinchNode):
         make_ready(model, crane, len(topics.groups), ANSWERING)  # now, not while the first sample waits
         self.service = CompensatorService(crane, model, topics, config, self._service_options(), since=self.ros_now())
         self.service.set_enabled(self._wanted)
+        groups = f", groups {', '.join(topics.groups)}" if crane.drive.hydraulic else ""
+        self.get_logger().info(f"crane '{crane.name}' ({crane.drive.kind}), model '{model.name}'{groups}")
         if past := self.service.law.status()["past_corrections"]:
             self.get_logger().warning(f"model '{model.name}': over, and not taken out: {past}")
         if withheld := self.service.law.status()["withheld"]:

@@ -67,6 +67,7 @@ class EstimatorNode(WinchNode):
         periods = {"model_period": self.own.model_period, "max_age": self.own.max_age, "since": self.ros_now()}
         self.service = EstimatorService(crane, model, topics, self._config.read(self), options, **periods)
         self.law = self.service.law
+        self.get_logger().info(f"crane '{crane.name}' ({crane.drive.kind}), seed '{model.name}'")
         self._restore()
         self.service.set_enabled(self._wanted)
         self.inputs = Inputs(self, self.service, self._answer)

@@ -30,18 +30,18 @@ def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
     if not path.exists():
         return None
     if not path.is_file():  # a pipe would be waited for, and no signal heard
-        raise InputError(f"{path}: not a checkpoint, nor a file at all; delete it to start over")
+        raise InputError(f"{path}: not a checkpoint, nor a file at all")
     if path.stat().st_size > LARGEST:
         raise InputError(f"{path}: not a checkpoint: {path.stat().st_size / 1e6:.0f} MB; name another file")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a checkpoint ({error}); delete it to start over") from error
+        raise InputError(f"{path}: not a checkpoint ({error})") from error
     snapshot = content.get("snapshot") if isinstance(content, dict) else None
     if not isinstance(snapshot, dict) or content.get("schema") != SCHEMA:
-        raise InputError(f"{path}: not a checkpoint of schema '{SCHEMA}'; delete it to start over")
+        raise InputError(f"{path}: not a checkpoint of schema '{SCHEMA}'")
     if content.get("sha256") != _digest(snapshot):
-        raise InputError(f"{path}: not a checkpoint as it was written (its digest differs); delete it to start over")
+        raise InputError(f"{path}: not a checkpoint as it was written (its digest differs)")
     return snapshot
 
 

@@ -171,22 +171,6 @@ def test_from_a_load_on_a_loss_grows_with_what_is_beyond(name, share):
     assert [shape.values[onset.name] for shape in tried[0].shapes(runs)] == pytest.approx([1.5e5, 3e5, 4.5e5, 6e5])
 
 
-def test_a_loss_of_the_load_follows_the_oil():
-    """The model's own loss may be right at 40 degC: cold oil only adds to it, or takes where it carries."""
-    term = term_named("gear_load_oil")
-    level, change, power = (p.symbol for p in term.parameters)
-
-    def torque(celsius, **own):
-        at = {level: 3.0, change: 2.0, power: 0.5, symbols.T_d: 5e5, symbols.oil_temperature: celsius}
-        return float(term.equation.subs({**at, **{{"change": change, "level": level}[k]: v for k, v in own.items()}}))
-
-    assert torque(40.0) == pytest.approx(3.0)
-    assert torque(20.0, level=0.0) == pytest.approx(2.0 * (2.7**0.5 - 1.0), rel=0.1)
-    assert torque(20.0, change=-1.0) < torque(40.0, change=-1.0) < torque(60.0, change=-1.0)
-    (own,) = (each for each in module.literature() if each.law_name == "gear_load_oil")
-    assert (own.name, own.needs) == ("gear_load_loss", ("oil_temperature",))
-
-
 def test_a_level_falls_by_a_run_in_and_grows_again_by_wear():
     term = term_named("wear_bathtub")
     fall, rise, begin, lag = (p.symbol for p in term.parameters)

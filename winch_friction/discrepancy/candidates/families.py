@@ -40,7 +40,6 @@ def literature() -> list[Candidate]:
     oil, line = partial(_of, "viscosity_temperature", needs=OIL), partial(_of, "line_pressure_drop")
     wear, since = partial(_of, "wear_drift", presumes=COULOMB), friction.between_runs
     worn = partial(_of, "wear_drift", presumes=CARRYING, blind=friction.one_load)
-    way = partial(_of, "gear_asymmetry", blind=friction.no_load)
     layers = partial(_of, "layer_radius", needs=("hook_load", "wire_layer"), blind=friction.one_load)
     return [
         oil("viscosity_reference", {"T_vw": TEMPERATURES}, continuous=("T_vw",)),
@@ -84,17 +83,18 @@ def literature() -> list[Candidate]:
         line("line_laminar", needs=OIL),
         *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
         *_by_load("gear_load_loss", "gear_load", "g"),
-        _of("gear_load_loss", "gear_load_oil", {"n_gv": (0.2, 0.5, 1.0)}, needs=OIL, blind=friction.no_load),
         *_by_load("sheave_bending", "sheave", "s", presumes=("gear_load_loss",)),
         _of("sheave_bending", "sheave_stiffness", presumes=COULOMB),
-        way("gear_asymmetry_power", {"n_ep": POWERS}),
-        way("gear_one_way", {"n_gw": (0.5, 2.0), "b_gw": (-1.0, 1.0)}, continuous=("n_gw",), blind=friction.one_load),
+        _of("gear_asymmetry", "gear_asymmetry_power", {"n_ep": POWERS}, blind=friction.no_load),
+        _of("gear_asymmetry", "gear_one_way", {"n_gw": (0.5, 2.0), "b_gw": (-1.0, 1.0)}, continuous=("n_gw",),
+            blind=friction.one_load),
         # under its tension the rope sinks into the layers below: a torque of the load alone, the same both ways
         _of("layer_radius", "gear_asymmetry_power", {"n_ep": (1.5, 2.0)}, law_name="sinks in with the load",
             needs=("hook_load",), blind=friction.one_load),
         layers("layer_bedding", {"n_lb": (1.5, 2.0)}),
         layers("layer_yielding", {"n_ly": (1.0, 1.5, 2.0), "m_ly": (0.5, 2.0)}),
-        way("gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=()),
+        _of("gear_asymmetry", "gear_asymmetry", {"b_g": (-1.0, 1.0)}, law_name="one direction alone", continuous=(),
+            blind=friction.no_load),
     ]  # fmt: skip
 
 

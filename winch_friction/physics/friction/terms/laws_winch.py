@@ -2,19 +2,8 @@
 
 import sympy as sp
 
-from winch_friction.physics.friction.symbols import (
-    ALL_OF_LOAD,
-    T_d,
-    gear_ratio,
-    oil_temperature,
-    s,
-    shaft_angle,
-    time,
-    w,
-    wire_layer,
-)
+from winch_friction.physics.friction.symbols import ALL_OF_LOAD, T_d, gear_ratio, s, shaft_angle, time, w, wire_layer
 from winch_friction.physics.friction.term import Parameter, Scope, State, Term, register
-from winch_friction.physics.friction.terms.effects_winch import NU_40, viscosity
 
 REST_SPEED = 0.5  # rad/s; below it a contact ages
 SLIDING_TO_FORGET = 300.0  # rad of shaft, some turns of a gear wheel, after which the rest is forgotten
@@ -54,9 +43,6 @@ c_gp = Parameter("c_gp", "N*m", 5.0, upper=200.0, doc="loss per motor at a drum 
 n_gp = Parameter("n_gp", "1", 1.5, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 c_gf = Parameter("c_gf", "N*m", 5.0, upper=200.0, doc="loss per motor at standstill and a drum torque of 500 kN m")
 w_gf = Parameter("w_gf", "rad/s", 100.0, lower=1.0, upper=1e3, shape=True, doc="speed over which its film builds up")
-c_gv = Parameter("c_gv", "N*m", 5.0, upper=200.0, doc="loss per motor at 500 kN m and 40 degC")
-d_gv = Parameter("d_gv", "N*m", 5.0, lower=-200.0, upper=200.0, doc="what it grows by for twice (viscosity)^n_gv")
-n_gv = Parameter("n_gv", "1", 0.5, lower=0.05, upper=2.0, shape=True, doc="exponent of the viscosity")
 c_sp = Parameter("c_sp", "1", 0.02, upper=0.5, doc="loss at a drum torque of 500 kN m, share of T_d/i")
 n_sp = Parameter("n_sp", "1", 0.7, lower=0.2, upper=4.0, shape=True, doc="exponent of the drum torque")
 c_sf = Parameter("c_sf", "1", 0.01, lower=0.0, upper=0.5, doc="loss at standstill, share of T_d/i")
@@ -182,12 +168,6 @@ gear_load_film = _system(
     c_gf.symbol * _load * sp.exp(-w / w_gf.symbol),
     (c_gf, w_gf),
     "a mesh in mixed film: its friction coefficient falls as the oil is drawn in (Niemann and Winter 2003)",
-)
-gear_load_oil = _system(
-    "gear_load_oil",
-    _load * (c_gv.symbol + d_gv.symbol * (NU_40**-n_gv.symbol * viscosity(oil_temperature) ** n_gv.symbol - 1)),
-    (c_gv, d_gv, n_gv),
-    "rolling and sliding contacts drag with a power of load and viscosity (SKF 2018: 0.6; Niemann and Winter 2003)",
 )
 gear_load_saturating = _system(
     "gear_load_saturating",

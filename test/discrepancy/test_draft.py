@@ -90,13 +90,18 @@ def test_a_shared_ripple_is_fitted_to_the_training_runs_alone(monkeypatch):
     assert asked == ["of train"]
 
 
-def stepping(monkeypatch, misfits, step=1.0):
-    """Polishing where each model leaves so much; the steps are all alike."""
-    left = iter(misfits)
+def stepping(monkeypatch, misfits, step=1.0, priors=None):
+    """Polishing where each model leaves so much; the steps are all alike, and `priors` what each was asked with."""
+    left, priors = iter(misfits), [] if priors is None else priors
     known = {}
     monkeypatch.setattr(repair, "meet", lambda *_: SimpleNamespace(only=lambda _: "begun"))
     monkeypatch.setattr(repair, "meet_again", lambda _, __, ___, tried: tried)
-    monkeypatch.setattr(repair, "_step", lambda *_: (np.array([step]), 9.0 * np.eye(1), np.zeros(0)))
+
+    def one_step(_, prior, __):
+        priors.append(prior.values[0])
+        return np.array([step]), 9.0 * np.eye(1), np.zeros(0)
+
+    monkeypatch.setattr(repair, "_step", one_step)
 
     def misfit(given):
         key = given if isinstance(given, str) else given.values
@@ -123,6 +128,14 @@ def test_a_step_that_does_not_shrink_the_gap_is_not_taken_though_its_uncertainty
     polished = stepping(monkeypatch, misfits)
     assert polished.values == (value,)
     assert polished.std[0] == pytest.approx(3.0)
+
+
+def test_each_step_has_its_room_where_the_one_before_came(monkeypatch):
+    """Around the draft alone, a fit that has ten deviations to go stops after the first ten of them."""
+    priors = []
+    monkeypatch.setattr(repair, "with_room", lambda prior, tried, loose, seed: tried)
+    stepping(monkeypatch, (0.9, 1.0, 0.8, 0.9, 0.9, 0.9), priors=priors)
+    assert priors == [20.0, 21.0, 22.0]
 
 
 @pytest.mark.parametrize(("left", "std"), [(1.0, 0.4), (9.0, 1.2), (100.0, 2.0)])

@@ -48,10 +48,8 @@ class CraneFacts:
 
     def __post_init__(self) -> None:
         wanted = set(wanted_of(self.drive))
-        own = [each for each in (set(_OF_ONE_DRIVE) - wanted - {"inertia"}) if getattr(self, each)]
-        wrong = [f"--{_flag(each)} is not of --drive {self.drive}" for each in sorted(own)]
-        if self.rated_pressure and self.drive != HYDRAULIC:
-            wrong.append(f"--rated-pressure is not of --drive {self.drive}")
+        foreign = {name for name, drives in _OF_ONE_DRIVE.items() if self.drive not in drives} - {"inertia"}
+        wrong = [f"--{_flag(each)} is not of --drive {self.drive}" for each in sorted(foreign) if getattr(self, each)]
         numbers = ("load", "motors", "displacement", "gear_ratio", "radius", "layers", "wire", "inertia",
                    "torque_constant", "falls", "rated_speed", "rated_pressure")  # fmt: skip
         values = {name: getattr(self, name) for name in numbers if name in wanted or getattr(self, name) is not None}
@@ -96,7 +94,8 @@ class CraneFacts:
 
 
 # what only some drives are described by
-_OF_ONE_DRIVE = {"displacement": (HYDRAULIC,), "active": (HYDRAULIC,), "torque_constant": (CURRENT,),
+_OF_ONE_DRIVE = {"displacement": (HYDRAULIC,), "active": (HYDRAULIC,), "rated_pressure": (HYDRAULIC,),
+                 "torque_constant": (CURRENT,),
                  "inertia": tuple(kind for kind in KINDS if kind != HYDRAULIC)}  # fmt: skip
 
 

@@ -122,13 +122,12 @@ def _readings(sample: Sample) -> tuple[object, ...]:
 
 
 # -- the speed and the wire that is paid out
-# s between two readings that are compared: a counter has steps and comes late; and s of motion that are remembered
-WIRE_STEP, WIRE_MEMORY = 1.0, 20.0
+# s between two readings that are compared (a counter has steps and comes late), of motion remembered, until it counts
+WIRE_STEP, WIRE_MEMORY, WIRE_TIME = 1.0, 20.0, 2.0
 LEAST_WAY, LEAST_STEPS = 1.0, 8  # m of wire, some steps of any counter, and comparisons: a few always lie on a line
 FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
 # times that one may be the other: falls, a layer or a gear ratio that is not the crane's. Revolutions a minute are 9.5
 MOST_APART = 3.0
-WIRE_TIME = 2.0  # s of motion
 
 
 class WireAgainstSpeed:
@@ -295,6 +294,7 @@ class LoadAgainstDrive:
 
 
 def shown_by(sample: Sample) -> str:
+    """What says the load of this sample, in words."""
     if sample.hook_load == sample.hook_load:
         return "hook_load"
     return "rope_force" if sample.rope_force == sample.rope_force else "load (the parameter)"

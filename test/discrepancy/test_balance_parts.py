@@ -9,8 +9,7 @@ import pytest
 from winch_friction.discrepancy import expansion, repair
 from winch_friction.discrepancy.preparation import balance, suspended_load
 from winch_friction.discrepancy.preparation.seen import GroupSignals
-from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
-from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.correction import Correction
@@ -96,12 +95,21 @@ def test_a_load_hangs_by_its_weight_on_the_radius_and_swings_on_the_lever():
 @pytest.mark.parametrize(("damping", "length", "followed"), [(0.1, None, None), (0.1, 5.0 * ONE, None), (0.0, None, 0)])
 def test_both_accelerations_go_behind_the_same_wire(monkeypatch, damping, length, followed):
     asked = []
-    monkeypatch.setattr(suspended_load, "on_the_wire", lambda own, *mode: asked.append(mode) or 2.0 * own)
+
+    class Hung:
+        def __init__(self, *behind):
+            self.behind = behind
+
+        def acceleration(self, *mode):
+            asked.append((*self.behind[1:], *mode))
+            return 2.0 * self.behind[0]
+
+    monkeypatch.setattr(suspended_load, "Hung", Hung)
     found = LOAD.on_wire(0.02, Mode(3.0, damping), length)
     if followed == 0:
         assert found is LOAD
         return
-    assert asked == [(0.02, 3.0, damping, None)] * 2
+    assert asked == [(0.02, None, 3.0, damping)] * 2
     assert (found.acceleration[0], found.heave[0]) == (1.0, -0.4)
     assert found.mass is LOAD.mass
 

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import as_rigid, meet, swings
-from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of

@@ -13,8 +13,7 @@ from winch_friction.discrepancy.preparation.balance import without_error
 from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_steps, uniform
 from winch_friction.discrepancy.preparation.prepare import _followed, prepare
 from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups, motion_of
-from winch_friction.discrepancy.preparation.suspended_load import load_of
-from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode, load_of
 from winch_friction.discrepancy.regressors import (
     TOLERANCES,
     base_of,

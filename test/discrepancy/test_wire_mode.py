@@ -4,14 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad
-from winch_friction.discrepancy.preparation.wire_mode import (
-    DAMPING_RATIOS,
-    Mode,
-    on_the_wire,
-    swinging_load,
-    wire_stiffnesses,
-)
+from winch_friction.discrepancy.preparation import wire_mode
+from winch_friction.discrepancy.preparation.grid import smooth
+from winch_friction.discrepancy.preparation.suspended_load import Hung, Mode, SuspendedLoad
+from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.preparation.wires import agreed_damping, denies, pooled_damping, shared_damping
 
 DT, MASS, LEVER = 0.02, 55e3, 1.136 / 250
@@ -23,6 +19,12 @@ def motion(time):
     return 0.6 * np.sin(0.7 * time) + 0.8 * np.exp(-(((time % 4.5) - 2.0) ** 2) / 0.01)
 
 
+def hung(swing, rigid, length=None):
+    """The acceleration behind the mode that was found."""
+    mode = swing.mode
+    return Hung(rigid, DT, length if mode.follows else None).acceleration(mode.frequency, mode.damping)
+
+
 def test_the_mode_is_the_oscillators():
     frequency, ratio = 7.0, 0.08
 
@@ -31,14 +33,14 @@ def test_the_mode_is_the_oscillators():
 
     exact = solve_ivp(oscillator, (0, TIME[-1]), [0.0, 0.0], t_eval=TIME, max_step=0.01, rtol=1e-8)
     expected = -2 * ratio * frequency * exact.y[1] - frequency**2 * exact.y[0]
-    found = on_the_wire(motion(TIME), DT, frequency, ratio)
+    found = Hung(motion(TIME), DT).acceleration(frequency, ratio)
     assert np.abs(found - expected)[500:].std() < 0.04 * expected.std()
 
 
 @pytest.mark.parametrize("length", [50.0, None])
 def test_the_swing_is_found_and_taken_out(length):
     stiffness = 3e8 / 50.0
-    load = on_the_wire(motion(TIME), DT, np.sqrt(stiffness / MASS), 0.06)
+    load = Hung(motion(TIME), DT).acceleration(np.sqrt(stiffness / MASS), 0.06)
     noise = 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
     step = np.sign(np.cos(0.7 * TIME))
     gap = MASS * LEVER * (load - motion(TIME)) + 30.0 * step + noise
@@ -47,22 +49,22 @@ def test_the_swing_is_found_and_taken_out(length):
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, tried, step[:, None])
     assert swing.mode.frequency == pytest.approx(np.sqrt(stiffness / MASS), rel=0.02)
     assert 0.03 <= swing.mode.damping <= 0.1
-    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration) - 30.0 * step
+    left = gap + MASS * LEVER * (motion(TIME) - hung(swing, motion(TIME))) - 30.0 * step
     assert left[500:].std() < 0.25 * (gap - 30.0 * step)[500:].std()
 
 
 @pytest.mark.parametrize(("damping", "noise"), [(0.05, 5.0), (0.0, 100.0)], ids=["swings", "rigid"])
 def test_a_run_says_how_much_may_swing_and_what_of_it_each_damping_leaves(damping, noise):
     """By these runs are weighed against each other: what a single one takes for its mode is not in it."""
-    stated, rigid = 2.8, motion(TIME)
-    load = on_the_wire(rigid, DT, stated, damping) if damping else rigid
+    stated, rigid = 7.0, motion(TIME)
+    load = Hung(rigid, DT).acceleration(stated, damping) if damping else rigid
     own = noise * np.random.default_rng(4).standard_normal(len(TIME))
     gap = MASS * LEVER * (load - rigid) + own
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     swing = swinging_load(gap, everywhere, rigid, DT, MASS, lever, (stated**2 * MASS,))
     assert (swing.mode.damping > 0.0) is (damping > 0.0)
     assert swing.variance == pytest.approx(gap.var(), rel=1e-6)
-    by_ratio = [(gap + MASS * LEVER * (rigid - on_the_wire(rigid, DT, stated, r))).var() for r in DAMPING_RATIOS]
+    by_ratio = [(gap + MASS * LEVER * (rigid - Hung(rigid, DT).acceleration(stated, r))).var() for r in DAMPING_RATIOS]
     assert np.array(swing.left) * swing.variance == pytest.approx(np.array(by_ratio), rel=0.05)
     if damping:
         assert DAMPING_RATIOS[int(np.argmin(swing.left))] == damping
@@ -74,14 +76,14 @@ def test_a_run_says_how_much_may_swing_and_what_of_it_each_damping_leaves(dampin
 def test_the_swing_follows_a_wire_that_is_paid_out_in_the_run(off, inertia):
     """A tenth of the length is a twentieth of the frequency; an inertia that is wrong must not pass for it."""
     stated, rigid = 2.8, motion(TIME)
-    load = on_the_wire(rigid, DT, stated * (1.0 + off), 0.06)
+    load = Hung(rigid, DT).acceleration(stated * (1.0 + off), 0.06)
     noise = 5.0 * np.random.default_rng(2).standard_normal(len(TIME))
     gap = MASS * LEVER * (load - (1.0 + inertia) * rigid) + noise
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     step = np.sign(np.cos(0.7 * TIME))[:, None]
     swing = swinging_load(gap, everywhere, rigid, DT, MASS, lever, (stated**2 * MASS,), step, rigid[:, None])
     assert swing.mode.frequency == pytest.approx(stated * (1.0 + off), rel=0.002)
-    left = gap + MASS * LEVER * ((1.0 + inertia) * rigid - swing.acceleration)
+    left = gap + MASS * LEVER * ((1.0 + inertia) * rigid - hung(swing, rigid))
     assert left[500:].std() < 1.6 * noise.std()
 
 
@@ -105,9 +107,9 @@ def test_a_stiffness_that_follows_the_wire_is_told_from_one_that_does_not(follow
     stated = (frequency**2 * MASS,)
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, stated, length=length)
     assert swing.mode.follows == follows
-    left = gap + MASS * LEVER * (motion(TIME) - swing.acceleration)
+    left = gap + MASS * LEVER * (motion(TIME) - hung(swing, motion(TIME), length))
     blind = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, stated)
-    without = gap + MASS * LEVER * (motion(TIME) - blind.acceleration)
+    without = gap + MASS * LEVER * (motion(TIME) - hung(blind, motion(TIME)))
     assert left[500:].std() < 0.08 * gap[500:].std()
     assert not follows or left[500:].std() < 0.5 * without[500:].std()
 
@@ -138,7 +140,7 @@ def test_a_lift_to_twice_the_length_swings_by_its_own_length_at_every_moment():
 def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
     """Twenty metres between drum and tip beside fifty paid out, a modulus from a catalogue."""
     stated, frequency = 3e8 / 50.0, np.sqrt(share * 3e8 / 50.0 / MASS)
-    load = on_the_wire(motion(TIME), DT, frequency, 0.06)
+    load = Hung(motion(TIME), DT).acceleration(frequency, 0.06)
     gap = MASS * LEVER * (load - motion(TIME)) + 5.0 * np.random.default_rng(1).standard_normal(len(TIME))
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
     swing = swinging_load(gap, everywhere, motion(TIME), DT, MASS, lever, (stated,))
@@ -148,7 +150,7 @@ def test_a_wire_that_is_softer_or_stiffer_than_stated_is_found(share):
 
 def test_noise_alone_does_not_move_the_stated_stiffness():
     stated = 3e8 / 50.0
-    load = on_the_wire(motion(TIME), DT, np.sqrt(stated / MASS), 0.06)
+    load = Hung(motion(TIME), DT).acceleration(np.sqrt(stated / MASS), 0.06)
     swinging = MASS * LEVER * (load - motion(TIME))
     gap = swinging + 0.7 * swinging.std() * np.random.default_rng(1).standard_normal(len(TIME))
     everywhere, lever = np.ones(len(TIME), bool), np.full(len(TIME), LEVER)
@@ -161,7 +163,6 @@ def test_a_rigid_wire_stays_rigid():
     rigid = motion(TIME)
     swing = swinging_load(gap, np.ones(len(TIME), bool), rigid, DT, MASS, np.full(len(TIME), LEVER), (6e6,))
     assert swing.mode.damping == 0.0
-    assert np.array_equal(swing.acceleration, rigid)
 
 
 def test_a_delay_is_not_taken_for_a_wire():
@@ -173,11 +174,51 @@ def test_a_delay_is_not_taken_for_a_wire():
     assert swing.mode.damping == 0.0
 
 
+@pytest.mark.parametrize(("kick", "frequency"), [(10.0, 6.0), (75.0, 3.0)])
+def test_the_damper_stays_what_it_is_on_a_wire_four_times_as_long(kick, frequency):
+    """c / (2 m) is the rate at which a swing dies out, whatever its stiffness: half of it in ln 2 / (0.02 * 6) s."""
+    length = np.where(TIME < 70.0, 50.0, 200.0)
+    swing = Hung(np.exp(-(((TIME - kick) / 0.1) ** 2)), DT, length).acceleration(6.0, 0.02)
+    after, later = swing[int((kick + 1.0) / DT) :], int(np.log(2.0) / (0.02 * 6.0) / DT)
+    first, second = (np.abs(after[begin : begin + 500]).max() for begin in (0, later))
+    assert second == pytest.approx(0.5 * first, rel=0.1)
+    assert (np.diff(np.sign(after[:1500])) != 0).sum() == pytest.approx(30.0 * frequency / np.pi, abs=1.5)
+
+
+def test_where_only_short_stretches_count_no_means_are_taken(monkeypatch):
+    rigid, frequency = smooth(motion(TIME), 25), 1.5
+    gap = MASS * LEVER * (Hung(rigid, DT).acceleration(frequency, 0.06) - rigid)
+    given = gap, np.arange(len(TIME)) % 5 < 4, rigid, DT, MASS, np.full(len(TIME), LEVER), (frequency**2 * MASS,)
+    found = swinging_load(*given)
+    monkeypatch.setattr(wire_mode, "FINE", 0.0)
+    assert found == swinging_load(*given)
+    assert found.mode.damping > 0.0
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_means_tell_a_slow_mode_as_all_samples_do(monkeypatch, follows):
+    rigid, frequency = smooth(motion(TIME), 25), 2.5
+    length = np.linspace(40.0, 60.0, len(TIME)) if follows else None
+    load = Hung(rigid, DT, length).acceleration(frequency, 0.06)
+    lever, moving = np.full(len(TIME), LEVER), np.abs(np.sin(0.7 * TIME)) > 0.1
+    gap = MASS * LEVER * (load - rigid) + 30.0 * np.sin(0.7 * TIME)
+    friction, inertia, stated = np.sin(0.7 * TIME)[:, None], rigid[:, None], (1.04 * frequency) ** 2 * MASS
+    given = (gap, moving, rigid, DT, MASS, lever, (stated,), friction, inertia, length)
+    by_means = swinging_load(*given)
+    monkeypatch.setattr(wire_mode, "FINE", 0.0)
+    by_all = swinging_load(*given)
+    assert by_means.mode.frequency == pytest.approx(frequency, rel=0.003)
+    assert by_means.mode[:2] == pytest.approx(by_all.mode[:2], rel=0.02)
+    assert by_means.mode.follows == by_all.mode.follows == (True if follows else None)
+    assert by_means.variance == pytest.approx(by_all.variance, rel=0.02)
+    assert np.array(by_means.left) == pytest.approx(np.array(by_all.left), rel=0.1, abs=0.01)
+
+
 def test_stretches_of_motion_have_levels_of_their_own():
     rigid = motion(TIME)
-    moving = np.flatnonzero(np.abs(np.sin(0.7 * TIME)) > 0.1)
-    load = on_the_wire(rigid, DT, 7.0, 0.25)
-    friction = np.where(np.isin(np.arange(len(TIME)), moving), 400.0 * np.sign(np.sin(0.7 * TIME)), 5e3)
+    moving = np.abs(np.sin(0.7 * TIME)) > 0.1
+    load = Hung(rigid, DT).acceleration(7.0, 0.25)
+    friction = np.where(moving, 400.0 * np.sign(np.sin(0.7 * TIME)), 5e3)
     gap = MASS * LEVER * (load - rigid) + friction
     swing = swinging_load(gap, moving, rigid, DT, MASS, np.full(len(TIME), LEVER), (49.0 * MASS,))
     assert swing.mode.damping == pytest.approx(0.25, rel=0.05)

@@ -11,8 +11,8 @@ from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
-from winch_friction.discrepancy.preparation.suspended_load import STILL, heavy_by_tune, swinging_mass
-from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, Mode
+from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune, swinging_mass
+from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS
 from winch_friction.discrepancy.preparation.wires import ASKED, ringing_damping, swinging_along
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
     TOLD,
     WIRE_LENGTHS,
-    Mode,
     _best_frequency,
     _best_ratio,
     _changes,
@@ -17,7 +17,6 @@ from winch_friction.discrepancy.preparation.wire_mode import (
     _Judge,
     _mode,
     _nearby,
-    settling_time,
     wire_stiffnesses,
 )
 from winch_friction.discrepancy.preparation.wires import (
@@ -105,7 +104,7 @@ def test_a_stiffness_is_of_the_median_length_or_of_usual_ones():
     assert wire_stiffnesses(3e8, np.array([40.0, 50.0, 400.0])) == (6e6,)
     assert wire_stiffnesses(3e8, np.array([-3.0, 0.1, 0.2])) == (3e8,)  # of a metre at least
     assert wire_stiffnesses(3e8, None) == tuple(3e8 / each for each in WIRE_LENGTHS)
-    assert settling_time(8.0, 0.05) == pytest.approx(10.0)  # four times 1 / (ratio * frequency)
+    assert Mode(8.0, 0.05).settling_time == pytest.approx(10.0)  # four times 1 / (ratio * frequency)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from winch_friction.discrepancy.expansion import Given, Split
 from winch_friction.discrepancy.preparation.grid import HOLE
 from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING, PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
-from winch_friction.discrepancy.preparation.wire_mode import settling_time
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
@@ -174,7 +173,7 @@ def _untold(run: PreparedRun, crane: Crane) -> bool:
     if frequency <= 0.0:
         return bool(np.isfinite(crane.wire_stiffness) and run.used.sum() < FEWEST_MOVING)
     if damping > 0.0:
-        return len(run.groups) > 1 and settling_time(frequency, damping) > MOST_SETTLING * run.time[-1]
+        return len(run.groups) > 1 and run.wire_mode.settling_time > MOST_SETTLING * run.time[-1]
     return len(run.groups) > 1
 
 

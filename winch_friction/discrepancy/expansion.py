@@ -14,7 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
-from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes, swinging_along
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.discrepancy.thresholds import LIMITS

@@ -4,6 +4,7 @@ Recursive filters over a whole record are banded triangular systems: `scipy.sign
 but importing it brings scipy.stats and scipy.optimize, half a second of every `gap`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -187,20 +188,22 @@ def spikes_of(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
 
 # -- recursive filters
 def filtered(numerator: FloatArray, denominator: FloatArray, x: FloatArray) -> FloatArray:
-    """y with sum_i denominator_i y[k-i] = sum_i numerator_i x[k-i] from rest, shape (samples,); denominator_0 is 1.
+    """y with sum_i denominator_i y[k-i] = sum_i numerator_i x[k-i] from rest, shape (samples,); denominator_0 is 1."""
+    right = numerator[0] * x
+    for i, weight in enumerate(numerator[1:], 1):
+        right[i:] += weight * x[:-i]
+    return recursive(denominator[1:], right)
 
-    Weights are numbers, shape (order + 1,), or another at every sample k, shape (order + 1, samples).
+
+def recursive(before: Sequence[FloatArray | float], driven: FloatArray) -> FloatArray:
+    """y with y[k] + sum_i before_i y[k-i] = driven[k] from rest, shape (samples,), i from 1; `driven` is overwritten.
+
+    Weights are numbers or another at every sample k, shape (samples,).
     """
-    over, under = (
-        np.broadcast_to(np.reshape(each, (len(each), -1)), (len(each), len(x))) for each in (numerator, denominator)
-    )
-    right = over[0] * x
-    for i, weight in enumerate(over[1:], 1):
-        right[i:] += weight[i:] * x[:-i]
-    bands = np.zeros((len(under), len(x)), order="F")
-    for i, weight in enumerate(under):
-        bands[i, : len(x) - i] = weight[i:]
-    return np.asarray(dtbsv(len(denominator) - 1, bands, right, lower=1, diag=1, overwrite_x=1))
+    bands = np.zeros((len(driven), len(before) + 1)).T
+    for i, weight in enumerate(before, 1):
+        bands[i, : len(driven) - i] = weight if np.ndim(weight) == 0 else weight[i:]
+    return np.asarray(dtbsv(len(before), bands, driven, lower=1, diag=1, overwrite_x=1))
 
 
 def lagged(x: FloatArray, dt: float, time_constant: float) -> FloatArray:

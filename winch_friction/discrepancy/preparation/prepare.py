@@ -11,8 +11,8 @@ from scipy.ndimage import binary_opening, maximum_filter1d
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
-from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of, swinging_mass
-from winch_friction.discrepancy.preparation.wire_mode import Mode, Swing, settling_time, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad, load_of, swinging_mass
+from winch_friction.discrepancy.preparation.wire_mode import Swing, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.friction import FrictionModel
@@ -202,7 +202,7 @@ def _on_wire(
         if swing.mode.damping <= 0.0:
             return swing, load, rigid
     else:
-        swing = Swing(load.acceleration, mode)
+        swing = Swing(mode)
     hanging = load.on_wire(balancing.grid.dt, swing.mode, balancing.grid.columns.get("wire_out"))
     return swing, hanging, balancing.of(hanging)
 
@@ -212,13 +212,13 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance, wire: 
     leave."""
     mass, motion, columns = float(np.median(load.mass)), balancing.motion, balancing.grid.columns
     if not np.isfinite(balancing.crane.wire_stiffness) or mass <= 0.0:
-        return Swing(load.acceleration, Mode(0.0, 0.0))
+        return Swing(Mode(0.0, 0.0))
     stiffness = balancing.crane.wire_stiffness * mass / swinging_mass(mass, wire)  # a lighter load swings faster
     stiffnesses = wire_stiffnesses(stiffness, columns.get("wire_out"))
     slowest = Mode(float(np.sqrt(min(stiffnesses) / mass)), USUAL_DAMPING)
-    counts = np.flatnonzero(motion.used & _settled(balancing.grid, slowest))
-    if len(counts) < FEWEST_MOVING:
-        return Swing(load.acceleration, Mode(0.0, 0.0))
+    counts = motion.used & _settled(balancing.grid, slowest)
+    if counts.sum() < FEWEST_MOVING:
+        return Swing(Mode(0.0, 0.0))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
     swing = swinging_load(
         rigid.gap, counts, load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
@@ -240,7 +240,7 @@ def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> 
 def _settled(grid: Grid, mode: Mode) -> np.ndarray:
     if min(mode.frequency, mode.damping) <= 0.0:
         return np.ones(len(grid.time), bool)
-    return np.asarray(grid.time > min(settling_time(*mode[:2]), MOST_SETTLING * grid.time[-1]))
+    return np.asarray(grid.time > min(mode.settling_time, MOST_SETTLING * grid.time[-1]))
 
 
 def _rung_out(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np.ndarray:

@@ -5,12 +5,12 @@ behind it need not be known.
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, smooth
+from winch_friction.discrepancy.preparation.grid import Grid, recursive, smooth
 from winch_friction.discrepancy.preparation.seen import Motion
-from winch_friction.discrepancy.preparation.wire_mode import Mode, on_the_wire
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
@@ -23,6 +23,55 @@ FOLLOWS_WIRE, HEAVIEST_WIRE, HEAVIEST_UNKNOWN = 0.5, 1.5, 200.0
 # relative spread of a wire's stiffness over runs: by less a load is followed for a dozen periods; of it, what is less
 OUT_OF_TUNE, CLEARLY_CLOSER = 0.02, 0.5
 STILL, MOST_STILL = 2.0 / 3.0, 0.6  # of a wire's mass; of what hangs, of which a wire is nine tenths at most
+SETTLED = 4.0  # decay times, down to 2 %
+
+
+class Mode(NamedTuple):
+    """The load's mode on its wire: frequency rad/s and damping ratio (0: rigid) at the run's median length.
+
+    `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes. `unheard`:
+    the wire gives, but what is as fast in the load's measured motion is its sensors' noise, which would ring in it.
+    """
+
+    frequency: float
+    damping: float
+    follows: bool | None = None
+    unheard: bool = False
+
+    @property
+    def settling_time(self) -> float:
+        """Seconds in which a swing that began before the record dies out."""
+        return SETTLED / (self.damping * self.frequency)
+
+
+class Hung:
+    """What hangs on an elastic wire: accelerations m/s^2 for many a mode, from the one that a rigid wire would give.
+
+    (m s^2 + c s + k) x_load = (c s + k) x_rigid.
+
+    With the wire's `length` m at every sample the stiffness is EA over it, and the mode that at its median; the damper
+    stays what it is.
+    """
+
+    def __init__(self, rigid: FloatArray, dt: float, length: FloatArray | None = None) -> None:
+        self._begin = rigid[0]  # at rest before the first sample
+        moved = rigid - self._begin
+        self._sums, self._differences = moved.copy(), moved.copy()
+        self._sums[1:] += 2.0 * moved[:-1]
+        self._sums[2:] += moved[:-2]
+        self._differences[2:] -= moved[:-2]
+        self._faster: FloatArray | float = 1.0 if length is None else np.sqrt(np.median(length) / length)
+        self._half = 0.5 * dt * self._faster
+
+    def acceleration(self, frequency: float, ratio: float) -> FloatArray:
+        """Behind the mode of this frequency, rad/s, and damping ratio: bilinear, exact at the mode."""
+        tangent = np.tan(frequency * self._half)
+        square = tangent * tangent
+        damped = 2.0 * ratio * tangent / self._faster
+        scale = 1.0 / (1.0 + square + damped)
+        driven = (square * self._sums + damped * self._differences) * scale
+        before = 2.0 * (square - 1.0) * scale, (1.0 + square - damped) * scale
+        return self._begin + recursive(before, driven)
 
 
 @dataclass(frozen=True)
@@ -55,9 +104,9 @@ class SuspendedLoad:
         """The load behind the wire's mode, whose `length` m it may follow; as it is where nothing is heard of one."""
         if mode.damping <= 0.0 or mode.unheard:
             return self
-        own = (dt, mode.frequency, mode.damping, length if mode.follows else None)
-        moved = on_the_wire(self.acceleration, *own), on_the_wire(self.heave, *own)
-        return replace(self, acceleration=moved[0], heave=moved[1])
+        followed = length if mode.follows else None
+        moved = (Hung(each, dt, followed).acceleration(*mode[:2]) for each in (self.acceleration, self.heave))
+        return replace(self, acceleration=next(moved), heave=next(moved))
 
 
 def swinging_mass(hanging: float, wire: float) -> float:

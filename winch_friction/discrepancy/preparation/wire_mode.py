@@ -1,18 +1,18 @@
 """The load on its elastic wire: the acceleration that the pressures feel, from the one that a rigid wire would give.
 
-(m s^2 + c s + k) x_load = (c s + k) x_rigid. Stiffness k = EA / wire_out is known where the crane file and the log say
-so; the damping is nobody's datum and is chosen by what leaves least swinging in the gap.
+Stiffness k = EA / wire_out is known where the crane file and the log say so; the damping is nobody's datum and is
+chosen by what leaves least swinging in the gap.
 """
 
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import filtered, smooth
+from winch_friction.discrepancy.preparation.grid import smooth
+from winch_friction.discrepancy.preparation.suspended_load import Hung, Mode
 from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)
@@ -32,28 +32,17 @@ LEAST_GAIN = 0.5  # of the swinging's variance, what a delay explains left out; 
 # length is unknown, a delay or a wrong inertia looks like a wire that is damped more or leaves more
 MOST_DAMPED, MOST_LEFT = 0.5, 0.1
 TURN = 2.0 * np.pi  # rad; a parabola over two periods of a mode follows what is slower than half of it
-SETTLED = 4.0  # decay times, down to 2 %
 NOTHING_OWN = 1e-12  # of a column's size: what is left of it beside others is rounding
 # rad a sample: a mode of four samples is still told from none, and one of six has its damping told
 FOLLOWED, TOLD = 1.5, 1.0
-
-
-class Mode(NamedTuple):
-    """The load's mode on its wire: frequency rad/s and damping ratio (0: rigid) at the run's median length.
-
-    `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes. `unheard`:
-    the wire gives, but what is as fast in the load's measured motion is its sensors' noise, which would ring in it.
-    """
-
-    frequency: float
-    damping: float
-    follows: bool | None = None
-    unheard: bool = False
+# rad a sample: a mode is told by means over so many, which at its double are half a percent off; where short stretches
+# count, by every sample, as means would keep less than this share of what counts
+FINE, KEPT = 0.2, 0.5
 
 
 @dataclass(frozen=True)
 class Swing:
-    """Load acceleration m/s^2 with the wire's mode.
+    """The wire's mode.
 
     `left` are the shares of the swinging that a mode of each of `DAMPING_RATIOS` would leave at its own or else at the
     stated frequency; empty where none is stated, or the samples cannot follow it. `variance` is that of all that may
@@ -61,7 +50,6 @@ class Swing:
     it tells of the sensors alone, and of no wire.
     """
 
-    acceleration: FloatArray
     mode: Mode
     left: tuple[float, ...] = ()
     variance: float = 0.0
@@ -89,34 +77,48 @@ def swinging_load(
     known and changes, the stiffness follows it if that leaves less.
     """
 
-    def change(length: FloatArray | None, frequency: float, ratio: float) -> FloatArray:
-        return mass * lever * (rigid - on_the_wire(rigid, dt, frequency, ratio, length))
-
-    besides = [each for each in (friction, hiding) if each is not None]
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
-    judge = _Judge(gap, counts, partial(change, None), besides)
+    besides = [each for each in (friction, hiding) if each is not None]
+    factor = int(FINE / (max(frequencies, default=np.inf) * dt))
+    if factor > 1:
+        whole = _over(factor, counts) == 1.0
+        if whole.mean() >= KEPT * counts.mean():
+            gap, rigid, lever, *besides = (_over(factor, each) for each in (gap, rigid, lever, *besides))
+            length, dt = None if length is None else _over(factor, length), factor * dt
+            counts = whole
+    heavy = mass * lever
+
+    def change(hung: Hung, frequency: float, ratio: float) -> FloatArray:
+        return heavy * (rigid - hung.acceleration(frequency, ratio))
+
+    judge = _Judge(gap, counts, partial(change, Hung(rigid, dt)), besides)
     first = min(len(besides), 1)
     if len(frequencies) == 1 and _changes(length):  # one that pays out twice its length swings by none in the middle
-        followed = judge.of(partial(change, length))
+        followed = judge.of(partial(change, Hung(rigid, dt, length)))
         judge = min((judge, followed), key=lambda each: min(each.by_damping(first, frequencies[0])))
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
         if ratio > 0.0:
             if len(frequencies) > 1:
-                return Swing(on_the_wire(rigid, dt, frequency, ratio), Mode(frequency, ratio))
+                return Swing(Mode(frequency, ratio))
             lengths: list[FloatArray | None] = [None, *([length] if _changes(length) else [])]
-            judges = [judge.of(partial(change, own)) for own in lengths]
+            judges = [judge.of(partial(change, Hung(rigid, dt, own))) for own in lengths]
             tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
             own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
-            moved = on_the_wire(rigid, dt, mode.frequency, mode.damping, lengths[own])
-            return Swing(moved, mode, judges[own].by_damping(first, mode.frequency), judge.swinging(first))
+            return Swing(mode, judges[own].by_damping(first, mode.frequency), judge.swinging(first))
     variance = judge.swinging(first)
     if len(frequencies) != 1:
-        return Swing(rigid, Mode(0.0, 0.0), (), variance)
+        return Swing(Mode(0.0, 0.0), (), variance)
     slow = smooth(rigid, int(2.0 * TURN / (frequencies[0] * dt)))
-    noise = judge.swinging(first, mass * lever * (rigid - slow)) <= variance
-    return Swing(rigid, Mode(0.0, 0.0), judge.by_damping(first, frequencies[0]), variance, noise)
+    noise = judge.swinging(first, heavy * (rigid - slow)) <= variance
+    return Swing(Mode(0.0, 0.0), judge.by_damping(first, frequencies[0]), variance, noise)
+
+
+def _over(samples: int, values: np.ndarray) -> FloatArray:
+    """Means over so many samples each, without what is left at the end."""
+    whole = len(values) // samples * samples
+    return np.asarray(values[:whole].reshape(-1, samples, *values.shape[1:]).mean(axis=1))
 
 
 def _mode(left: Callable[[float, float], float], frequencies: Sequence[float]) -> tuple[float, float]:
@@ -196,9 +198,9 @@ class _Judge:
         change: Callable[[float, float], FloatArray],
         besides: Sequence[FloatArray],
     ) -> None:
-        self._samples = np.flatnonzero(counts) if counts.dtype == bool else counts
-        self._stretch = np.concatenate([[0], np.cumsum(np.diff(self._samples) > 1)])
-        self._size = np.bincount(self._stretch)
+        self._samples = np.flatnonzero(counts)
+        self._begins = np.flatnonzero(np.diff(self._samples, prepend=-2) > 1)
+        self._sizes = np.diff(self._begins, append=len(self._samples))
         self._gap = self._levelled(gap)
         self._change = change
         self._widths = np.cumsum([0] + [each.shape[1] for each in besides])
@@ -248,33 +250,8 @@ class _Judge:
 
     def _levelled(self, values: FloatArray) -> FloatArray:
         own = values[self._samples]
-        means = np.bincount(self._stretch, weights=own) / self._size
-        return np.asarray(own - means[self._stretch])
-
-
-def on_the_wire(
-    rigid: FloatArray, dt: float, frequency: float, ratio: float, length: FloatArray | None = None
-) -> FloatArray:
-    """Load acceleration behind the wire's mode (frequency rad/s, damping ratio), bilinear and exact at the mode.
-
-    With the wire's `length` m at every sample the stiffness is EA over it, and the mode that at its median; the damper
-    stays what it is.
-    """
-    own: FloatArray | float = frequency
-    if length is not None:
-        own = frequency * np.sqrt(np.median(length) / length)
-    warped = own / np.tan(0.5 * own * dt)
-    first = 2.0 * ratio * frequency * warped
-    square, mode = warped**2, own**2
-    numerator = np.array([mode + first, 2.0 * mode, mode - first])
-    denominator = np.array([square + first + mode, 2.0 * (mode - square), square - first + mode])
-    numerator, denominator = numerator / denominator[0], denominator / denominator[0]
-    return rigid[0] + filtered(numerator, denominator, rigid - rigid[0])  # at rest before the first sample
-
-
-def settling_time(frequency: float, ratio: float) -> float:
-    """Seconds in which a swing on an elastic wire that began before the record dies out."""
-    return SETTLED / (ratio * frequency)
+        own -= np.repeat(np.add.reduceat(own, self._begins) / self._sizes, self._sizes)
+        return own
 
 
 def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterable[float]:

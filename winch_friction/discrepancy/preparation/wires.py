@@ -6,15 +6,8 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.suspended_load import STILL, heavy_by_tune
-from winch_friction.discrepancy.preparation.wire_mode import (
-    DAMPING_RATIOS,
-    FOLLOWED,
-    LEAST_GAIN,
-    MOST_DAMPED,
-    TOLD,
-    Mode,
-)
+from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune
+from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, FOLLOWED, LEAST_GAIN, MOST_DAMPED, TOLD
 from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch import Crane
 

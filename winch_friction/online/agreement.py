@@ -13,7 +13,7 @@ import numpy as np
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
-from winch_friction.physics.channels import column_unit
+from winch_friction.physics.channels import column_unit, out_of_range
 from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, Change, ChannelRanges
@@ -110,8 +110,7 @@ class Plausibility:
             known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
         lower, upper, change = known
         if not lower <= value <= upper:
-            unit = _unit(column)
-            return f"{value:.4g}{unit} is outside {lower:.4g} ... {upper:.4g}{unit}"
+            return out_of_range(column, value, lower, upper)
         if change is not None:
             last = self._last.get(column)
             if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):

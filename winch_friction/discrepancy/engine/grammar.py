@@ -63,9 +63,10 @@ class Scored:
 
 @dataclass(frozen=True)
 class _Part:
-    """Which blocks, their weighted base columns and gaps, and the normal equations of the base."""
+    """Which blocks, their weighted base columns and gaps, and the normal equations of the base, with room for one
+    column more at the end."""
 
-    chosen: np.ndarray
+    chosen: np.ndarray | slice
     x: FloatArray
     y: FloatArray
     h: FloatArray
@@ -90,21 +91,23 @@ class Grammar:
         self.unit = torque * blocks.weight
         self.direction = direction
         self.fold = cross.fold_of_block
-        self.parts: dict[int | None, _Part] = {None: self._part(np.ones(len(self.y), bool))}
+        layout = cross.problem.layout
+        self.lower, self.upper = np.append(layout.lower[self.own], -np.inf), np.append(layout.upper[self.own], np.inf)
+        self.parts: dict[int | None, _Part] = {None: self._part(slice(None))}
         self.parts |= {int(fold): self._part(self.fold != fold) for fold in np.unique(self.fold)}
 
-    def _part(self, chosen: np.ndarray) -> "_Part":
+    def _part(self, chosen: np.ndarray | slice) -> "_Part":
         """The base's own sums over some blocks, its prior included."""
         x, y, problem = self.x[chosen], self.y[chosen], self.cross.problem
-        h, g, k = x.T @ x, x.T @ y, len(problem.base.names)
+        h, g, k = np.pad(x.T @ x, (0, 1)), np.append(x.T @ y, 0.0), len(problem.base.names)
         h[np.arange(k), np.arange(k)] += LIMITS.prior_weight
         g[:k] -= LIMITS.prior_weight * problem.base.shift
         return _Part(chosen, x, y, h, g)
 
     def column(self, law: Law, values: Values) -> FloatArray:
         """What one unit of a law adds to the gap, weighted."""
-        product = np.ones((1, len(self.y)))
-        for factor in law.factors:
+        product = values[law.factors[0]]
+        for factor in law.factors[1:]:
             product = product * values[factor]
         if len(product) > 1:
             product = (product * (self.members if law.each else self.members > 0)).sum(axis=0, keepdims=True)
@@ -133,12 +136,12 @@ class Grammar:
 
     def _fit(self, z: FloatArray, fold: int | None) -> tuple[float, FloatArray]:
         """Amount and the base's coefficients, these inside their bounds and held to their prior; `fold` left out."""
-        part, layout = self.parts[fold], self.cross.problem.layout
+        part = self.parts[fold]
         own = z[part.chosen]
-        cross, power = part.x.T @ own, float(own @ own)
-        h = np.block([[part.h, cross[:, None]], [cross[None], np.array([[power * (1.0 + 1e-9) + 1e-9]])]])
-        lower, upper = np.append(layout.lower[self.own], -np.inf), np.append(layout.upper[self.own], np.inf)
-        beta = bounded_fit(h, np.append(part.g, own @ part.y), lower, upper)
+        h, g = part.h.copy(), part.g.copy()
+        h[-1, :-1] = h[:-1, -1] = part.x.T @ own
+        h[-1, -1], g[-1] = float(own @ own) * (1.0 + 1e-9) + 1e-9, own @ part.y
+        beta = bounded_fit(h, g, self.lower, self.upper)
         return float(beta[-1]), beta[:-1]
 
     def search(self, values: Values) -> list[Scored]:

@@ -7,10 +7,18 @@ import pytest
 from cycles import SPEEDS, TABLE_2, cycle, cycles
 
 from winch_friction.identification.fit_data import modelled
-from winch_friction.identification.friction_curve import _branch, curve_data, friction_curve, winch_points
-from winch_friction.identification.plateaus import Plateau, PlateauRule, find_plateaus
+from winch_friction.identification.friction_curve import _branch, _common_grid, curve_data, friction_curve, winch_points
+from winch_friction.identification.plateaus import (
+    Plateau,
+    PlateauRule,
+    _changes,
+    _level_from,
+    _statistics,
+    find_plateaus,
+)
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import ORDER
 from winch_friction.physics.signals import Run
 
 
@@ -233,3 +241,146 @@ def test_a_plateau_is_as_long_as_it_is_whenever_it_was_logged(truth, crane):
     late = [(each.start - 1.7e9, each.end - 1.7e9) for each in find_plateaus(dated, crane, rule)]
     np.testing.assert_allclose(late, long, atol=1e-5)
     assert find_plateaus(dated, crane, PlateauRule(duration=60.0)) == []
+
+
+# -- the rule and the statistics, by figures
+def logged(speed, step=0.02, **more):
+    """At these speeds in rpm, with everything else as constant as can be."""
+    one = np.ones(len(speed))
+    columns = {
+        "time": step * np.arange(len(speed)), "motor_speed": np.asarray(speed) * RPM, "main.pressure_a": 150e5 * one,
+        "main.pressure_b": 25e5 * one, "main.displacement": 215 * CM3_PER_REV * one, "hook_load": 5e4 * one,
+    }  # fmt: skip
+    return Run("log", {**columns, **more})
+
+
+LAX = {"drift": 1e3, "band": 1e3}  # so that the slope alone decides
+
+
+@pytest.mark.parametrize(
+    ("speed", "rule", "found"),
+    [
+        (np.full(184, 50.0), {}, False),  # 3.68 s: half a window at either end, the first second: 1.48 s are left
+        (np.full(188, 50.0), {}, True),
+        (np.full(250, 3.9), {}, False),
+        (np.full(250, -4.1), {}, True),
+        (100.0 + 11.5 * np.linspace(0.0, 5.0, 250), {"relative_slope": 0.0, **LAX}, True),
+        (100.0 + 12.5 * np.linspace(0.0, 5.0, 250), {"relative_slope": 0.0, **LAX}, False),
+        (-500.0 * np.exp(0.0194 * np.linspace(0.0, 5.0, 250)), {"slope": 0.0, **LAX}, True),
+        (-500.0 * np.exp(0.0206 * np.linspace(0.0, 5.0, 250)), {"slope": 0.0, **LAX}, False),
+        (-1000.0 + 4.7 * np.linspace(-2.5, 2.5, 250), {}, True),  # 3 rpm/s and 2 per mille of the speed a second
+        (-1000.0 - 4.7 * np.linspace(-2.5, 2.5, 250), {}, True),
+        (1000.0 - 5.3 * np.linspace(-2.5, 2.5, 250), {}, False),
+        (-1000.0 - 5.3 * np.linspace(-2.5, 2.5, 250), {}, False),
+    ],
+)
+def test_what_is_steady_long_and_fast_enough_is_a_plateau_and_what_is_hardly_less_is_none(crane, speed, rule, found):
+    assert len(find_plateaus(logged(speed), crane, PlateauRule(**rule))) == found
+
+
+@pytest.mark.parametrize("final", [50.0, -50.0])
+def test_the_band_is_eight_rpm_and_two_per_cent_about_where_the_speed_ends(final):
+    mean = final + np.array([40.0, 9.2, -8.8, 8.8, -9.2, 8.8, -8.8, 5.0, 0.0, 99.0])
+    assert _level_from(mean * RPM, 0, 9, PlateauRule()) == 5
+    assert _level_from(mean * RPM, 6, 9, PlateauRule()) == 6
+
+
+def test_slow_motors_have_the_same_plateaus_in_proportion(crane):
+    rng = np.random.default_rng(7)
+    level = np.repeat([2.0, 5.0, 30.0, 300.0, -3.0, -5.0, -320.0, 900.0], 250)
+    creeping = level + np.convolve(4.0 * rng.normal(size=len(level)), np.ones(50) / 50.0, mode="same")
+    creeping[800:900] += 12.0 * np.exp(-np.arange(100) / 20.0)
+    slow = replace(crane, rated_speed=20.0)
+    assert slow.speed_scale < 0.5
+    found, wanted = find_plateaus(logged(slow.speed_scale * creeping), slow), find_plateaus(logged(creeping), crane)
+    assert len(wanted) > 3
+    assert [(each.start, each.end) for each in found] == [(each.start, each.end) for each in wanted]
+
+
+def test_a_hole_in_the_log_changes_no_window(crane):
+    """The usual step counts for the window, and the time between two samples for a slope over the hole."""
+    speed = np.repeat([100.0, 300.0], 300)
+    run = logged(speed)
+    late = run.time + np.where(np.arange(600) < 300, 0.0, 100.0)
+    found = find_plateaus(replace(run, columns={**run.columns, "time": late}), crane)
+    wanted = find_plateaus(run, crane)
+    assert found[0].samples == pytest.approx(wanted[0].samples, abs=31)
+    assert found[-1].end == pytest.approx(wanted[-1].end + 100.0)
+    assert found[0].start == wanted[0].start
+
+
+@pytest.mark.parametrize(("share", "moves"), [(1.018, False), (1.022, True), (0.982, False), (0.978, True)])
+def test_a_displacement_is_on_the_move_from_two_per_cent_over_the_window_on(share, moves):
+    shown = 3e-5 * np.repeat([1.0, share], 50)
+    moved = _changes(shown, 10)
+    assert moved.any() == moves
+    assert not moved[:30].any()
+    assert not moved[70:].any()
+
+
+@pytest.mark.parametrize(("rows", "few"), [(19, True), (20, False)])
+def test_twenty_samples_are_enough_to_look_at(crane, rows, few):
+    if few:
+        with pytest.raises(InputError, match="log: 19 samples are too few"):
+            find_plateaus(logged(np.full(rows, 50.0)), crane)
+    else:
+        assert find_plateaus(logged(np.full(rows, 50.0)), crane) == []
+
+
+def test_a_plateaus_figures_are_those_of_its_own_samples():
+    n = 12
+    speed, drop, torque = np.arange(n) ** 2.0, 1e5 * np.arange(n) ** 3.0, 1e5 + np.arange(n) ** 2.0
+    more = {"main.pressure_a": 25e5 + drop, "main.displacement": 3e-5 + 1e-7 * np.arange(n) ** 2.0}
+    own = slice(3, 11)
+    found = _statistics(logged(speed / RPM, **more), "main", torque, own)
+    assert (found.run, found.start, found.end, found.samples) == ("log", 0.06, 0.2, 8)
+    assert found.speed == pytest.approx(np.sum(np.arange(3, 11) ** 2) / 8.0)
+    assert found.speed_std == pytest.approx(np.sqrt(np.mean((np.arange(3, 11) ** 2 - found.speed) ** 2)))
+    assert found.pressure_drop == pytest.approx(np.mean(np.arange(3, 11) ** 3) * 1e5)
+    assert found.displacement == pytest.approx(3e-5 + 1e-7 * found.speed)
+    assert found.drum_torque == pytest.approx(1e5 + found.speed)
+    parts = [np.mean([k**3.0, (k + 1) ** 3.0]) * 1e5 for k in (3, 5, 7, 9)]
+    assert found.pressure_error == pytest.approx(np.std(parts, ddof=1) / 2.0)
+
+
+@pytest.mark.parametrize(("apart", "first"), [(4.5, 125.0), (5.5, 100.0)])
+@pytest.mark.parametrize("rated", [None, 10.0])
+def test_speeds_less_than_five_rpm_apart_are_one_or_less_of_slow_motors(crane, rated, apart, first):
+    """One level, at the mean of both, begins beyond the grid's 100 rpm."""
+    own = replace(crane, rated_speed=rated) if rated else crane
+    speeds = [own.speed_scale * each for each in (100.0, 100.0 + apart, 200.0)]
+    curve = friction_curve([level(sign * speed, 100.0 + sign) for sign in (1.0, -1.0) for speed in speeds], own)
+    wanted = np.arange(first, 201.0, 25.0) * own.speed_scale
+    np.testing.assert_allclose(curve.speed / RPM, wanted)
+
+
+def test_a_curve_begins_and_ends_on_the_grid_though_means_are_rounded():
+    for off in (-1e-13, 1e-13):
+        speeds = np.array([100.0, 300.0]) * RPM * (1.0 + off)
+        np.testing.assert_allclose(_common_grid(speeds, speeds, "t", 25.0 * RPM) / RPM, np.arange(100.0, 301.0, 25.0))
+
+
+def test_a_curve_has_the_means_of_its_plateaus_and_a_friction_below_nothing_is_said_as_that(crane):
+    plateaus = [
+        replace(level(sign * speed, 100.0 - 2.0 * sign), displacement=swept * CM3_PER_REV, drum_torque=1e6)
+        for sign, speed, swept in ((1, 100, 200.0), (1, 300, 204.0), (-1, 100, 212.0), (-1, 300, 216.0))
+    ]
+    curve = friction_curve(plateaus, crane)
+    assert curve.displacement == pytest.approx(208.0 * CM3_PER_REV)
+    assert (curve.drum_torque, curve.motors) == (1e6, 11)
+    assert curve.load_torque == pytest.approx(1e6 / 250.0 / 11.0)
+    np.testing.assert_allclose(curve.friction_pressure, -2.0 * BAR)
+    np.testing.assert_allclose(curve.friction_torque, -2.0 * BAR * 208.0 * CM3_PER_REV)
+
+
+def test_no_test_is_nothing_to_fit():
+    with pytest.raises(InputError, match="^friction tests: no test is left to fit$"):
+        curve_data([])
+
+
+def test_friction_while_lowering_is_asked_by_its_magnitude():
+    one = np.ones(2)
+    point = dict(zip(ORDER, winch_points(np.array([-20.0, 30.0]), 1e7 * one, 3e-5 * one, 1e5 * one, 11), strict=False))
+    assert point["speed"].tolist() == [20.0, 30.0]
+    assert point["direction"].tolist() == [1.0, 1.0]
+    assert point["motor_total"].tolist() == [11.0, 11.0]

@@ -7,11 +7,25 @@ import pytest
 from cycles import cycle
 
 from winch_friction.identification.friction_curve import FrictionCurve
-from winch_friction.identification.verification import PressureCheck, inertia_torque, pressure_check
+from winch_friction.identification.verification import (
+    PressureCheck,
+    TestError,
+    _even,
+    _load_acceleration,
+    _pieces,
+    _points,
+    _smooth,
+    _step,
+    _through_standstill,
+    _turns,
+    inertia_torque,
+    pressure_check,
+)
 from winch_friction.identification.verification import test_errors as errors_of
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import term_named
+from winch_friction.physics.friction.compiled import ORDER
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import operating_point
 
@@ -239,3 +253,166 @@ def test_a_displacement_feedback_that_shows_too_much_is_taken_out(truth, crane):
     wrong = Run("ahc", shown)
     assert pressure_check(wrong, crane, truth, 0.03).moving_rms < 0.6 * BAR
     assert pressure_check(wrong, crane, truth).moving_rms > 2.0 * BAR
+
+
+# -- the parts of a prediction, by figures
+def test_two_hundred_and_fifty_rpm_is_above_the_border_and_no_point_has_no_error():
+    speed, error = np.array([100.0, 249.0, 250.0, 300.0]) * RPM, np.array([1.0, -4.0, -3.0, 2.0])
+    each = TestError("t", speed, 7.0 * np.ones(4), 7.0 + error, 50.0)
+    assert (each.worst(True), each.worst(False)) == (pytest.approx(6.0), pytest.approx(8.0))
+    assert each.percent.tolist() == pytest.approx([2.0, -8.0, -6.0, 4.0])
+    slow = replace(each, speed=0.5 * speed)
+    assert np.isnan(slow.worst(True))
+    assert slow.worst(False) == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(("share", "own"), [(0.09, False), (0.11, True)])
+def test_a_tenth_of_the_heaviest_load_is_a_load(truth, share, own):
+    def curve(load):
+        level = np.full(2, load)
+        return FrictionCurve("t", np.array([10.0, 20.0]), level, 0.9 * level, 3e-5, 11 * 250 * load, 11, load)
+
+    assert errors_of(truth, [curve(share * 600.0), curve(600.0)])[0].nominal == pytest.approx(
+        share * 600.0 if own else 600.0
+    )
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.25])
+def test_what_turns_and_what_hoists_begins_at_a_speed_in_proportion_to_the_motors(scale):
+    speed = np.array([0.95, 1.02, 1.1, -1.02, -1.1]) * scale  # rad/s; of 10 rpm, 1.047, the latter are beyond
+    error = np.array([100.0, 2.0, 8.0, -6.0, 5.0]) * BAR
+    check = PressureCheck("r", "main", np.arange(5.0), speed, np.zeros(5), error, scale)
+    assert check.moving_rms == pytest.approx(np.sqrt((4.0 + 64.0 + 36.0 + 25.0) / 4.0) * BAR)
+    assert check.mean_error(+1) == pytest.approx(8.0 * BAR)
+    assert check.mean_error(-1) == pytest.approx(5.0 * BAR)
+
+
+def test_the_active_group_drives_whatever_the_order_of_the_columns(truth, crane):
+    run = ahc_run(truth, crane)
+    turned = Run("ahc", {name: run[name] for name in sorted(run.columns, reverse=True)})
+    assert turned.groups == ("passive", "active")
+    check = pressure_check(turned, crane, truth)
+    assert check.group == "active"
+    assert check.predicted == pytest.approx(pressure_check(run, crane, truth).predicted)
+
+
+def test_the_predicted_pressure_knows_nothing_of_the_one_that_is_held_against_it(truth, crane):
+    """Neither by the friction, which depends on the driving group's own pressure, nor by anything else."""
+    run = ahc_run(truth, crane)
+    tared = Run("tared", {**run.columns, "active.pressure_a": run["active.pressure_a"] + 40 * BAR})
+    plain, other = (pressure_check(each, crane, truth) for each in (run, tared))
+    np.testing.assert_allclose(other.predicted, plain.predicted, atol=1.0)
+    np.testing.assert_allclose(other.measured - plain.measured, 40 * BAR)
+
+
+def test_a_tip_whose_motion_has_gaps_is_refused(truth, crane):
+    run = ahc_run(truth, crane)
+    heave = np.zeros(len(run))
+    heave[3] = np.nan
+    with pytest.raises(InputError, match="row 5: column 'heave_velocity'"):
+        pressure_check(Run("tip", {**run.columns, "heave_velocity": heave}), crane, truth)
+
+
+def plain_run(time, **columns):
+    return Run("r", {"time": np.asarray(time, float), **{k: np.asarray(v, float) for k, v in columns.items()}})
+
+
+def test_three_seconds_are_a_hole_and_ten_samples_are_a_piece():
+    steps = [0.1] * 9 + [2.9] + [0.1] * 4 + [3.1] + [0.1] * 8 + [5.0] + [0.1] * 9
+    time = np.cumsum([0.0, *steps])
+    pieces = _pieces(plain_run(time, motor_speed=np.arange(len(time))))
+    assert [len(piece) for piece in pieces] == [15, 10]  # and the nine between are none
+    assert [piece["motor_speed"][0] for piece in pieces] == [0.0, 24.0]
+
+
+def test_lost_rows_are_lines_and_the_layer_is_that_of_the_nearer_row():
+    time = np.array([0.0, 1.0, 2.0, 5.0, 6.0, 8.0])
+    layer = [2.0, 2.0, 2.0, 3.0, 3.0, 4.0]
+    found = _even(plain_run(time, motor_speed=10.0 * time, wire_layer=layer))
+    assert found.time.tolist() == np.arange(9.0).tolist()
+    assert found["motor_speed"] == pytest.approx(10.0 * np.arange(9.0))
+    assert found["wire_layer"].tolist() == [2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0, 4.0]
+    even = plain_run([0.0, 1.0, 2.4, 3.0, 4.0])
+    assert _even(even) is even
+
+
+@pytest.mark.parametrize(
+    ("moving", "said"),
+    [
+        ([0, 0, 1, 1, 0, 0, 1], [0.0, 15.0, 30.0, 40.0, 30.0, 20.0, 10.0]),  # begins at rest: from none
+        ([1, 0, 0, 1, 0, 0, 0], [10.0, 20.0, 30.0, 40.0, 40.0, 40.0, 40.0]),  # ends at rest: stays
+    ],
+)
+def test_friction_turns_over_evenly_through_standstill(moving, said):
+    friction = np.where(moving, [10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 10.0], -999.0)
+    assert _through_standstill(np.arange(7.0), friction, np.array(moving, bool)) == pytest.approx(said)
+
+
+@pytest.mark.parametrize("slow", [False, True])
+def test_a_winch_sticks_below_half_a_radian_per_second_or_as_much_less_as_its_motors_are_slower(crane, slow):
+    own = replace(crane, rated_speed=5.0) if slow else crane
+    assert (own.speed_scale < 1.0) == slow
+    for speed, turns in ((0.48, False), (-0.52, True)):
+        run = plain_run(0.02 * np.arange(50), motor_speed=np.full(50, speed * own.speed_scale))
+        assert _turns(run, own).tolist() == [turns] * 50
+
+
+@pytest.mark.parametrize(("step", "rows", "wide"), [(0.018, 200, 11), (0.013, 200, 15), (0.1, 200, 5), (0.02, 8, 7)])
+def test_a_speed_is_smoothed_by_parabolas_over_a_fifth_of_a_second_but_five_samples(step, rows, wide):
+    time = step * np.arange(rows)
+    run = plain_run(time)
+    assert _smooth(run, 3.0 * time**2 - time, 0) == pytest.approx(3.0 * time**2 - time, abs=1e-9)
+    assert _smooth(run, 3.0 * time**2 - time, 1) == pytest.approx(6.0 * time - 1.0, abs=1e-9)
+    if rows > 2 * wide:
+        struck = np.flatnonzero(np.abs(_smooth(run, 1.0 * (np.arange(rows) == 100), 0)) > 1e-12)
+        assert (struck[0], struck[-1]) == (100 - wide // 2, 100 + wide // 2)
+
+
+def test_a_step_is_the_usual_one_beside_a_hole():
+    assert _step(plain_run([0.0, 0.1, 0.2, 0.3, 2.8, 2.9])) == pytest.approx(0.1)
+
+
+def swinging(crane, speed, step, length, load=55e3, **more):
+    time = step * np.arange(len(speed))
+    return plain_run(time, motor_speed=speed, hook_load=np.full_like(time, load), wire_out=length, **more)
+
+
+def test_a_load_swings_at_its_wires_frequency_as_far_as_the_damping_lets_it(crane):
+    """m v' = k x + c x' with x' = u - v: at the natural frequency v' is sqrt(k^2 + c^2 w^2) / (c w) times u'. A counter
+    is taken in its mean, without what it does not say."""
+    mass, step, damped = 30e3, 0.004, 1.5e5
+    length = np.where(np.arange(15000) % 2, 95.0, 105.0)
+    length[::10] = np.nan
+    stiffness = crane.wire_stiffness / np.nanmean(length)
+    natural = np.sqrt(stiffness / mass)
+    wire_speed = np.sin(natural * step * np.arange(15000))
+    run = swinging(crane, np.zeros(15000), step, length, mass)
+    found = np.abs(_load_acceleration(run, crane, wire_speed)[10000:]).max() / natural
+    assert found == pytest.approx(np.hypot(stiffness, damped * natural) / (damped * natural), rel=0.01)
+
+
+def test_a_load_that_is_held_still_in_a_heaving_sea_takes_no_torque(crane):
+    """The motor pays out what the tip rises by; without the motor the load rises with the tip."""
+    time = 0.02 * np.arange(1000)
+    tip = np.sin(time)
+    radius = crane.drum.radius(6) / crane.gear_ratio
+    for paid_out, taken in ((1.0, 0.0), (0.0, 1.0)):
+        run = swinging(crane, -paid_out * tip / radius, 0.02, np.full(1000, np.nan), heave_velocity=tip)
+        torque, acceleration = inertia_torque(run, crane)
+        wanted = taken * 55e3 * radius * np.cos(time)
+        np.testing.assert_allclose((torque - crane.inertia * acceleration)[50:-50], wanted[50:-50], atol=0.4)
+
+
+OUTER = [6.0] * 8
+
+
+@pytest.mark.parametrize(
+    ("said", "layers"), [([], OUTER), ([np.nan, 3.0, np.nan, 2.0], [3, 3, 3, 2, 2, 3, 3, 2]), ([np.nan] * 4, OUTER)]
+)
+def test_a_prediction_is_made_at_the_layer_that_was_said_last_or_at_the_outer_one(truth, crane, said, layers):
+    columns = {name: values[:8] for name, values in ahc_run(truth, crane).columns.items()}
+    run = Run("r", {**columns, **({"wire_layer": np.tile(said, 2)} if said else {})})
+    drop = {group: run[f"{group}.pressure_a"] - run[f"{group}.pressure_b"] for group in run.groups}
+    point = dict(zip(ORDER, _points(run, crane, drop, np.full(8, 5.0), np.full(8, 7.0)), strict=False))
+    assert point["wire_layer"].tolist() == layers
+    assert (point["drum_torque"][0], point["acceleration"][0]) == (5.0, 7.0)

@@ -1,10 +1,16 @@
 """A supplier's table that is well formed and not what its headers say: told with every row, before it is a model."""
 
+import math
+
+import numpy as np
 import pytest
 
-from winch_friction.identification.supplier_file import read_supplier_table
-from winch_friction.identification.supplier_table import FitRange
+from winch_friction.identification.supplier_file import is_supplier_table, read_supplier_table
+from winch_friction.identification.supplier_table import FitRange, SupplierTable, motor_points
+from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction.compiled import ORDER
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS
 
 AXES = "speed [rpm],pressure [bar],displacement [cm^3/rev]"
 ROWS = [(n, p, d) for n in (500, 1500, 2500) for p in (50, 200, 350) for d in (40, 107)]
@@ -124,3 +130,119 @@ def test_wrong_axes_and_a_wrong_efficiency_are_told_together(tmp_path):
         read_supplier_table(path)
     assert ["row 7" in each for each in caught.value.problems] == [True, False]
     assert "row 5: column 'efficiency'" in caught.value.problems[1]
+
+
+@pytest.mark.parametrize(
+    ("efficiency", "said"),
+    [
+        (0.09, r"column 'efficiency': 9 % at best is no motor's"),
+        (0.11, r"column 'efficiency': 89 % of the largest torque D dp, 596\d? N\*m, would be lost"),
+        (0.48, "52 % of the largest torque"),
+        (0.52, ""),
+        (1.0, ""),  # of a dream, but no slip of a table
+    ],
+)
+def test_a_motor_keeps_half_of_its_largest_torque_and_a_tenth_of_any(read, efficiency, said):
+    if said:
+        with pytest.raises(InputError, match=said):
+            read("efficiency", lambda n, p, d: efficiency)
+    else:
+        table = read("efficiency", lambda n, p, d: efficiency)
+        assert table.torque_loss == pytest.approx((1.0 - efficiency) * table.nominal_torque)
+
+
+@pytest.mark.parametrize(("share", "above"), [(1.0, False), (1.001, True)])
+def test_a_torque_at_the_shaft_is_at_most_all_of_it(read, share, above):
+    def torque(n, p, d):
+        return repr(share * p * 1e5 * d * 1e-6 / (2.0 * math.pi))
+
+    if above:
+        with pytest.raises(InputError, match="is above D dp"):
+            read("torque [N*m]", torque)
+    else:
+        assert read("torque [N*m]", torque).torque_loss == pytest.approx([0.0] * len(ROWS), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("column", "row", "said"),
+    [
+        ("speed", "0,200,107,90", "must be above 0"),
+        ("pressure", "1500,0,107,90", "must be above 0"),
+        ("efficiency", "1500,200,107,0", "is not above 0; leave such rows out"),
+        ("displacement", "1500,200,1e-5,90", r"is no motor's: 0.000377 \.\.\. 3.77e\+05 cm\^3/rev; correct the number"),
+    ],
+)
+def test_nothing_and_next_to_nothing_are_no_operating_point(tmp_path, column, row, said):
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join([f"{AXES},efficiency [%]", "1500,200,40,90", row]))
+    with pytest.raises(InputError, match=f"row 3: column '{column}' = .* {said}"):
+        read_supplier_table(path)
+
+
+def test_a_suppliers_table_is_known_by_its_head_whatever_its_ending_is_written_in(tmp_path):
+    text = f"# of a motor\n\n{AXES.replace(',', ';')};torque_loss [N*m]\n"
+    for name, content, known in (
+        ("table.CSV", text, True),
+        ("table.csv", text, True),
+        ("table.txt", text, False),
+        ("run.csv", "time,motor_speed\n", False),
+        ("axes.csv", f"{AXES}\n", False),
+        ("two.csv", "speed,pressure,efficiency\n", False),
+        ("quoted.csv", '"speed","pressure","displacement","efficiency"\n', True),
+        ("none.csv", "", False),
+    ):
+        (tmp_path / name).write_text(content)
+        assert is_supplier_table(tmp_path / name) == known, name
+    assert not is_supplier_table(tmp_path)
+    assert not is_supplier_table(tmp_path / "nowhere.csv")
+
+
+@pytest.mark.parametrize(
+    ("fastest", "largest", "slowest", "least"),
+    [(5000, 400, 400.0, 50.0), (2000, 100, 320.0, 29.4118), (60, 5000, 9.6, 50.0), (3000, 34, 400.0, 10.0)],
+)
+def test_the_usual_range_is_a_part_of_a_smaller_or_slower_motors_own(fastest, largest, slowest, least):
+    """50 of 170 cm^3/rev and 400 of 2500 rpm; what is above has no part in it."""
+    one = np.ones(2)
+    speed, displacement = np.array([50.0, fastest]) * RPM, np.array([5.0, largest]) * CM3_PER_REV
+    own = FitRange.usual(SupplierTable("t", speed, 1e7 * one, displacement, one, one, largest * CM3_PER_REV))
+    assert own.speed == pytest.approx((slowest * RPM, 2500.0 * RPM))
+    assert own.pressure == pytest.approx((50.0 * BAR, 350.0 * BAR))
+    assert own.displacement == (pytest.approx(least * CM3_PER_REV, rel=1e-4), float("inf"))
+
+
+def test_a_range_without_an_end_is_said_from_where_on():
+    one = np.ones(3)
+    speed, pressure = np.array([1000.0, 2000.0, 1000.0]) * RPM, np.array([100.0, 200.0, 400.0]) * BAR
+    swept = np.array([40.0, 45.0, 49.0]) * CM3_PER_REV
+    table = SupplierTable("t", speed, pressure, swept, one, one, swept[-1])
+    said = FitRange().left_out(table)
+    assert said.startswith(
+        "t: 3 of 3 rows are left out: 1 by pressure (50 ... 350 bar count), 3 by displacement (from 50"
+    )
+    assert "inf" not in said
+    with pytest.raises(InputError) as caught:
+        FitRange().select(table)
+    assert "pressure 100 ... 400 bar (50 ... 350 count), displacement 40 ... 49 cm^3/rev (from 50 on count)" in str(
+        caught.value
+    )
+    assert "speed" not in str(caught.value)
+
+
+def test_the_rows_that_are_kept_keep_all_that_belongs_to_them():
+    one, k = np.ones(4), np.arange(1.0, 5.0)
+    table = SupplierTable("t", k, 1e7 * k, 1e-5 * k, 10.0 * k, 100.0 * k, 9.0)
+    kept = table.where(np.array([False, True, False, True]))
+    assert (len(kept), kept.name, kept.max_displacement) == (2, "t", 9.0)
+    assert [each.tolist() for each in (kept.speed, kept.torque_loss, kept.weight)] == [[2, 4], [20, 40], [200, 400]]
+    assert kept.displacement / 1e-5 == pytest.approx([2.0, 4.0])
+    assert kept.pressure / 1e7 == pytest.approx([2.0, 4.0])
+    close = SupplierTable("t", one, 1e7 * one, np.array([215.0, 214.0, 215.0, 215.0]) * CM3_PER_REV, one, one, 9.0)
+    assert len(np.unique(close.fit_data().cluster[:, 0])) == len(np.unique(close.fit_data().group)) == 2
+
+
+def test_a_motor_alone_turns_forward_under_its_pressure_with_nothing_on_the_drum():
+    point = motor_points(np.array([50.0]), np.array([2e7]), np.array([3e-5]))
+    named = dict(zip([*ORDER, "count", *(each.name for each in GROUP_SIGNALS[1:])], point, strict=False))
+    assert (named["direction"], named["drum_torque"], named["motor_total"]) == (1.0, 0.0, 1.0)
+    assert (named["speed"], named["pressure"], named["pressure_sum"], named["displacement"]) == (50.0, 2e7, 2e7, 3e-5)

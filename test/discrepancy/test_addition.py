@@ -76,6 +76,7 @@ def test_only_what_moves_and_what_drives_is_in_the_table():
         ([1.0, 1.02, 1.06, 0.0], [1, 1, 2, 0]),  # beyond three per cent of the largest
         ([-100.0, -99.0, -50.0], [0, 0, 1]),
         ([50.0, 10.0, 30.0, 20.0, 40.0, 0.0], [5, 1, 3, 2, 4, 0]),  # six are as they are
+        (list(range(7)), [0, 1, 2, 3, 4, 5, 5]),
         (list(range(12)), [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]),  # of more a sixth each
         ([0.0, 0.0], [0, 0]),
     ],

@@ -8,8 +8,10 @@ import pytest
 
 from winch_friction.discrepancy import proposals, repair
 from winch_friction.discrepancy.answer import UNEXPLAINED, Verdict
-from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate
-from winch_friction.discrepancy.repair import Repair, _changed, _Draft
+from winch_friction.discrepancy.candidates.candidate import CUT, Candidate, ParameterEstimate
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.estimates import InFile
+from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair, _changed, _Draft
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
@@ -215,3 +217,201 @@ def test_a_law_of_another_signal_that_leaves_hardly_more_is_shown_beside_the_bes
         for left, read, words in ((100.0, ("motor_speed",), 2.0), (loss, signals, weight))
     )
     assert proposals._another(law, head, 1000.0) is own
+
+
+# -- from an explanation to a file, by figures
+TARE = Correction("tare_load", 100.0, 10.0, source="an owner")
+SEED = FrictionModel("given", (COULOMB,), (50.0,), np.array([[4.0]]), {C2.name: (0.0, 90.0)}, {"k": 2.0}, {"by": "me"},
+                     (TARE,), "")  # fmt: skip
+VISCOUS = term_named("viscous")
+(VISCOSITY,) = VISCOUS.parameters
+
+
+def drafting(monkeypatch, candidate, **beside):
+    """A draft of one slot in column 5: the base moves by 0.5 of a scale of 2 and -1 of one of 30, the slot's amount is
+    3 of a scale of 4; deviations of these are 0.2, 0.3 and 0.5."""
+    slot = Slot("effect", "", (5,), origin=(candidate, "shape"))
+    base = SimpleNamespace(names=("C2", "timing", "tare_load"), parameters=1)
+    layout = SimpleNamespace(scales=np.array([2.0, 1.0, 30.0, 9.0, 9.0, 4.0]))
+    columns = lambda slots: (0, 1, 2, *(c for each in slots for c in each.columns))  # noqa: E731
+    problem = SimpleNamespace(columns=columns, layout=layout, base=base)
+    cross = SimpleNamespace(problem=problem, covariance=lambda _: np.diag([0.04, 0.01, 0.09, 0.25]))
+    given = SimpleNamespace(model=SEED, crane=SimpleNamespace(name="own crane"), prepared=(), runs=())
+    known = {"reversal": None, "ripple": None, "flow": (), **beside}
+    search = SimpleNamespace(
+        given=given, cross=cross, expansion=SimpleNamespace(model=SEED.with_values([60.0])), train=(), **known
+    )
+    monkeypatch.setattr(repair, "_sides", lambda _: "sides")
+    monkeypatch.setattr(repair, "estimates_of", lambda slot, value, std, cross: estimated(value[0], std[0]))
+    monkeypatch.setattr(repair, "of_part", lambda slot, slots, found: found)
+    monkeypatch.setattr(repair, "in_file", lambda slot, found, sides, had: {"told": (sides, sorted(had))})
+    explanation = SimpleNamespace(slots=(slot,), beta=np.array([0.5, 9.0, -1.0, 3.0]))
+    return repair.draft(search, explanation, {"by": "gap", "at": "noon"})
+
+
+def estimated(value, std, name=VISCOSITY.name):
+    return {name: ParameterEstimate(float(value), float(std), VISCOSITY.unit)}
+
+
+def test_a_draft_is_the_point_of_expansion_and_what_was_found_in_its_units(monkeypatch):
+    found = drafting(monkeypatch, Candidate("viscous", linear=(VISCOSITY,), term=VISCOUS))
+    model = found.model
+    assert model.as_dict() == {C2.name: pytest.approx(61.0), VISCOSITY.name: pytest.approx(12.0)}
+    assert list(model.std) == pytest.approx([0.4, 2.0])
+    (tare,) = model.corrections
+    assert (tare.name, tare.value, tare.std, tare.source) == ("tare_load", 70.0, pytest.approx(9.0), "an owner")
+    assert (model.name, model.crane) == ("given_repaired", "own crane")
+    assert (dict(model.constants), dict(model.provenance)) == ({"k": 2.0}, {"by": "gap", "at": "noon"})
+    assert found.parameters == {"effect": estimated(12.0, 2.0)}
+    assert found.said == {"effect": {"told": ("sides", [repair.key_of(TARE)])}}
+    assert found.cut == ()
+    assert model.bounds_of(C2.name) == (0.0, 90.0)
+
+
+def test_a_draft_adds_what_corrects_what_flows_and_what_turns(monkeypatch):
+    def corrects(found, shape, sides):
+        assert (shape, sides) == ("shape", "sides")
+        return [Correction("tare_load", 10.0 * next(iter(found.values())).value, 1.0)]
+
+    leaks = SimpleNamespace(corrections=(Correction("slip_leakage", 1e-12), Correction("entrained_air", 0.01)))
+    layout = SimpleNamespace(scales=np.array([1.0, 1.0, 8.0]))
+    problem = SimpleNamespace(columns=lambda slots: (0, 2), layout=layout)
+    own = SimpleNamespace(problem=problem, covariance=lambda _: np.diag([1.0, 0.0625]))
+    slot = Slot("turning", "", (2,), origin=(Candidate("viscous", linear=(VISCOSITY,), term=VISCOUS), None))
+    turning = SimpleNamespace(slot=slot, cross=own, fitted=SimpleNamespace(slots=(), beta=np.array([5.0, 0.5])))
+    found = drafting(monkeypatch, Candidate("load", corrects=corrects), flow=(leaks,), reversal=turning)
+    assert [(each.name, each.value) for each in found.model.corrections] == [
+        ("tare_load", 70.0 + 120.0), ("slip_leakage", 1e-12), ("entrained_air", 0.01)
+    ]  # fmt: skip
+    assert found.model.as_dict()[VISCOSITY.name] == pytest.approx(4.0)
+    assert found.model.std[1] == pytest.approx(2.0)
+    assert found.parameters["turning"] == estimated(4.0, 2.0)
+
+
+@pytest.mark.parametrize(("name", "written"), [
+    ("m", "m_repaired"), ("m_repaired", "m_repaired"), ("m_refitted", "m_repaired"),
+    ("m_repaired_refitted", "m_repaired"), ("m_refitted_x", "m_refitted_x_repaired"),
+])  # fmt: skip
+def test_a_model_is_called_repaired_once(name, written):
+    assert (REPAIRED, REFITTED) == ("_repaired", "_refitted")
+    own = _Draft([COULOMB], {C2.name: 20.0}, {C2.name: 3.0}, [], {})
+    seed = replace(SEED, name=name, crane="its crane", corrections=())
+    found = repair._model_of(own, seed, SimpleNamespace(name="another"), {}, {})
+    assert (found.model.name, found.model.crane) == (written, "its crane")
+
+
+def test_a_file_is_cut_at_the_seeds_own_bounds_and_says_from_where():
+    """The seed's bounds count, not the usual ones, nor the room of what is new; a deviation is never nothing."""
+    cut = Correction("tare_load", 5.0, 1.0, source=f"runs, {CUT} 3e+04 kg")
+    own = _Draft(
+        [COULOMB, VISCOUS], {C2.name: 95.04, VISCOSITY.name: 1.0}, {C2.name: 0.0, VISCOSITY.name: 0.2}, [cut],
+        {C2.name: (0.0, 1e6), VISCOSITY.name: (0.0, 7.0), "of another": (0.0, 1.0)},
+    )  # fmt: skip
+    found = repair._model_of(own, SEED, SimpleNamespace(name=""), {"a": {}}, {})
+    assert found.model.values == (90.0, 1.0)
+    assert found.cut == (f"{C2.name}: {CUT} 95.04 {C2.unit}", f"{repair.key_of(cut)}: {CUT} 3e+04 kg")
+    assert list(found.model.std) == pytest.approx([1e-12 * abs(C2.typical), 0.2])
+    assert found.parameters == {"a": {}}
+    assert dict(found.model.bounds) == {C2.name: (0.0, 90.0), VISCOSITY.name: (0.0, 7.0)}
+    near = _Draft([COULOMB], {C2.name: 90.0 + 1e-3}, {C2.name: 1.0}, [], {})
+    assert len(repair._model_of(near, SEED, SimpleNamespace(name=""), {}, {}).cut) == 1
+
+
+def test_a_curve_of_the_same_cause_melts_in_and_shapes_do_not_add_up():
+    churning = term_named("churning")
+    amount, exponent = churning.parameters
+    own = _Draft([churning], {amount.name: 9.0, exponent.name: 2.0}, {amount.name: 3.0, exponent.name: 0.1}, [], {})
+    more = {amount.name: ParameterEstimate(5.0, 4.0, "N*m"), exponent.name: ParameterEstimate(1.5, 0.2, "1")}
+    own.add_term(Candidate("churning", term=churning), churning, more)
+    assert own.at == {amount.name: 14.0, exponent.name: 2.0}
+    assert own.std == {amount.name: pytest.approx(5.0), exponent.name: 0.1}
+    melted = Candidate(
+        "churning", term=churning, merge=lambda at, new: {exponent.name: at[exponent.name] * new[exponent.name]}
+    )
+    own.add_term(melted, churning, more)
+    assert own.at == {amount.name: 14.0, exponent.name: 3.0}
+    assert own.std == {amount.name: pytest.approx(np.hypot(5.0, 4.0)), exponent.name: pytest.approx(np.hypot(0.1, 0.2))}
+
+
+def test_corrections_of_other_groups_are_two():
+    own = drafted()
+    for value, groups in ((1.0, ("a",)), (2.0, ("b",)), (4.0, ("a",))):
+        own.add_correction(Correction("pressure_scale", 0.001 * value, 0.1 * value, groups=groups))
+    assert [(each.value, each.std, each.groups) for each in own.corrections] == [
+        (pytest.approx(0.005), pytest.approx(0.4), ("a",)), (0.002, 0.2, ("b",))
+    ]  # fmt: skip
+
+
+# -- the last fit, by figures
+def test_before_the_fit_the_seed_is_known_as_it_is_and_what_was_found_by_its_size():
+    found = FrictionModel(
+        "m", (COULOMB, VISCOUS), (61.0, 12.0), np.diag([0.16, 4.0]), {}, {}, {},
+        (replace(TARE, value=70.0, std=9.0), Correction("pressure_scale", 0.01, 0.003), Correction("slip_leakage", 0.0)),
+    )  # fmt: skip
+    for named, value, loose in (({}, 50.0, 2.0), ({C2.name: None}, 61.0, 0.4 * LIMITS.loosened)):
+        prior, room = repair._prior(Repair(found, {"effect": named}), SEED)
+        assert prior.values == (value, 12.0)
+        assert room == {
+            C2.name: pytest.approx(loose), VISCOSITY.name: pytest.approx(2.0 * LIMITS.loosened),
+            repair.key_of(TARE): 10.0, repair.key_of(found.corrections[1]): pytest.approx(0.003 * LIMITS.loosened),
+            repair.key_of(found.corrections[2]): 0.0,
+        }  # fmt: skip
+
+
+def test_a_step_is_of_parameters_and_corrections_alone_each_in_its_unit(monkeypatch):
+    base = SimpleNamespace(parameters=1, names=("C2", "timing", "tare_load"), scale=np.array([2.0, 7.0, 30.0]))
+    covariance = np.array([[0.04, 0.0, 0.006], [0.0, 1.0, 0.0], [0.006, 0.0, 0.09]])
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(grams=SimpleNamespace(count=np.full(2, 25.0))), covariance=lambda _: covariance,
+        explain=lambda _: SimpleNamespace(beta=np.array([0.5, 9.0, -1.0]), train_loss=10.0),
+    )  # fmt: skip
+    monkeypatch.setattr(repair, "base_of", lambda *_, **__: base)
+    monkeypatch.setattr(repair, "layout_of", lambda *_: None)
+    monkeypatch.setattr(repair, "build_problem", lambda *_: None)
+    monkeypatch.setattr(repair, "CrossFit", lambda _: cross)
+    step, found, deviations = repair._step(SimpleNamespace(model=SEED, prepared=()), SEED, {})
+    assert step.tolist() == [1.0, -30.0]
+    assert found == pytest.approx(np.array([[0.16]]))  # less than the noise is left: no surer for that
+    assert deviations.tolist() == [pytest.approx(9.0)]
+
+
+def test_a_stepped_model_stays_inside_its_bounds_and_no_deviation_is_nothing():
+    both = replace(SEED, terms=(COULOMB, VISCOUS), values=(50.0, 1.0), covariance=np.eye(2))
+    told, untold = np.array([[9.0, 0.3], [0.3, 4.0]]), np.diag([9.0, 0.0])
+    found, none = (
+        repair._stepped(both, np.array([60.0, 0.5, -20.0]), each, np.array([4.0])) for each in (told, untold)
+    )
+    assert found.values == (90.0, 1.5)
+    np.testing.assert_allclose(found.covariance, told)
+    np.testing.assert_allclose(none.covariance, np.diag([9.0, (1e-9 * abs(VISCOSITY.typical)) ** 2]))
+    assert [(each.value, each.std) for each in found.corrections] == [(80.0, 4.0)]
+    bare = FrictionModel("bare", (), ())
+    assert repair._stepped(bare, np.zeros(0), np.zeros((0, 0)), np.zeros(0)).covariance is None
+
+
+def test_estimates_are_told_as_the_last_fit_has_them():
+    """What is new by its term, what a correction says by that; what the seed had, and what nobody says, as found."""
+    model = replace(SEED, terms=(COULOMB, VISCOUS), values=(55.0, 13.0), covariance=np.diag([1.0, 9.0]))
+    said = {"load": {"mass": InFile(repair.key_of(TARE), 2.0, 60.0), "gone": InFile("nowhere", 1.0, 0.0), "no": None}}
+    before = ParameterEstimate(1.0, 1.0, "kg")
+    names = {"load": {"mass": before, "gone": before, "no": before}, "drag": {C2.name: before, VISCOSITY.name: before}}
+    found = repair._reported(Repair(model, names, said=said), SEED)
+    assert found["load"] == {"mass": ParameterEstimate(20.0, 5.0, "kg"), "gone": before, "no": before}
+    assert found["drag"] == {C2.name: before, VISCOSITY.name: ParameterEstimate(13.0, 3.0, "kg")}
+
+
+def test_polishing_fits_the_training_runs_and_reports_what_it_found(monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        repair,
+        "meet",
+        lambda *met: asked.append(met) or SimpleNamespace(only=lambda names: asked.append(names) or "now"),
+    )
+    monkeypatch.setattr(repair, "meet_again", lambda now, runs, crane, tried: "then")
+    monkeypatch.setattr(repair, "_step", lambda *_: (np.array([1.0]), 25.0 * np.eye(1), np.zeros(0)))
+    monkeypatch.setattr(repair, "_misfit", lambda given: {"now": 1.0, "then": 1.0}[given])
+    monkeypatch.setattr(repair, "_as_found", lambda best, drafted, seed: replace(best, name="as found"))
+    monkeypatch.setattr(repair, "_reported", lambda best, seed: {best.model.name: {}})
+    found = repair.polished(Repair(model(), {}, cut=("c",)), model(), ["runs"], ("a", "b"), "crane", "known")
+    assert asked == [(["runs"], "crane", model(), ("a", "b"), "known"), ("a", "b")]
+    assert (found.model.name, found.parameters, found.cut) == ("as found", {"as found": {}}, ("c",))

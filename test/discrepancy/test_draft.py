@@ -346,7 +346,7 @@ def test_corrections_of_other_groups_are_two():
 def test_before_the_fit_the_seed_is_known_as_it_is_and_what_was_found_by_its_size():
     found = FrictionModel(
         "m", (COULOMB, VISCOUS), (61.0, 12.0), np.diag([0.16, 4.0]), {}, {}, {},
-        (replace(TARE, value=70.0, std=9.0), Correction("pressure_scale", 0.01, 0.003), Correction("slip_leakage", 0.0)),
+        (replace(TARE, value=70.0, std=9.0), Correction("pressure_scale", 0.01, 0.003), Correction("inertia", 0.0)),
     )  # fmt: skip
     for named, value, loose in (({}, 50.0, 2.0), ({C2.name: None}, 61.0, 0.4 * LIMITS.loosened)):
         prior, room = repair._prior(Repair(found, {"effect": named}), SEED)

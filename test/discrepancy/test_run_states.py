@@ -15,7 +15,7 @@ from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.catalogue import levels_of, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.logged_causes import follows_a_signal, told_by_a_signal
+from winch_friction.discrepancy.logged_causes import _left_by, _medians, _spread, follows_a_signal, told_by_a_signal
 from winch_friction.discrepancy.run_states import (
     EACH_RUN,
     SINCE,
@@ -367,3 +367,90 @@ def test_a_drag_of_each_run_has_its_windows_by_date_and_its_amounts_as_shares_of
 def test_a_drag_for_a_time_is_named_for_its_cause_and_its_law():
     own = _drag("brake_drag", ((1.0, 2.0), (3.0, 4.0)), SOME_RUNS)
     assert (own.name, own.law_name, own.term.name) == ("brake_drag", SOME_RUNS, "brake_drag_in_some_runs")
+
+
+# -- what was logged, by figures
+def logged(values, used=None, kind=("main",), start=0.0, **drives):
+    """A run with these samples of `x`, and what its groups do, by name: (closes the balance, displacement)."""
+    count = len(values)
+    groups = [
+        SimpleNamespace(balances=closes, displacement=np.full(count, swept), pressure=np.full(count, 1e7))
+        for closes, swept in (drives or {"main": (True, 2e-5)}).values()
+    ]
+    channels = {
+        "x": np.array(values),
+        "time": np.arange(count),
+        "shaft_angle": np.ones(count),
+        "acceleration": np.ones(count),
+    }
+    used = np.ones(count, bool) if used is None else np.array(used, bool)
+    return SimpleNamespace(
+        channels=channels, used=used, kind=kind, groups=groups, start=start, load=np.full(count, 1.0)
+    )
+
+
+def test_what_a_signal_was_in_the_middle_of_a_run_is_that_of_its_moving_samples():
+    first = logged([9.0, 9.0, 9.0, 1.0, 2.0, 8.0], [0, 0, 0, 1, 1, 1], passive=(False, 7e-5), active=(True, 3e-5))
+    still, other = logged([5.0], [0]), logged([4.0])
+    other.channels["oil"] = np.ones(1)
+    found = _medians([first, still, other])
+    assert sorted(found) == ["displacement", "pressure", "x"]  # what all have, and no clock
+    np.testing.assert_equal(found["x"], [2.0, np.nan, 4.0])
+    np.testing.assert_equal(found["displacement"], [3e-5, np.nan, 2e-5])
+
+
+@pytest.mark.parametrize(
+    ("values", "spread"),
+    [
+        ([1.0, 2.0, 5.0], [-5.0 / 12.0, -2.0 / 12.0, 7.0 / 12.0]), ([3.0, 3.0], None), ([1.0, np.nan], None),
+        ([1e9, 1e9 + 0.5], None), ([1e9, 1e9 + 2.0], [-0.5, 0.5]), ([-7.0, -5.0], [-0.5, 0.5]),
+    ],
+)  # fmt: skip
+def test_a_signal_that_hardly_differs_tells_nothing(values, spread):
+    found = _spread(np.array(values))
+    assert (found is None) == (spread is None)
+    assert found is None or found.tolist() == pytest.approx(spread)
+
+
+def test_what_a_fit_leaves_is_told_per_value_that_it_does_not_use_up():
+    values = np.array([1.0, 2.0, 6.0, 7.0])
+    assert _left_by(np.ones((4, 1)), values) == pytest.approx(np.var(values, ddof=1))
+    assert _left_by(np.eye(4), values) == pytest.approx(0.0)
+
+
+def test_six_runs_of_one_kind_are_enough_to_tell_that_levels_follow_nothing():
+    """What two runs of a kind are spread by, and a parabola uses up, is no freedom."""
+    levels = np.array([1.0, 5.0, 2.0, 6.0, 1.5, 5.5, 2.5])
+    assert follows_a_signal([logged([1.0], start=0.0) for _ in range(5)], levels[:5])
+    assert not follows_a_signal([logged([1.0], start=0.0) for _ in range(6)], levels[:6])
+    two = [("main",)] * 3 + [("active", "passive")] * 3
+    assert follows_a_signal([logged([1.0], kind=kind) for kind in two], levels[:6])
+    assert not follows_a_signal([logged([1.0], kind=kind) for kind in [*two, ("main",)]], levels)
+
+
+@pytest.mark.parametrize(("kinds", "told"), [("aabb", True), ("abab", False), ("aaaa", False)])
+def test_what_one_kind_of_run_alone_has_is_told_by_the_kind(kinds, told):
+    there = np.array([True, True, False, False])
+    runs = [logged([value], kind=kind) for kind, value in zip(kinds, (1.0, 4.0, 2.0, 3.0), strict=True)]
+    assert told_by_a_signal(runs, there) == told
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ((3.0, 4.0, 1.0, 2.0), True),
+        ((1.0, 2.0, 3.0, 4.0), True),
+        ((2.0, 4.0, 1.0, 2.0), False),
+        ((1.0, 3.0, 2.0, 4.0), False),
+    ],
+)
+def test_a_signal_tells_where_all_runs_of_one_level_lie_beyond_the_others(values, told):
+    assert told_by_a_signal([logged([value]) for value in values], np.array([True, True, False, False])) == told
+
+
+@pytest.mark.parametrize(("layers", "told"), [((2, 2, 1, 3), True), ((2, 2, 2, 3), False), ((2, 4, 1, 3), False)])
+def test_a_layer_tells_where_runs_of_one_level_share_it_and_no_other_has_it(layers, told):
+    runs = [logged([value]) for value in (1.0, 3.0, 2.0, 4.0)]
+    for run, layer in zip(runs, layers, strict=True):
+        run.channels["wire_layer"] = np.array([float(layer)])
+    assert told_by_a_signal(runs, np.array([True, True, False, False])) == told

@@ -216,9 +216,9 @@ def weighed(monkeypatch, true, follows=1.0, ways=(-1.0, 1.0), friction=400.0):
     def prepare(run, crane, model, load, *, mode, spikes, seen):
         calls.append((load, seen, mode, spikes.any()))
         gap = 0.004 * GRAVITY * follows * (true - load) + friction * direction * (1.0 + load / 5e4) + off
-        used = np.append(np.ones(len(direction), bool), False)
+        used = np.append(False, np.ones(len(direction), bool))
         return SimpleNamespace(
-            gap=np.append(gap, 1e9), used=used, radius=np.full(len(used), 0.8), direction=np.append(direction, 1.0),
+            gap=np.append(1e9, gap), used=used, radius=np.full(len(used), 0.8), direction=np.append(1.0, direction),
             seen=f"seen {len(calls)}",
         )  # fmt: skip
 

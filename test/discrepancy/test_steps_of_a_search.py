@@ -12,7 +12,7 @@ from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, C
 from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.selection import Selection
-from winch_friction.discrepancy.search import FEWEST_BLOCKS, ReversalFinding, long_delay, too_short
+from winch_friction.discrepancy.search import ReversalFinding, long_delay, too_short
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RNG = np.random.default_rng(0)
@@ -20,7 +20,7 @@ RNG = np.random.default_rng(0)
 
 # -- just after reversals
 def reversing(
-    monkeypatch, gone=1.0, p=0.004, gain=1.5, own=0.0, least=None, bound=False, travel=1.0, blocks=FEWEST_BLOCKS,
+    monkeypatch, gone=1.0, p=0.004, gain=1.5, own=0.0, least=None, bound=False, travel=1.0, blocks=200,
     named=(),
 ):  # fmt: skip
     """What is found where a base leaves 10, the noise 4, and the best of two effects takes `gone` of the six between:
@@ -37,8 +37,9 @@ def reversing(
         SimpleNamespace(loss=loss, losses=np.full(4, loss / 4.0), slots=(slot,))
         for loss, slot in zip((9.99, 10.0 - 6.0 * gone), slots, strict=True)
     ]
+    explained = iter([base, SimpleNamespace(loss=10.0 + own)])  # and what nothing explains
     cross = SimpleNamespace(
-        explain=lambda kept: base if kept or not named else SimpleNamespace(loss=10.0 + own), floor=4.0,
+        explain=lambda kept: next(explained), floor=4.0,
         gain=lambda before, after: gain if (before, after) == (base, trials[1]) else -1.0,
         at_bound=lambda trial, slot: bound and (trial, slot) == (trials[1], slots[1]),
     )  # fmt: skip
@@ -99,7 +100,7 @@ def test_what_takes_most_just_after_reversals_is_the_finding_of_the_training_run
         ({"bound": True}, False),
         ({"travel": 0.5}, False),  # over before the instant is known
         ({"travel": 0.51}, True),
-        ({"blocks": FEWEST_BLOCKS - 1}, False),
+        ({"blocks": 199}, False),
         ({"gone": LIMITS.reversal_share - 0.01}, False),
         ({"gone": LIMITS.reversal_share + 0.01}, True),
         # six times what a named effect may leave of itself

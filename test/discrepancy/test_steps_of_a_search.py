@@ -167,7 +167,7 @@ BASE = Explained()
 
 def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, continuous=(), also=None):
     """A search whose every step is told here: what was asked of each."""
-    asked = SimpleNamespace(most=[], left=[], reversed=0, expanded=0, decided=[], known=None, cleaned=[])
+    asked = SimpleNamespace(most=[], left=[], reversed=0, expanded=0, decided=[], known=None, cleaned=[], laid=[])
     own = Candidate("own", regime=MOVING, continuous=continuous)
     slot = Slot("own", "", (0,), origin=(own, Shape("", {})))
     final = Explained((slot,) if found else ())
@@ -205,7 +205,7 @@ def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, 
         return list(known), ["blind"]
 
     for name, value in {
-        "Expansion": Around, "layout_of": lambda *_: None, "base_of": lambda *_: None, "select": select,
+        "Expansion": Around, "layout_of": lambda _, known, *__: asked.laid.extend(known), "base_of": lambda *_: None, "select": select,
         "near": lambda *_: (),
         "expand_around": expand, "after_reversals": reverse, "decide": decide, "testable": testable,
         "most_of_it": lambda *_: None, "dependences": lambda _, left, __: asked.left.append(left) or ["depends"],
@@ -255,6 +255,7 @@ def test_runs_are_prepared_around_what_was_found_once_and_again_for_a_shape_from
 def test_a_law_of_last_resort_is_one_cause_alone(monkeypatch):
     asked, _, _ = searching(monkeypatch, MISSING, also=lambda prepared, model: [Candidate("last", regime=MOVING)])
     assert asked.known == ["own", "turns", "last"]
+    assert [each.name for each in asked.laid] == ["own", "last"]  # what turns is looked for just after reversals
     assert set(asked.most) == {1}
 
 

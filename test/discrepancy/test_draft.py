@@ -233,7 +233,7 @@ def drafting(monkeypatch, candidate, **beside):
     slot = Slot("effect", "", (5,), origin=(candidate, "shape"))
     base = SimpleNamespace(names=("C2", "timing", "tare_load"), parameters=1)
     layout = SimpleNamespace(scales=np.array([2.0, 1.0, 30.0, 9.0, 9.0, 4.0]))
-    columns = lambda slots: (0, 1, 2, *(c for each in slots for c in each.columns))  # noqa: E731
+    columns = lambda slots: (0, 1, 2, *(c for each in slots for c in each.columns))
     problem = SimpleNamespace(columns=columns, layout=layout, base=base)
     cross = SimpleNamespace(problem=problem, covariance=lambda _: np.diag([0.04, 0.01, 0.09, 0.25]))
     given = SimpleNamespace(model=SEED, crane=SimpleNamespace(name="own crane"), prepared=(), runs=())

@@ -333,6 +333,13 @@ def test_a_curve_of_the_same_cause_melts_in_and_shapes_do_not_add_up():
     assert own.std == {amount.name: pytest.approx(np.hypot(5.0, 4.0)), exponent.name: pytest.approx(np.hypot(0.1, 0.2))}
 
 
+def test_what_is_cut_below_says_so_as_well():
+    each = Correction("pressure_scale", 0.01, 0.001, source="runs")
+    cut = _changed(each, 3.0 * each.bounds[0], None)
+    assert (cut.value, cut.std) == (each.bounds[0], None)
+    assert cut.source == f"runs, {CUT} {3.0 * each.bounds[0]:g} 1"
+
+
 def test_corrections_of_other_groups_are_two():
     own = drafted()
     for value, groups in ((1.0, ("a",)), (2.0, ("b",)), (4.0, ("a",))):

@@ -205,7 +205,7 @@ def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, 
         return list(known), ["blind"]
 
     for name, value in {
-        "Expansion": Around, "layout_of": lambda _, known, *__: asked.laid.extend(known), 
+        "Expansion": Around, "layout_of": lambda _, known, *__: asked.laid.extend(known),
         "base_of": lambda *_: None, "select": select,
         "near": lambda *_: (),
         "expand_around": expand, "after_reversals": reverse, "decide": decide, "testable": testable,

@@ -1,14 +1,16 @@
 """A delay within a sample and a zero within a transducer's step are no names, whatever they take off a gap."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import estimates
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import (
+    MIMICS,
     InFile,
     SeedRefuted,
     _cost,
@@ -16,13 +18,18 @@ from winch_friction.discrepancy.estimates import (
     _surprise,
     agreed,
     estimates_of,
+    in_file,
+    of_part,
     takes_little,
     together,
+    try_seed,
     widened,
     within_a_sample,
     within_a_step,
 )
+from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 
 WARMTH = np.linspace(-1.0, 1.0, 201)
@@ -209,3 +216,180 @@ def test_a_refuted_seed_is_written_with_its_shifts_and_what_they_pass_for():
     assert SeedRefuted({"K1": 3.5, "C2": -4.0}, 5.0, ("viscous",)).content() == {
         "parameters": ["K1", "C2"], "sigma": 5.0, "shifts": {"K1": 3.5, "C2": -4.0}, "mimics": ["viscous"],
     }  # fmt: skip
+
+
+# -- where a file says an estimate
+TARE, SCALE = Correction("tare_load", 40.0), Correction("pressure_scale", 0.01)
+
+
+def placed(corrects, a=8.0, b=0.5):
+    found = {"a": ParameterEstimate(a, 2.0, "kg"), "b": ParameterEstimate(b, 0.1, "1")}
+    slot = Slot("wrong", "", (1,), origin=(SimpleNamespace(corrects=corrects), "shape"))
+    return in_file(slot, found, "sides", {key_of(TARE): TARE})
+
+
+def at(found):
+    return found["a"].value, found["b"].value
+
+
+@pytest.mark.parametrize("a", [8.0, 0.0, -3.0])
+def test_an_estimate_stands_in_the_one_correction_that_it_alone_moves_by_so_much_beside_what_was_there(a):
+    def corrects(found, shape, sides):
+        assert (shape, sides) == ("shape", "sides")
+        return [replace(TARE, value=-2.0 * at(found)[0] + 1.0), replace(SCALE, value=0.25 * at(found)[1])]
+
+    found = placed(corrects, a)
+    assert found["a"] == InFile(key_of(TARE), pytest.approx(-2.0), 40.0)
+    assert found["b"] == InFile(key_of(SCALE), pytest.approx(0.25), 0.0)
+
+
+def test_what_is_cut_at_a_bound_has_the_slope_that_it_has_inside():
+    found = placed(lambda found, *_: [replace(TARE, value=min(3.0 * at(found)[0], TARE.bounds[1]))], 1e6)
+    assert found == {"a": InFile(key_of(TARE), pytest.approx(3.0), 40.0), "b": None}
+
+
+@pytest.mark.parametrize(
+    "corrects",
+    [
+        None,
+        lambda found, *_: [replace(TARE, value=at(found)[0] + at(found)[1])],  # two in one
+        lambda found, *_: [replace(TARE, value=at(found)[0]), replace(SCALE, value=0.001 * at(found)[0])],  # one in two
+        lambda found, *_: [TARE],
+    ],
+)
+def test_an_estimate_that_shares_a_correction_or_goes_into_several_stands_nowhere(corrects):
+    assert placed(corrects) == {"a": None, "b": None}
+
+
+def test_zeros_of_several_feedbacks_are_told_apart_by_their_labels():
+    every, port, other = (
+        Slot("zero", label, (k,), part=part)
+        for k, (label, part) in enumerate(
+            (("all groups, both ports", ""), ("main, port A", "a"), ("main, port B", "b"))
+        )
+    )
+    stranger = Slot("delay", "late", (9,), part="c")
+    found = {"offset": 1.0}
+    assert of_part(port, [port, stranger], found) is found
+    assert of_part(port, [port, other], found) == {"offset of main": 1.0}
+    assert of_part(port, [every, port], found) == {"offset of main, beside that of all": 1.0}
+    assert of_part(every, [every, port], found) == {"offset of all groups": 1.0}
+
+
+# -- the seed on trial
+MODEL = FrictionModel(
+    "seed", (term_named("coulomb"), term_named("viscous"), term_named("brake_drag")), (50.0, 1.0, 5.0), np.eye(3)
+)
+NAMES = MODEL.parameter_names
+BOUND, ORDINARY = LIMITS.prior_bound, LIMITS.ordinary_shift
+
+
+def tried(monkeypatch, shift, sigma=9.0, marginal=(0.0,), names=(), else_=False, cost=100.0, named=0.0, model=MODEL):
+    """A trial of a base that is off by `shift` already and moves by nothing more; `cost`: of the freed base."""
+    base = SimpleNamespace(parameters=3, shift=np.array([*shift, 77.0]))
+    wide = SimpleNamespace(problem=SimpleNamespace(base=base), train_loss=lambda _: (cost, np.zeros(4)))
+    monkeypatch.setattr(estimates, "_wide", lambda _: wide)
+    monkeypatch.setattr(estimates, "_surprise", lambda *_: (sigma, np.array(marginal)))
+    monkeypatch.setattr(estimates, "_something_else", lambda *_: else_)
+    monkeypatch.setattr(estimates, "_cost", lambda *_: named)
+    monkeypatch.setattr(estimates, "_inflated", lambda loss, shift: loss)
+    slots = tuple(SimpleNamespace(name=name) for name in names)
+    findings = [SimpleNamespace(slot=slot, rivals=(SimpleNamespace(name=f"not {slot.name}"),)) for slot in slots]
+    selection = SimpleNamespace(final=SimpleNamespace(slots=slots), found=findings)
+    search = SimpleNamespace(given=SimpleNamespace(model=model), cross=None, selection=selection)
+    return try_seed(search, None)
+
+
+FAR, CARELESS = (BOUND + 1.0, -BOUND - 3.0, 0.1), (BOUND + 1.0, -ORDINARY + 0.1, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("asked", "enough", "refuted"),
+    [
+        ({"sigma": LIMITS.seed_sigma - 0.01}, False, False),
+        ({"sigma": LIMITS.seed_sigma + 0.01}, True, True),
+        ({"sigma": 0.0, "marginal": (0.0, -LIMITS.seed_marginal - 0.01)}, True, True),
+        ({"sigma": 0.0, "marginal": (0.0, -LIMITS.seed_marginal + 0.01)}, False, False),
+        (
+            {"sigma": 0.0, "names": ("viscous",), "named": 101.0},
+            True,
+            False,
+        ),  # it does what the name does, and surprises nobody
+        ({"sigma": 0.0, "names": ("viscous",), "named": 99.0 - LIMITS.effect_price}, False, False),
+        ({"else_": True}, False, False),
+        ({"names": ("viscous",), "named": 101.0}, True, True),
+        # a careless seed is off in several parameters, and has the price of a name more
+        ({"names": ("viscous",), "named": 101.0 - LIMITS.effect_price}, True, True),
+        ({"names": ("viscous",), "named": 99.0 - LIMITS.effect_price}, False, False),
+        ({"names": ("viscous",), "named": 99.0, "shift": (BOUND + 1.0, 0.0, 0.0)}, False, False),
+        ({"names": ("viscous",), "named": 99.0, "shift": (BOUND + 1.0, ORDINARY + 0.1, 0.0)}, False, False),
+        ({"names": (), "named": -1e9}, True, True),
+        ({"model": MODEL.with_covariance(None)}, False, False),
+    ],
+)
+def test_a_seed_is_refuted_where_its_shift_surprises_and_does_all_that_the_names_do(
+    monkeypatch, asked, enough, refuted
+):
+    found = tried(monkeypatch, **{"shift": CARELESS, **asked})
+    assert (found.enough, found.refuted is not None) == (enough, refuted)
+
+
+def test_a_refuted_seed_tells_the_parameters_that_want_most_and_what_names_they_would_pass_for(monkeypatch):
+    found = tried(monkeypatch, FAR, sigma=4.0, marginal=(0.0, -8.0, 1.0), names=("churning",), named=1e9).refuted
+    assert list(found.shifts) == [NAMES[1], NAMES[0]]
+    assert found.shifts == {NAMES[1]: -BOUND - 3.0, NAMES[0]: BOUND + 1.0}
+    assert found.sigma == 8.0
+    own = [name for each in (NAMES[1], NAMES[0]) for name in MIMICS.get(each, ())]
+    assert found.mimics == tuple(dict.fromkeys(["churning", "not churning", *own]))
+    alone = tried(monkeypatch, (0.1, -0.9 * BOUND, 0.2), sigma=6.0, marginal=(1.0,)).refuted
+    assert (alone.shifts, alone.sigma) == ({NAMES[1]: -0.9 * BOUND}, 6.0)
+
+
+def test_a_freed_base_has_room_for_its_reach_inside_its_bounds(monkeypatch):
+    """Of what it has moved from the seed already, by `shift`, the room is taken off."""
+    monkeypatch.setattr(estimates, "CrossFit", lambda problem: problem)
+    reach = LIMITS.seed_reach
+    base = SimpleNamespace(parameters=3, shift=np.array([1.0, -1.0, 0.0]), scale=np.array([1.0, 0.1, 0.1]))
+
+    @dataclass(frozen=True)
+    class Part:
+        """A layout, or the problem that has it."""
+
+        lower: object = None
+        upper: object = None
+        layout: object = None
+        base: object = None
+
+    layout = Part(np.array([-1.0, -1.0, -1.0, -7.0]), np.array([1.0, 1.0, 1.0, 7.0]))
+    bounds = {NAMES[0]: (48.0, 51.5), NAMES[1]: (-1e9, 1e9), NAMES[2]: (8.0, 1e9)}
+    at_bound = replace(MODEL, values=(50.0, 1.0, 9.0), bounds=bounds)
+    search = SimpleNamespace(
+        cross=SimpleNamespace(problem=Part(layout=layout, base=base)),
+        given=SimpleNamespace(model=at_bound), expansion=SimpleNamespace(model=MODEL),
+    )  # fmt: skip
+    found = estimates._wide(search).layout
+    assert found.lower == pytest.approx([-2.0, -reach + 1.0, 0.0, -7.0])
+    assert found.upper == pytest.approx([1.5, reach + 1.0, reach, 7.0])
+    assert layout.lower.tolist() == [-1.0, -1.0, -1.0, -7.0]
+
+
+@pytest.mark.parametrize(
+    ("freed", "named", "steady", "something"),
+    [
+        (5.0, 5.0 / LIMITS.as_much + 0.1, 0.0, False),  # hardly more than the names keep
+        (5.0, 5.0 / LIMITS.as_much - 0.1, 0.0, True),
+        (5.0, None, 0.0, True),
+        (0.0, None, 5.0, True),  # what does not change from block to block counts as well
+        (0.0, None, 0.0, False),
+    ],
+)
+def test_a_freed_base_that_keeps_what_the_names_do_not_is_not_the_cause(monkeypatch, freed, named, steady, something):
+    monkeypatch.setattr(estimates, "telling", lambda wide, depends: depends)
+    monkeypatch.setattr(estimates, "dependences", lambda *_: ["depends"])
+    monkeypatch.setattr(estimates, "steady_excess", lambda *_: steady)
+    monkeypatch.setattr(estimates, "keeps_something", lambda after, before, depends: (after, before) == (5.0, 8.0))
+    final = SimpleNamespace(slots=() if named is None else ("name",))
+    wide = SimpleNamespace(inside_excess=lambda each: freed if each == "freed" else 8.0, remainder=lambda each: each)
+    cross = SimpleNamespace(inside_excess=lambda each: named)
+    search = SimpleNamespace(selection=SimpleNamespace(base="base", final=final), cross=cross)
+    assert estimates._something_else(wide, "freed", search, None) is something
